@@ -1,0 +1,70 @@
+//! An error as a person wants to read it: place, what is wrong with which value, and what to do.
+
+use std::fmt;
+
+/// Whose fault it is, which decides the exit code of the programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Bad input: exit code 2.
+    Input,
+    /// The program could not do its work (disk full, interrupted): exit code 1.
+    Failed,
+}
+
+/// One message: where, what, and the remedy.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Whose fault it is.
+    pub kind: Kind,
+    /// File, line, facet, option: as precise as is known. May be empty.
+    pub place: String,
+    /// What is wrong, with the value and the limit.
+    pub problem: String,
+    /// What the user can do. May be empty.
+    pub remedy: String,
+}
+
+/// Result of everything that can fail because of what a user gave.
+pub type Result<T> = std::result::Result<T, Diagnostic>;
+
+impl Diagnostic {
+    /// Bad input at `place`.
+    pub fn input(place: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { kind: Kind::Input, place: place.into(), problem: problem.into(), remedy: remedy.into() }
+    }
+
+    /// The work failed at `place` although the input was good.
+    pub fn failed(place: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { kind: Kind::Failed, place: place.into(), problem: problem.into(), remedy: remedy.into() }
+    }
+
+    /// The same message, said of a place in a larger thing (a facet of a file).
+    #[must_use]
+    pub fn within(mut self, outer: &str) -> Self {
+        self.place = if self.place.is_empty() { outer.to_owned() } else { format!("{outer}: {}", self.place) };
+        self
+    }
+
+    /// 2 for bad input, 1 for work that failed.
+    pub fn exit_code(&self) -> u8 {
+        match self.kind {
+            Kind::Input => 2,
+            Kind::Failed => 1,
+        }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.place.is_empty() {
+            write!(f, "{}: ", self.place)?;
+        }
+        f.write_str(&self.problem)?;
+        if !self.remedy.is_empty() {
+            write!(f, "; {}", self.remedy)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostic {}

@@ -1,0 +1,14 @@
+//! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an algorithm of either program.
+//!
+//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files.
+//! Lengths are metres unless a name says otherwise.
+
+pub mod body;
+pub mod diagnostic;
+pub mod stl;
+pub mod surface;
+pub mod units;
+
+pub use body::Body;
+pub use diagnostic::{Diagnostic, Result};
+pub use surface::Surface;

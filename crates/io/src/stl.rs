@@ -1,0 +1,1 @@
+//! STL bytes -> facets, behind our own checks.
