@@ -1,6 +1,23 @@
 //! A body: spheres, the bonds between them, and what is known of both.
+//!
+//! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending of the file's name,
+//! [`summary`] says what a body holds.
+
+pub mod check;
+pub mod csv;
+pub mod files;
+pub mod lammps;
+pub mod summary;
+mod table;
+pub mod txt;
+pub mod vtp;
+
+pub use files::{read_body, write_body};
+pub use summary::{BodySummary, body_summary};
 
 use serde::{Deserialize, Serialize};
+
+use crate::Result;
 
 /// What is known of how a body came about. Every field is optional: a body may come from anywhere.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -38,4 +55,72 @@ pub struct Body {
     pub bond_lengths: Vec<f64>,
     /// Where it came from.
     pub about: About,
+}
+
+/// A body as a file tells it, perhaps not all of it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Parts {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) radii: Vec<f64>,
+    pub(crate) bonds: Vec<[u32; 2]>,
+    pub(crate) bond_radii: Option<Vec<f64>>,
+    pub(crate) bond_lengths: Option<Vec<f64>>,
+    pub(crate) about: About,
+}
+
+impl Body {
+    /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,
+    /// a bond is as thick as the smaller of its particles and as long as they are apart.
+    ///
+    /// # Errors
+    /// Not a body by [`Body::check`].
+    pub(crate) fn from_parts(parts: Parts) -> Result<Self> {
+        let Parts {
+            positions,
+            radii,
+            mut bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+        } = parts;
+        for bond in &mut bonds {
+            bond.sort_unstable();
+        }
+        // An end that does not exist gives no number here, and is refused by the check below.
+        let bond_radii = bond_radii.unwrap_or_else(|| {
+            let radius = |end: u32| radii.get(end as usize).copied().unwrap_or(f64::NAN);
+            bonds
+                .iter()
+                .map(|&[a, b]| radius(a).min(radius(b)))
+                .collect()
+        });
+        let bond_lengths = bond_lengths.unwrap_or_else(|| {
+            let position = |end: u32| {
+                positions
+                    .get(end as usize)
+                    .copied()
+                    .unwrap_or([f64::NAN; 3])
+            };
+            bonds
+                .iter()
+                .map(|&[a, b]| distance(position(a), position(b)))
+                .collect()
+        });
+        let body = Self {
+            positions,
+            radii,
+            bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+        };
+        body.check()?;
+        Ok(body)
+    }
+}
+
+/// Distance of two points, in their unit.
+fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
+    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    (x * x + y * y + z * z).sqrt()
 }

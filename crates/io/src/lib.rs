@@ -5,6 +5,7 @@
 
 pub mod body;
 pub mod diagnostic;
+pub mod safe_write;
 pub mod stl;
 pub mod surface;
 pub mod units;

@@ -1,6 +1,30 @@
 //! The closed surface of a solid, ready for use: welded, oriented, repaired, checked.
+//!
+//! # What is inside
+//! The signed crossings of a ray from a point with all triangles (+1 where it leaves the solid through one, -1 where it enters) add up
+//! to the winding number of the surface around the point. The solid is where it is positive. For shells that do not cross, this is
+//! "inside an outer shell and in no cavity"; shells that cross or overlap form their union.
 
 pub mod build;
+
+mod boxes;
+mod duplicates;
+mod frame;
+mod holes;
+mod intersections;
+mod mesh;
+mod nesting;
+mod rays;
+mod refusals;
+mod sets;
+mod shells;
+mod t_junctions;
+mod union_volume;
+mod vector;
+mod warnings;
+mod weld;
+
+pub use build::{ReadSettings, surface_from_stl};
 
 use serde::Serialize;
 
@@ -11,7 +35,7 @@ pub struct Shell {
     pub first_triangle: usize,
     /// How many triangles it has.
     pub triangle_count: usize,
-    /// Enclosed volume in m3, always positive.
+    /// Enclosed volume in m3, always positive. Where the shell crosses itself, parts enclosed twice count twice.
     pub volume_m3: f64,
     /// An inner shell: what it encloses is void.
     pub is_cavity: bool,
@@ -34,13 +58,13 @@ pub struct Repairs {
     pub duplicate_facets: usize,
     /// Facets turned so that the normals of their shell point out of the solid.
     pub flipped_facets: usize,
-    /// Edges split on one side only (T-junctions), closed in space.
+    /// Edges split on one side only (T-junctions), closed in space by splitting them on the other side too.
     pub t_junctions: usize,
     /// Holes closed on request.
     pub filled_holes: usize,
     /// Triangles added to close holes.
     pub hole_triangles: usize,
-    /// Pairs of triangles that cross each other. The union is meant.
+    /// Pairs of triangles that cross each other and share no vertex. The union is meant.
     pub self_intersections: usize,
 }
 
@@ -65,6 +89,10 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// The connected parts.
     pub shells: Vec<Shell>,
+    /// What the volumes of the shells count more than once because shells cross or overlap, m3: zero when none does.
+    pub overlap_volume_m3: f64,
+    /// Estimated error of `overlap_volume_m3`, m3: it is integrated over columns.
+    pub overlap_volume_error_m3: f64,
     /// What was repaired.
     pub repairs: Repairs,
     /// One sentence for each thing that a user should know (repairs, T-junctions, self-intersections).
@@ -72,9 +100,20 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Volume of the solid in m3: the outer shells less their cavities.
+    /// Volume of the solid in m3: the outer shells less their cavities and less what is counted more than once.
     pub fn volume_m3(&self) -> f64 {
-        self.shells.iter().map(|s| if s.is_cavity { -s.volume_m3 } else { s.volume_m3 }).sum()
+        let sum: f64 = self
+            .shells
+            .iter()
+            .map(|s| {
+                if s.is_cavity {
+                    -s.volume_m3
+                } else {
+                    s.volume_m3
+                }
+            })
+            .sum();
+        sum - self.overlap_volume_m3
     }
 
     /// The largest corner of the bounding box, in local units (the smallest is the origin). Length 3.

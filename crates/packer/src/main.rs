@@ -1,1 +1,22 @@
-fn main(){}
+//! dem-pack: see [`dem_pack::cli`].
+
+use clap::Parser;
+use dem_pack::cli::{Arguments, run};
+use std::process::ExitCode;
+
+#[expect(clippy::print_stderr, reason = "the one place that tells a person what went wrong")]
+fn main() -> ExitCode {
+    let at_interrupt = || {
+        dem_io::safe_write::remove_unfinished();
+        std::process::exit(130);
+    };
+    // Without the handler an interrupted run could leave a temporary file behind, no more.
+    let _ = ctrlc::set_handler(at_interrupt);
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

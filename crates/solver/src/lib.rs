@@ -1,1 +1,3 @@
-//! dem-run
+//! Runs scenes with bonded bodies. So far: reads a body and says what it holds.
+
+pub mod cli;

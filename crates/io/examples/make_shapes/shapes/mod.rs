@@ -1,0 +1,48 @@
+//! The example shapes, in mm. Plain arithmetic and fixed seeds: the same bytes on every run.
+
+mod cake;
+mod mesh;
+mod noise;
+mod rock;
+mod round;
+
+use mesh::Mesh;
+use std::path::Path;
+
+/// Every shape with the stem of its file name.
+pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
+    vec![
+        (
+            "bending-sample",
+            Mesh::cuboid([0.0, 0.0, 0.0], [180.0, 30.0, 35.0]),
+        ),
+        ("c-shape", round::c_shape()),
+        ("filter-cake", cake::filter_cake()),
+        ("hollow-pair", hollow_pair()),
+        ("infinity-knot", round::infinity_knot()),
+        ("rock", rock::rock()),
+        ("tablet", round::tablet()),
+        ("torus", round::torus()),
+    ]
+}
+
+/// Writes every shape to `folder` as a binary STL file.
+///
+/// # Errors
+/// The folder cannot be written to.
+pub(crate) fn write_all(folder: &Path) -> std::io::Result<()> {
+    for (name, mesh) in all() {
+        std::fs::write(folder.join(format!("{name}.stl")), mesh.stl_bytes(name))?;
+    }
+    Ok(())
+}
+
+/// A ball of radius 12 mm with a spherical cavity of radius 5 mm off its centre, and a block beside it.
+fn hollow_pair() -> Mesh {
+    let mut pair = rock::ball([0.0, 0.0, 0.0], 12.0, 4);
+    let mut cavity = rock::ball([2.0, 1.0, -1.0], 5.0, 3);
+    cavity.turn_inside_out();
+    pair.append(&cavity);
+    pair.append(&Mesh::cuboid([16.0, -9.0, -8.0], [34.0, 9.0, 8.0]));
+    pair
+}

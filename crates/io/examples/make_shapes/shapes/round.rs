@@ -1,0 +1,136 @@
+//! Shapes swept along circles and curves.
+
+use super::mesh::{Mesh, cross, sub, unit};
+use std::f64::consts::TAU;
+
+/// Joins rings of as many corners into a tube; with `closed` the last is joined to the first. The corners go round
+/// clockwise, seen along the tube from its end.
+fn join_rings(mesh: &mut Mesh, rings: &[Vec<u32>], closed: bool) {
+    let pairs = if closed { rings.len() } else { rings.len() - 1 };
+    for i in 0..pairs {
+        let (here, next) = (&rings[i], &rings[(i + 1) % rings.len()]);
+        for j in 0..here.len() {
+            let k = (j + 1) % here.len();
+            mesh.quad([here[j], here[k], next[k], next[j]]);
+        }
+    }
+}
+
+/// A torus with R = 20 mm and r = 6 mm: 120 sections with 48 corners on the circle each.
+pub(crate) fn torus() -> Mesh {
+    let mut mesh = Mesh::default();
+    let rings: Vec<Vec<u32>> = (0..120)
+        .map(|i| {
+            let (sin, cos) = (TAU * f64::from(i) / 120.0).sin_cos();
+            (0..48)
+                .map(|j| {
+                    let (out, up) = (TAU * f64::from(j) / 48.0).sin_cos();
+                    let distance = 20.0 + 6.0 * out;
+                    mesh.vertex([distance * cos, distance * sin, 6.0 * up])
+                })
+                .collect()
+        })
+        .collect();
+    join_rings(&mut mesh, &rings, true);
+    mesh
+}
+
+/// A C: three quarters of a flat ring with the radii 14 and 26 mm, 12 mm high, whose box centre lies in the opening.
+pub(crate) fn c_shape() -> Mesh {
+    const STEPS: u32 = 90;
+    let mut mesh = Mesh::default();
+    let rings: Vec<Vec<u32>> = (0..=STEPS)
+        .map(|i| {
+            let angle = TAU / 8.0 + 0.75 * TAU * f64::from(i) / f64::from(STEPS);
+            let (sin, cos) = angle.sin_cos();
+            [(14.0, 0.0), (14.0, 12.0), (26.0, 12.0), (26.0, 0.0)]
+                .map(|(distance, z)| mesh.vertex([distance * cos, distance * sin, z]))
+                .to_vec()
+        })
+        .collect();
+    join_rings(&mut mesh, &rings, false);
+    let (first, last) = (&rings[0], &rings[STEPS as usize]);
+    mesh.quad([first[3], first[2], first[1], first[0]]);
+    mesh.quad([last[0], last[1], last[2], last[3]]);
+    mesh
+}
+
+/// An infinity knot: a round tube 14 mm thick along (45 sin t, 20 sin 2t, 8 cos t) mm, which passes over itself with
+/// 2 mm of air between.
+pub(crate) fn infinity_knot() -> Mesh {
+    const STEPS: u32 = 240;
+    const CORNERS: u32 = 30;
+    let mut mesh = Mesh::default();
+    let rings: Vec<Vec<u32>> = (0..STEPS)
+        .map(|i| {
+            let t = TAU * f64::from(i) / f64::from(STEPS);
+            let centre = [45.0 * t.sin(), 20.0 * (2.0 * t).sin(), 8.0 * t.cos()];
+            let along = unit([45.0 * t.cos(), 40.0 * (2.0 * t).cos(), -8.0 * t.sin()]);
+            let up = unit(sub([0.0, 0.0, 1.0], along.map(|x| x * along[2])));
+            let side = cross(along, up);
+            (0..CORNERS)
+                .map(|j| {
+                    let (sin, cos) = (TAU * f64::from(j) / f64::from(CORNERS)).sin_cos();
+                    mesh.vertex(std::array::from_fn(|k| {
+                        centre[k] + 7.0 * (cos * up[k] + sin * side[k])
+                    }))
+                })
+                .collect()
+        })
+        .collect();
+    join_rings(&mut mesh, &rings, true);
+    mesh
+}
+
+/// A round biconvex tablet: 10 mm across, a band 2.4 mm high and on each side a dome of 1 mm, which is part of a sphere
+/// of 13 mm radius.
+pub(crate) fn tablet() -> Mesh {
+    const RINGS: u32 = 16;
+    let mut mesh = Mesh::default();
+    let bottom = dome(&mut mesh, RINGS, -1.0);
+    let mut rings = vec![bottom];
+    for z in [-0.4, 0.4] {
+        rings.push(circle(&mut mesh, 6 * RINGS, 5.0, z));
+    }
+    rings.push(dome(&mut mesh, RINGS, 1.0));
+    join_rings(&mut mesh, &rings, false);
+    mesh
+}
+
+fn circle(mesh: &mut Mesh, corners: u32, radius: f64, z: f64) -> Vec<u32> {
+    (0..corners)
+        .map(|j| {
+            let (sin, cos) = (TAU * f64::from(j) / f64::from(corners)).sin_cos();
+            mesh.vertex([radius * cos, radius * sin, z])
+        })
+        .collect()
+}
+
+/// Adds the upper (`side` = 1) or lower (-1) dome of the tablet, rings with 6, 12, 18 ... corners; returns its rim.
+fn dome(mesh: &mut Mesh, rings: u32, side: f64) -> Vec<u32> {
+    let height = |radius: f64| side * (1.2 + (169.0 - radius * radius).sqrt() - 12.0);
+    let first_triangle = mesh.triangles.len();
+    let mut inner = vec![mesh.vertex([0.0, 0.0, height(0.0)])];
+    for ring in 1..=rings {
+        let radius = 5.0 * f64::from(ring) / f64::from(rings);
+        let outer = circle(mesh, 6 * ring, radius, height(radius));
+        for sixth in 0..6 {
+            let (ring, sixth) = (ring as usize, sixth as usize);
+            for j in 0..ring {
+                let at = |k: usize| outer[(sixth * ring + k) % outer.len()];
+                let within = |k: usize| inner[(sixth * (ring - 1) + k) % inner.len()];
+                mesh.triangles.push([within(j), at(j), at(j + 1)]);
+                if j + 1 < ring {
+                    mesh.triangles.push([within(j), at(j + 1), within(j + 1)]);
+                }
+            }
+        }
+        inner = outer;
+    }
+    if side < 0.0 {
+        for triangle in &mut mesh.triangles[first_triangle..] {
+            triangle.swap(1, 2);
+        }
+    }
+    inner
+}

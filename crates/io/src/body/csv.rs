@@ -1,0 +1,125 @@
+//! Bodies as a pair of CSV files for spreadsheets and scripts: `cake.particles.csv` and `cake.bonds.csv`.
+//!
+//! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and `a,b,radius_m,initial_length_m`.
+//! The ends `a` and `b` of a bond are the numbers of particles, counted from 0 in the order of their file. Every number reads
+//! back as the same bits. [`About`](super::About) has no place here and is left out.
+
+use std::io::{self, BufRead, Write};
+
+use super::table::{Lines, float, on_line, particle, pick};
+use super::{Body, Parts};
+use crate::{Diagnostic, Result};
+
+const PARTICLE_COLUMNS: [&str; 4] = ["x_m", "y_m", "z_m", "radius_m"];
+const BOND_COLUMNS: [&str; 4] = ["a", "b", "radius_m", "initial_length_m"];
+
+/// Writes the file of the particles.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_particles(body: &Body, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "{}", PARTICLE_COLUMNS.join(","))?;
+    for ([x, y, z], radius) in body.positions.iter().zip(&body.radii) {
+        writeln!(out, "{x:e},{y:e},{z:e},{radius:e}")?;
+    }
+    Ok(())
+}
+
+/// Writes the file of the bonds.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "{}", BOND_COLUMNS.join(","))?;
+    for (([a, b], radius), length) in body
+        .bonds
+        .iter()
+        .zip(&body.bond_radii)
+        .zip(&body.bond_lengths)
+    {
+        writeln!(out, "{a},{b},{radius:e},{length:e}")?;
+    }
+    Ok(())
+}
+
+/// Reads a body from its two files. Columns may stand in any order, others are left out. Without the column `radius_m` a bond
+/// is as thick as the smaller of its particles, without `initial_length_m` it is as long as they are apart.
+///
+/// # Errors
+/// A column is missing, a line makes no sense, or not a body by [`Body::check`]. The place begins with "particles" or "bonds"
+/// where it is known.
+pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
+    let mut parts = Parts::default();
+    read_particles(particles, &mut parts).map_err(|error| error.within("particles"))?;
+    read_bonds(bonds, &mut parts).map_err(|error| error.within("bonds"))?;
+    Body::from_parts(parts)
+}
+
+fn read_particles(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
+    let mut lines = Lines::new(input);
+    let columns = read_columns(&mut lines, PARTICLE_COLUMNS, 4)?;
+    while let Some((number, line)) = lines.next()? {
+        if line.is_empty() {
+            continue;
+        }
+        let words = pick(line, columns);
+        let mut values = [0.0; 4];
+        for k in 0..4 {
+            values[k] =
+                float(words[k], PARTICLE_COLUMNS[k]).map_err(|error| on_line(number, error))?;
+        }
+        let [x, y, z, radius] = values;
+        parts.positions.push([x, y, z]);
+        parts.radii.push(radius);
+    }
+    Ok(())
+}
+
+fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
+    let mut lines = Lines::new(input);
+    let columns = read_columns(&mut lines, BOND_COLUMNS, 2)?;
+    let [_, _, radius_column, length_column] = columns;
+    let particles = parts.positions.len();
+    let (mut radii, mut lengths) = (Vec::new(), Vec::new());
+    while let Some((number, line)) = lines.next()? {
+        if line.is_empty() {
+            continue;
+        }
+        let [a, b, radius, length] = pick(line, columns);
+        let mut read_line = || {
+            parts.bonds.push([
+                particle(a, "a", 0, particles)?,
+                particle(b, "b", 0, particles)?,
+            ]);
+            if radius_column.is_some() {
+                radii.push(float(radius, "radius_m")?);
+            }
+            if length_column.is_some() {
+                lengths.push(float(length, "initial_length_m")?);
+            }
+            Ok(())
+        };
+        read_line().map_err(|error| on_line(number, error))?;
+    }
+    parts.bond_radii = radius_column.map(|_| radii);
+    parts.bond_lengths = length_column.map(|_| lengths);
+    Ok(())
+}
+
+/// Where each of the columns stands, as the first line says. The first `required` of them must be there.
+fn read_columns<const N: usize>(
+    lines: &mut Lines<'_>,
+    names: [&str; N],
+    required: usize,
+) -> Result<[Option<usize>; N]> {
+    let (_, line) = lines.next()?.unwrap_or((1, ""));
+    let columns = names.map(|name| line.split(',').position(|column| column.trim() == name));
+    match (0..required).find(|&k| columns[k].is_none()) {
+        None => Ok(columns),
+        Some(k) => Err(Diagnostic::input(
+            "line 1",
+            format!("there is no column '{}'", names[k]),
+            format!("the first line names the columns: {}", names.join(",")),
+        )),
+    }
+}

@@ -1,0 +1,215 @@
+//! Bodies from and to files, pipes included; the ending of the name says which format.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
+use std::path::{Path, PathBuf};
+
+use super::{Body, csv, lammps, txt, vtp};
+use crate::safe_write::{PendingFile, write_file, write_standard_output};
+use crate::{Diagnostic, Result};
+
+const BUFFER_BYTES: usize = 1 << 16;
+
+/// How a body is stored, with the names of its files.
+enum Storage {
+    /// One .vtp file through standard input or output.
+    Pipe,
+    Vtp(PathBuf),
+    Lammps(PathBuf),
+    Csv(Pair),
+    Txt(Pair),
+}
+
+/// The two files of a body.
+struct Pair {
+    particles: PathBuf,
+    bonds: PathBuf,
+}
+
+impl Pair {
+    /// `cake.csv`, `cake.particles.csv` or `cake.bonds.csv` -> `cake.particles.csv` and `cake.bonds.csv`.
+    fn named(path: &Path) -> Self {
+        let ending = path.extension().unwrap_or_default();
+        let name = path.with_extension("");
+        let stem = match name.extension().and_then(OsStr::to_str) {
+            Some("particles" | "bonds") => name.with_extension(""),
+            _ => name,
+        };
+        let file = |part: &str| {
+            let mut file = stem.clone().into_os_string();
+            for piece in [OsStr::new(part), ending] {
+                file.push(".");
+                file.push(piece);
+            }
+            PathBuf::from(file)
+        };
+        Self {
+            particles: file("particles"),
+            bonds: file("bonds"),
+        }
+    }
+
+    fn read(
+        &self,
+        read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
+    ) -> Result<Body> {
+        let mut particles = open(&self.particles)?;
+        let mut bonds = open(&self.bonds)?;
+        // The readers say "particles" or "bonds" for the file.
+        read(&mut particles, &mut bonds).map_err(|mut error| {
+            for (part, path) in [("particles", &self.particles), ("bonds", &self.bonds)] {
+                if let Some(place) = error
+                    .place
+                    .strip_prefix(part)
+                    .and_then(|rest| rest.strip_prefix(": "))
+                {
+                    error.place = format!("{}: {place}", path.display());
+                    return error;
+                }
+            }
+            error.within(&self.particles.display().to_string())
+        })
+    }
+
+    fn write(
+        &self,
+        particles: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+        bonds: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+    ) -> Result<()> {
+        let particles = PendingFile::write(&self.particles, particles)?;
+        let bonds = PendingFile::write(&self.bonds, bonds)?;
+        particles.publish()?;
+        bonds.publish()
+    }
+}
+
+impl Storage {
+    fn named(path: &Path) -> Result<Self> {
+        if path == Path::new("-") {
+            return Ok(Self::Pipe);
+        }
+        let ending = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase();
+        match ending.as_str() {
+            "vtp" => Ok(Self::Vtp(path.to_owned())),
+            "data" | "lmp" | "lammps" => Ok(Self::Lammps(path.to_owned())),
+            "csv" => Ok(Self::Csv(Pair::named(path))),
+            "txt" => Ok(Self::Txt(Pair::named(path))),
+            _ => {
+                let problem = if ending.is_empty() {
+                    "the name has no ending that says which format is meant".to_owned()
+                } else {
+                    format!("'.{ending}' is not the ending of a body")
+                };
+                Err(Diagnostic::input(
+                    path.display().to_string(),
+                    problem,
+                    "use .vtp (ParaView), .data, .lmp or .lammps (LAMMPS), .csv (two tables), .txt (two tables of plain \
+                     numbers), or - for a pipe",
+                ))
+            }
+        }
+    }
+}
+
+/// The files that a body has which is written to `path`: one, two (.csv, .txt), or none (`-`, standard output).
+///
+/// # Errors
+/// An unknown ending, with the list of the known ones.
+pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
+    Ok(match Storage::named(path)? {
+        Storage::Pipe => Vec::new(),
+        Storage::Vtp(path) | Storage::Lammps(path) => vec![path],
+        Storage::Csv(pair) | Storage::Txt(pair) => vec![pair.particles, pair.bonds],
+    })
+}
+
+/// Reads a body from `path`; `-` is a .vtp on standard input. For .csv and .txt either file of the pair may be named,
+/// or the name that they have in common (`cake.csv`).
+///
+/// # Errors
+/// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins with the file's name.
+pub fn read_body(path: &Path) -> Result<Body> {
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    match Storage::named(path)? {
+        Storage::Pipe => {
+            let input = io::stdin();
+            if input.is_terminal() {
+                let remedy = "pipe a .vtp into it, or name a file";
+                return Err(Diagnostic::input(
+                    "standard input",
+                    "this is a terminal, not a body",
+                    remedy,
+                ));
+            }
+            let mut input = BufReader::with_capacity(BUFFER_BYTES, input.lock());
+            vtp::read(&mut input).map_err(|error| error.within("standard input"))
+        }
+        Storage::Vtp(path) => vtp::read(&mut open(&path)?).map_err(within),
+        Storage::Lammps(path) => lammps::read(&mut open(&path)?).map_err(within),
+        Storage::Csv(pair) => pair.read(csv::read),
+        Storage::Txt(pair) => pair.read(txt::read),
+    }
+}
+
+/// Writes a body to `path`; `-` is a .vtp on standard output, whose reader may close it early.
+/// Files appear whole or not at all; of two files, neither appears before both are written.
+///
+/// # Errors
+/// Not a body by [`Body::check`], an unknown ending, standard output is a terminal (exit code 2); missing folder, no permission,
+/// full disk (exit code 1).
+pub fn write_body(body: &Body, path: &Path) -> Result<()> {
+    let storage = Storage::named(path)?;
+    body.check()?;
+    match storage {
+        Storage::Pipe => {
+            if io::stdout().is_terminal() {
+                let remedy = "write it to a file, or pipe it into another program";
+                return Err(Diagnostic::input(
+                    "standard output",
+                    "a .vtp is no text for a terminal",
+                    remedy,
+                ));
+            }
+            write_standard_output(|out| vtp::write(body, out))
+        }
+        Storage::Vtp(path) => write_file(&path, |out| vtp::write(body, out)),
+        Storage::Lammps(path) => write_file(&path, |out| lammps::write(body, out)),
+        Storage::Csv(pair) => pair.write(
+            |out| csv::write_particles(body, out),
+            |out| csv::write_bonds(body, out),
+        ),
+        Storage::Txt(pair) => pair.write(
+            |out| txt::write_particles(body, out),
+            |out| txt::write_bonds(body, out),
+        ),
+    }
+}
+
+fn open(path: &Path) -> Result<BufReader<File>> {
+    let place = path.display().to_string();
+    if path.is_dir() {
+        return Err(Diagnostic::input(
+            place,
+            "this is a folder",
+            "name a file in it",
+        ));
+    }
+    match File::open(path) {
+        Ok(file) => Ok(BufReader::with_capacity(BUFFER_BYTES, file)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(Diagnostic::input(
+            place,
+            "there is no such file",
+            "check its name and folder",
+        )),
+        Err(error) => Err(Diagnostic::input(
+            place,
+            format!("cannot be opened: {error}"),
+            "",
+        )),
+    }
+}

@@ -1,0 +1,252 @@
+//! What a body holds, for a person and for programs.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::{About, Body};
+use crate::units::{show_length, significant};
+
+/// What a body holds. SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BodySummary {
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of bonds.
+    pub bonds: usize,
+    /// Bonds by particles. Each bond belongs to two, so a particle has twice as many on average.
+    pub bonds_per_particle: f64,
+    /// Particles without a bond.
+    pub unbonded_particles: usize,
+    /// Pieces of particles that hold together by bonds. A particle without a bond is a piece.
+    pub pieces: usize,
+    /// Particles of the largest piece.
+    pub largest_piece: usize,
+    /// Smallest particle radius, m.
+    pub radius_min_m: f64,
+    /// Mean particle radius, m.
+    pub radius_mean_m: f64,
+    /// Largest particle radius, m.
+    pub radius_max_m: f64,
+    /// Smallest corner of the box around all particles, m. Length 3.
+    pub box_min_m: [f64; 3],
+    /// Largest corner of the box around all particles, m. Length 3.
+    pub box_max_m: [f64; 3],
+    /// Sum of the particles' volumes, overlaps counted twice, m3.
+    pub particle_volume_m3: f64,
+    /// Sum of the particles' masses, kg, if their density is known.
+    pub mass_kg: Option<f64>,
+    /// Mass by volume of the shape, kg/m3, if both are known.
+    pub solid_density_kg_m3: Option<f64>,
+    /// Where it came from.
+    pub about: About,
+}
+
+/// What `body` holds. It must keep the rules of [`Body::check`]. Takes linear time.
+pub fn body_summary(body: &Body) -> BodySummary {
+    let particles = body.positions.len();
+    let mut box_min_m = [f64::INFINITY; 3];
+    let mut box_max_m = [f64::NEG_INFINITY; 3];
+    for (position, radius) in body.positions.iter().zip(&body.radii) {
+        for k in 0..3 {
+            box_min_m[k] = box_min_m[k].min(position[k] - radius);
+            box_max_m[k] = box_max_m[k].max(position[k] + radius);
+        }
+    }
+    let volume: f64 = body
+        .radii
+        .iter()
+        .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r * r * r)
+        .sum();
+    let mass_kg = body
+        .about
+        .particle_density_kg_m3
+        .map(|density| density * volume);
+    let piece_sizes = piece_sizes(body);
+    BodySummary {
+        particles,
+        bonds: body.bonds.len(),
+        bonds_per_particle: body.bonds.len() as f64 / particles as f64,
+        unbonded_particles: piece_sizes.iter().filter(|size| **size == 1).count(),
+        pieces: piece_sizes.len(),
+        largest_piece: piece_sizes.iter().copied().max().unwrap_or_default(),
+        radius_min_m: body.radii.iter().copied().fold(f64::INFINITY, f64::min),
+        radius_mean_m: body.radii.iter().sum::<f64>() / particles as f64,
+        radius_max_m: body.radii.iter().copied().fold(0.0, f64::max),
+        box_min_m,
+        box_max_m,
+        particle_volume_m3: volume,
+        mass_kg,
+        solid_density_kg_m3: mass_kg
+            .zip(body.about.shape_volume_m3)
+            .map(|(mass, volume)| mass / volume),
+        about: body.about.clone(),
+    }
+}
+
+/// Number of particles in each piece that bonds hold together, by the first particle of each.
+fn piece_sizes(body: &Body) -> Vec<usize> {
+    let mut parents: Vec<u32> = (0..).take(body.positions.len()).collect();
+    for &[a, b] in &body.bonds {
+        let (a, b) = (root(&mut parents, a), root(&mut parents, b));
+        // The smaller number leads, so that the result does not depend on the order of the bonds.
+        parents[a.max(b) as usize] = a.min(b);
+    }
+    let mut sizes = vec![0_usize; parents.len()];
+    for particle in (0..).take(parents.len()) {
+        sizes[root(&mut parents, particle) as usize] += 1;
+    }
+    sizes.retain(|size| *size > 0);
+    sizes
+}
+
+/// The particle that leads the piece of `particle`. Halves the way to it.
+fn root(parents: &mut [u32], mut particle: u32) -> u32 {
+    while parents[particle as usize] != particle {
+        let grandparent = parents[parents[particle as usize] as usize];
+        parents[particle as usize] = grandparent;
+        particle = grandparent;
+    }
+    particle
+}
+
+impl fmt::Display for BodySummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            radius_min_m,
+            radius_max_m,
+            ..
+        } = *self;
+        write!(
+            f,
+            "particles  {}, diameter {}",
+            self.particles,
+            show_length(2.0 * radius_min_m)
+        )?;
+        if radius_max_m > radius_min_m {
+            let (largest, mean) = (
+                show_length(2.0 * radius_max_m),
+                show_length(2.0 * self.radius_mean_m),
+            );
+            write!(f, " to {largest}, mean {mean}")?;
+        }
+        writeln!(
+            f,
+            "\nbonds      {}, {} per particle",
+            self.bonds,
+            significant(self.bonds_per_particle, 3)
+        )?;
+        let (pieces, largest, single) = (self.pieces, self.largest_piece, self.unbonded_particles);
+        writeln!(
+            f,
+            "pieces     {pieces}, the largest of {largest} particles; {single} particles without a bond"
+        )?;
+        let show_point = |point: [f64; 3]| point.map(show_length).join(", ");
+        writeln!(
+            f,
+            "box        from {} to {}",
+            show_point(self.box_min_m),
+            show_point(self.box_max_m)
+        )?;
+        if let (Some(mass), Some(density)) = (self.mass_kg, self.about.particle_density_kg_m3) {
+            write!(
+                f,
+                "mass       {} kg, particles of {} kg/m3",
+                significant(mass, 4),
+                significant(density, 4)
+            )?;
+            if let Some(solid) = self.solid_density_kg_m3 {
+                write!(f, ", solid of {} kg/m3", significant(solid, 4))?;
+            }
+            writeln!(f)?;
+        }
+        let about = &self.about;
+        let made = [
+            about
+                .program
+                .as_ref()
+                .map(|program| format!("by {program}")),
+            about.source.as_ref().map(|source| format!("from {source}")),
+            about.source_hash.map(|hash| format!("hash {hash:016x}")),
+            about
+                .shape_volume_m3
+                .map(|volume| format!("shape of {} m3", significant(volume, 4))),
+            about.overlap.map(|overlap| format!("overlap {overlap}")),
+            about
+                .bonding_radius
+                .map(|radius| format!("bonding radius {radius}")),
+            about.seed.map(|seed| format!("seed {seed}")),
+        ];
+        let made: Vec<String> = made.into_iter().flatten().collect();
+        if made.is_empty() {
+            Ok(())
+        } else {
+            writeln!(f, "made       {}", made.join(", "))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `particles` of 1 mm radius in a row, 2 mm apart.
+    fn row(particles: u32, bonds: Vec<[u32; 2]>) -> Body {
+        Body {
+            positions: (0..particles)
+                .map(|i| [f64::from(i) * 2e-3, 0.0, 5.0])
+                .collect(),
+            radii: vec![1e-3; particles as usize],
+            bond_radii: vec![1e-3; bonds.len()],
+            bond_lengths: vec![2e-3; bonds.len()],
+            bonds,
+            about: About::default(),
+        }
+    }
+
+    #[test]
+    fn pieces_do_not_depend_on_the_order_of_the_bonds() {
+        let mut bonds: Vec<[u32; 2]> = (1..1000).map(|b| [b - 1, b]).collect();
+        bonds.remove(599);
+        bonds.push([0, 5]);
+        for _ in 0..2 {
+            let summary = body_summary(&row(1001, bonds.clone()));
+            assert_eq!((summary.pieces, summary.largest_piece), (3, 600));
+            assert_eq!((summary.unbonded_particles, summary.bonds), (1, 999));
+            bonds.reverse();
+        }
+    }
+
+    #[test]
+    fn box_radii_and_masses() {
+        let mut body = row(2, vec![]);
+        body.radii[1] = 3e-3;
+        let summary = body_summary(&body);
+        assert_eq!(summary.box_min_m, [-1e-3, -3e-3, 5.0 - 3e-3]);
+        assert_eq!(summary.box_max_m, [5e-3, 3e-3, 5.0 + 3e-3]);
+        assert_eq!(
+            (
+                summary.radius_min_m,
+                summary.radius_mean_m,
+                summary.radius_max_m
+            ),
+            (1e-3, 2e-3, 3e-3)
+        );
+        assert_eq!((summary.mass_kg, summary.solid_density_kg_m3), (None, None));
+        body.about.particle_density_kg_m3 = Some(3000.0);
+        body.about.shape_volume_m3 = Some(1e-6);
+        let summary = body_summary(&body);
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * 28e-9;
+        assert!((summary.particle_volume_m3 / volume - 1.0).abs() < 1e-14);
+        assert!(
+            summary
+                .mass_kg
+                .is_some_and(|mass| (mass / (3000.0 * volume) - 1.0).abs() < 1e-14)
+        );
+        assert!(
+            summary
+                .solid_density_kg_m3
+                .is_some_and(|density| (density / (3e9 * volume) - 1.0).abs() < 1e-14)
+        );
+    }
+}

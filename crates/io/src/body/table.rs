@@ -1,0 +1,108 @@
+//! Lines and words of text files, with messages that name the line.
+
+use std::io::BufRead;
+
+use crate::{Diagnostic, Result};
+
+/// The lines of a text file, one at a time.
+pub(super) struct Lines<'a> {
+    input: &'a mut dyn BufRead,
+    bytes: Vec<u8>,
+    number: u64,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(input: &'a mut dyn BufRead) -> Self {
+        Self {
+            input,
+            bytes: Vec::new(),
+            number: 0,
+        }
+    }
+
+    /// The next line without the white space around it, and its number, counted from 1.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no text.
+    pub(super) fn next(&mut self) -> Result<Option<(u64, &str)>> {
+        self.bytes.clear();
+        let read = self.input.read_until(b'\n', &mut self.bytes);
+        if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
+            == 0
+        {
+            return Ok(None);
+        }
+        self.number += 1;
+        // Spreadsheets put this mark at the beginning of a text.
+        let start = if self.number == 1 && self.bytes.starts_with(b"\xEF\xBB\xBF") {
+            3
+        } else {
+            0
+        };
+        match std::str::from_utf8(&self.bytes[start..]) {
+            Ok(text) => Ok(Some((self.number, text.trim()))),
+            Err(_) => Err(on_line(
+                self.number,
+                Diagnostic::input("", "this is not text", "save the file as plain text"),
+            )),
+        }
+    }
+}
+
+/// The same message, said of a line.
+pub(super) fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
+    error.within(&format!("line {number}"))
+}
+
+/// The number that `word` is.
+pub(super) fn float(word: Option<&str>, what: &str) -> Result<f64> {
+    let word = word.ok_or_else(|| missing(what))?;
+    word.parse()
+        .map_err(|_| not_a_number(word, what, "a number"))
+}
+
+/// The particle that `word` names, of so many, the first of which has the number `first`. Counted from 0.
+pub(super) fn particle(
+    word: Option<&str>,
+    what: &str,
+    first: u32,
+    particles: usize,
+) -> Result<u32> {
+    let word = word.ok_or_else(|| missing(what))?;
+    let number: u64 = word
+        .parse()
+        .map_err(|_| not_a_number(word, what, "the number of a particle"))?;
+    let index = number
+        .checked_sub(u64::from(first))
+        .filter(|index| *index < particles as u64);
+    index
+        .and_then(|index| u32::try_from(index).ok())
+        .ok_or_else(|| {
+            let problem = format!(
+                "{what} is {number}, but there are {particles} particles, numbered from {first}"
+            );
+            Diagnostic::input("", problem, "correct or remove this line")
+        })
+}
+
+fn missing(what: &str) -> Diagnostic {
+    Diagnostic::input("", format!("{what} is missing"), "the line is incomplete")
+}
+
+fn not_a_number(word: &str, what: &str, wanted: &str) -> Diagnostic {
+    let problem = format!("{what} is '{}', not {wanted}", word.escape_debug());
+    Diagnostic::input("", problem, "numbers have a decimal point and no unit")
+}
+
+/// The words of `line` that stand in these columns.
+pub(super) fn pick<const N: usize>(line: &str, columns: [Option<usize>; N]) -> [Option<&str>; N] {
+    let mut picked = [None; N];
+    for (column, word) in line.split(',').enumerate() {
+        for (slot, wanted) in picked.iter_mut().zip(columns) {
+            if wanted == Some(column) {
+                *slot = Some(word.trim());
+            }
+        }
+    }
+    picked
+}

@@ -1,0 +1,314 @@
+//! What the arrays of a .vtp file say of a body.
+
+use super::decode::{DAMAGED, Number, Values};
+use super::header::{Array, Counts, Role};
+use super::{
+    BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
+    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
+};
+use crate::body::{About, Body, Parts};
+use crate::{Diagnostic, Result};
+
+/// What has been read of a body so far.
+#[derive(Default)]
+pub(super) struct Contents {
+    counts: Option<Counts>,
+    /// Names of the point data, for the message that the radii are missing.
+    point_data: Vec<String>,
+    positions: Vec<[f64; 3]>,
+    radii: Option<Vec<f64>>,
+    bonds: Vec<[u32; 2]>,
+    lines_ended: u64,
+    bond_radii: Option<Vec<f64>>,
+    bond_lengths: Option<Vec<f64>>,
+    about: About,
+}
+
+impl Contents {
+    /// Takes in how many points and cells there are.
+    pub(super) fn set_counts(&mut self, counts: Counts) -> Result<()> {
+        if self.counts.replace(counts).is_some() {
+            return Err(Diagnostic::input(
+                "",
+                "the body is in several pieces",
+                "save it as one piece",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Takes in that there is point data of this name.
+    pub(super) fn add_point_data(&mut self, name: &str) {
+        self.point_data.push(name.to_owned());
+    }
+
+    /// Takes in the values of an array.
+    pub(super) fn fill(&mut self, array: &Array, values: Values<'_>) -> Result<()> {
+        let filled = match array.role {
+            Role::Other => Ok(()),
+            Role::Field(name) => self.fill_field(name, array, values),
+            _ => match self.counts {
+                Some(counts) => self.fill_counted(counts, array, values),
+                None => Err(Diagnostic::input(
+                    "",
+                    "it stands outside of a piece",
+                    DAMAGED,
+                )),
+            },
+        };
+        filled.map_err(|error| array.within(error))
+    }
+
+    fn fill_counted(&mut self, counts: Counts, array: &Array, values: Values<'_>) -> Result<()> {
+        match array.role {
+            Role::Positions => self.fill_positions(array, values, counts.points),
+            Role::Connectivity => self.fill_bonds(array, values, counts.lines),
+            Role::Offsets => self.check_line_ends(array, values, counts.lines),
+            Role::Radii => {
+                floats(array, values, [0, counts.points, 0]).map(|all| self.radii = Some(all))
+            }
+            Role::BondRadii => {
+                line_values(array, values, counts).map(|all| self.bond_radii = Some(all))
+            }
+            Role::BondLengths => {
+                line_values(array, values, counts).map(|all| self.bond_lengths = Some(all))
+            }
+            Role::Field(_) | Role::Other => Ok(()),
+        }
+    }
+
+    fn fill_positions(&mut self, array: &Array, values: Values<'_>, points: u64) -> Result<()> {
+        let (mut point, mut axis) = ([0.0; 3], 0);
+        let positions = &mut self.positions;
+        values.for_each(array.scalar()?, |number| {
+            point[axis] = float(number);
+            axis += 1;
+            if axis == 3 {
+                positions.push(point);
+                axis = 0;
+            }
+            Ok(())
+        })?;
+        check_count(
+            3 * positions.len() as u64 + axis as u64,
+            3 * u128::from(points),
+            "values",
+        )
+    }
+
+    fn fill_bonds(&mut self, array: &Array, values: Values<'_>, lines: u64) -> Result<()> {
+        let mut first = None;
+        let bonds = &mut self.bonds;
+        values.for_each(array.scalar()?, |number| {
+            let particle = particle(number)?;
+            match first.take() {
+                None => first = Some(particle),
+                Some(other) => bonds.push([other, particle]),
+            }
+            Ok(())
+        })?;
+        check_count(
+            2 * bonds.len() as u64 + u64::from(first.is_some()),
+            2 * u128::from(lines),
+            "line ends",
+        )
+    }
+
+    fn check_line_ends(&mut self, array: &Array, values: Values<'_>, lines: u64) -> Result<()> {
+        let ended = &mut self.lines_ended;
+        values.for_each(array.scalar()?, |number| {
+            let line = *ended;
+            *ended += 1;
+            if number == Number::Integer(2 * i128::from(*ended)) {
+                return Ok(());
+            }
+            let problem = format!("line {line} does not have two points");
+            Err(Diagnostic::input(
+                "",
+                problem,
+                "a bond joins two: save each bond as a line of its own",
+            ))
+        })?;
+        check_count(*ended, lines.into(), "lines")
+    }
+
+    fn fill_field(&mut self, name: &'static str, array: &Array, values: Values<'_>) -> Result<()> {
+        let mut numbers = Vec::new();
+        values.for_each(array.scalar()?, |number| {
+            numbers.push(number);
+            Ok(())
+        })?;
+        let first = numbers.first().copied();
+        let about = &mut self.about;
+        match name {
+            VERSION => check_version(first)?,
+            LENGTH_UNIT => check_unit(&text(&numbers)?)?,
+            PROGRAM => about.program = Some(text(&numbers)?),
+            SOURCE => about.source = Some(text(&numbers)?),
+            SOURCE_HASH => about.source_hash = first.map(whole).transpose()?,
+            SEED => about.seed = first.map(whole).transpose()?,
+            SHAPE_VOLUME => about.shape_volume_m3 = first.map(float),
+            PARTICLE_DENSITY => about.particle_density_kg_m3 = first.map(float),
+            OVERLAP => about.overlap = first.map(float),
+            BONDING_RADIUS => about.bonding_radius = first.map(float),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The body, if everything that it needs was there.
+    pub(super) fn into_body(self) -> Result<Body> {
+        let counts = self.counts.unwrap_or_default();
+        check_count(self.positions.len() as u64, counts.points.into(), "points")?;
+        check_count(self.bonds.len() as u64, counts.lines.into(), "lines")?;
+        check_count(self.lines_ended, counts.lines.into(), "offsets of lines")?;
+        let Some(radii) = self.radii else {
+            let known = match self.point_data.as_slice() {
+                [] => "there are no point data".to_owned(),
+                names => format!("the point data are '{}'", names.join("', '")),
+            };
+            return Err(Diagnostic::input(
+                "",
+                format!("the radii of the particles are missing: {known}"),
+                format!("name the point data that hold them '{RADIUS}'"),
+            ));
+        };
+        let Self {
+            positions,
+            bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+            ..
+        } = self;
+        Body::from_parts(Parts {
+            positions,
+            radii,
+            bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+        })
+    }
+}
+
+/// The values that belong to lines, of data for all cells.
+fn line_values(array: &Array, values: Values<'_>, counts: Counts) -> Result<Vec<f64>> {
+    floats(
+        array,
+        values,
+        [counts.cells_before, counts.lines, counts.cells_after],
+    )
+}
+
+/// The values in the middle: `counts` are those before, those wanted, those after.
+fn floats(array: &Array, values: Values<'_>, counts: [u64; 3]) -> Result<Vec<f64>> {
+    let [before, wanted, after] = counts.map(u128::from);
+    let mut kept = Vec::new();
+    let mut number_of = 0_u64;
+    values.for_each(array.scalar()?, |number| {
+        if (before..before + wanted).contains(&u128::from(number_of)) {
+            kept.push(float(number));
+        }
+        number_of += 1;
+        Ok(())
+    })?;
+    check_count(number_of, before + wanted + after, "values")?;
+    Ok(kept)
+}
+
+fn check_count(found: u64, wanted: u128, what: &str) -> Result<()> {
+    if u128::from(found) == wanted {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("{found} {what}, but the header says {wanted}"),
+        DAMAGED,
+    ))
+}
+
+fn check_version(number: Option<Number>) -> Result<()> {
+    match number {
+        Some(Number::Integer(version)) if version == i128::from(FORMAT_VERSION) => Ok(()),
+        Some(Number::Integer(version)) if version > i128::from(FORMAT_VERSION) => {
+            Err(Diagnostic::input(
+                "",
+                format!(
+                    "the body has format version {version}; this program knows {FORMAT_VERSION}"
+                ),
+                "use a newer program, or write the body with an older one",
+            ))
+        }
+        _ => Err(Diagnostic::input(
+            "",
+            "the format version makes no sense",
+            DAMAGED,
+        )),
+    }
+}
+
+fn check_unit(unit: &str) -> Result<()> {
+    if unit == METRE {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("the length unit is '{unit}', not '{METRE}'"),
+        "convert the lengths to metres",
+    ))
+}
+
+#[inline]
+fn float(number: Number) -> f64 {
+    match number {
+        Number::Float(value) => value,
+        Number::Integer(value) => value as f64,
+    }
+}
+
+#[inline]
+fn particle(number: Number) -> Result<u32> {
+    if let Number::Integer(value) = number
+        && let Ok(particle) = u32::try_from(value)
+    {
+        return Ok(particle);
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("{} is not the number of a particle", float(number)),
+        DAMAGED,
+    ))
+}
+
+fn whole(number: Number) -> Result<u64> {
+    if let Number::Integer(value) = number
+        && let Ok(value) = u64::try_from(value)
+    {
+        return Ok(value);
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("{} is not a whole number of 64 bits", float(number)),
+        DAMAGED,
+    ))
+}
+
+/// A text, which ends at the first zero. Its bytes may be signed or not.
+fn text(numbers: &[Number]) -> Result<String> {
+    let mut bytes = Vec::new();
+    for &number in numbers {
+        match number {
+            Number::Integer(0) => break,
+            Number::Integer(byte @ -128..256) => bytes.push(byte as u8),
+            _ => {
+                return Err(Diagnostic::input(
+                    "",
+                    format!("{} is not a byte of a text", float(number)),
+                    DAMAGED,
+                ));
+            }
+        }
+    }
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

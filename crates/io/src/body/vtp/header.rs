@@ -1,0 +1,228 @@
+//! The XML of a .vtp file: which arrays it declares, what they are for, and where their values are.
+
+use quick_xml::events::BytesStart;
+
+use super::decode::{DAMAGED, Scalar};
+use super::{
+    BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM,
+    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
+};
+use crate::{Diagnostic, Result};
+
+/// What the values of an array are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    Positions,
+    Radii,
+    Connectivity,
+    Offsets,
+    BondRadii,
+    BondLengths,
+    /// Field data of this name.
+    Field(&'static str),
+    /// Nothing that a body knows.
+    Other,
+}
+
+/// How the values of an array are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Ascii,
+    Base64,
+    /// At this place of the appended data.
+    Appended(u64),
+}
+
+/// An array as the header declares it.
+#[derive(Debug, Clone)]
+pub(super) struct Array {
+    pub(super) role: Role,
+    pub(super) name: String,
+    pub(super) scalar: String,
+    pub(super) format: Format,
+}
+
+impl Array {
+    /// From an element `DataArray` or `Array` inside the element `section`.
+    pub(super) fn declared(element: &BytesStart<'_>, section: &str) -> Result<Self> {
+        let name = attribute(element, "Name")?.unwrap_or_default();
+        let scalar = attribute(element, "type")?.unwrap_or_default();
+        let format = match attribute(element, "format")?.as_deref() {
+            Some("ascii") => Format::Ascii,
+            Some("binary") => Format::Base64,
+            Some("appended") => {
+                Format::Appended(count(element, "offset")?.ok_or_else(|| missing("offset"))?)
+            }
+            other => {
+                let problem = format!(
+                    "array '{name}' has the unknown format '{}'",
+                    other.unwrap_or_default()
+                );
+                return Err(Diagnostic::input("", problem, DAMAGED));
+            }
+        };
+        Ok(Self {
+            role: role_of(section, &name),
+            name,
+            scalar,
+            format,
+        })
+    }
+
+    /// Its number type.
+    pub(super) fn scalar(&self) -> Result<Scalar> {
+        Scalar::named(&self.scalar)
+    }
+
+    /// The same message, said of this array.
+    pub(super) fn within(&self, error: Diagnostic) -> Diagnostic {
+        error.within(&format!("array '{}'", self.name))
+    }
+}
+
+fn role_of(section: &str, name: &str) -> Role {
+    const FIELDS: [&str; 10] = [
+        VERSION,
+        LENGTH_UNIT,
+        PROGRAM,
+        SOURCE,
+        SOURCE_HASH,
+        SHAPE_VOLUME,
+        PARTICLE_DENSITY,
+        OVERLAP,
+        BONDING_RADIUS,
+        SEED,
+    ];
+    match (section, name) {
+        ("Points", _) => Role::Positions,
+        ("Lines", "connectivity") => Role::Connectivity,
+        ("Lines", "offsets") => Role::Offsets,
+        ("PointData", RADIUS) => Role::Radii,
+        ("CellData", BOND_RADIUS) => Role::BondRadii,
+        ("CellData", BOND_LENGTH) => Role::BondLengths,
+        ("FieldData", _) => FIELDS
+            .into_iter()
+            .find(|field| *field == name)
+            .map_or(Role::Other, Role::Field),
+        _ => Role::Other,
+    }
+}
+
+/// How many points and cells there are.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Counts {
+    pub(super) points: u64,
+    pub(super) lines: u64,
+    /// Vertex cells, whose cell data stand before those of the lines.
+    pub(super) cells_before: u64,
+    /// Polygons and strips, whose cell data stand after those of the lines.
+    pub(super) cells_after: u64,
+}
+
+impl Counts {
+    /// From the element `Piece`.
+    pub(super) fn declared(piece: &BytesStart<'_>) -> Result<Self> {
+        let number = |name| count(piece, name).map(Option::unwrap_or_default);
+        Ok(Self {
+            points: count(piece, "NumberOfPoints")?.ok_or_else(|| missing("NumberOfPoints"))?,
+            lines: number("NumberOfLines")?,
+            cells_before: number("NumberOfVerts")?,
+            cells_after: number("NumberOfStrips")?.saturating_add(number("NumberOfPolys")?),
+        })
+    }
+}
+
+/// How the file is encoded.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Encoding {
+    /// Bytes of the number that tells how long an array is: 4 or 8.
+    pub(super) header_bytes: usize,
+    pub(super) compressed: bool,
+}
+
+impl Encoding {
+    /// From the element `VTKFile`.
+    pub(super) fn declared(file: &BytesStart<'_>) -> Result<Self> {
+        let kind = attribute(file, "type")?.unwrap_or_default();
+        if kind != "PolyData" {
+            let problem = format!("this VTK file holds '{kind}', not 'PolyData'");
+            return Err(Diagnostic::input(
+                "",
+                problem,
+                "save the body as PolyData (.vtp)",
+            ));
+        }
+        if attribute(file, "byte_order")?.as_deref() == Some("BigEndian") {
+            return Err(Diagnostic::input(
+                "",
+                "the numbers are big endian",
+                "save the file as little endian or ascii",
+            ));
+        }
+        let header_bytes = match attribute(file, "header_type")?.as_deref() {
+            None | Some("UInt32") => 4,
+            Some("UInt64") => 8,
+            Some(other) => {
+                return Err(Diagnostic::input(
+                    "",
+                    format!("unknown header_type '{other}'"),
+                    DAMAGED,
+                ));
+            }
+        };
+        let compressed = attribute(file, "compressor")?.is_some_and(|name| !name.is_empty());
+        Ok(Self {
+            header_bytes,
+            compressed,
+        })
+    }
+
+    /// Refuses compressed values.
+    pub(super) fn check(&self, array: &Array) -> Result<()> {
+        if self.compressed && array.format != Format::Ascii && array.role != Role::Other {
+            return Err(Diagnostic::input(
+                "",
+                format!("array '{}' is compressed", array.name),
+                "save the file without compression: 'Compressor Type: None' when ParaView saves data, \
+                 writer.SetCompressorTypeToNone() in VTK",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// An attribute of an element.
+pub(super) fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
+    let found = element
+        .try_get_attribute(name)
+        .map_err(|error| damaged(&error))?;
+    let value =
+        found.map(|attribute| attribute.normalized_value(quick_xml::XmlVersion::Implicit1_0));
+    Ok(value
+        .transpose()
+        .map_err(|error| damaged(&error))?
+        .map(std::borrow::Cow::into_owned))
+}
+
+fn count(element: &BytesStart<'_>, name: &str) -> Result<Option<u64>> {
+    let Some(text) = attribute(element, name)? else {
+        return Ok(None);
+    };
+    text.trim()
+        .parse()
+        .map(Some)
+        .map_err(|_| Diagnostic::input("", format!("{name}=\"{text}\" is not a count"), DAMAGED))
+}
+
+fn missing(name: &str) -> Diagnostic {
+    Diagnostic::input("", format!("the attribute {name} is missing"), DAMAGED)
+}
+
+/// XML that is not well formed.
+pub(super) fn damaged(error: &dyn std::fmt::Display) -> Diagnostic {
+    Diagnostic::input(
+        "",
+        format!("the XML is damaged: {error}"),
+        "write or copy the file again",
+    )
+}

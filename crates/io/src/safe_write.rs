@@ -1,0 +1,361 @@
+//! Files that appear whole or not at all: written under a temporary name in the same folder, then renamed.
+
+use std::fs::{self, File, Metadata, Permissions};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::NamedTempFile;
+
+use crate::{Diagnostic, Result};
+
+const BUFFER_BYTES: usize = 1 << 16;
+
+/// Temporary files that exist at this moment.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// A file written in full under a temporary name. Dropped without [`PendingFile::publish`], it vanishes.
+#[derive(Debug)]
+pub struct PendingFile {
+    target: PathBuf,
+    /// None for what cannot be renamed onto (a device, a named pipe): it was written to directly.
+    temporary: Option<NamedTempFile>,
+}
+
+impl PendingFile {
+    /// Writes what will become the file `path`, in the same folder. An existing file stays as it is until `publish`.
+    ///
+    /// A device or a named pipe is written to directly; a reader that closes it early is no error.
+    ///
+    /// # Errors
+    /// Missing folder, no permission, full disk, `path` is a folder (all exit code 1). Nothing is left behind.
+    pub fn write(
+        path: &Path,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self> {
+        let existing = fs::metadata(path).ok();
+        if let Some(metadata) = &existing {
+            check_target(path, metadata)?;
+            if !metadata.is_file() {
+                let written = File::options()
+                    .write(true)
+                    .open(path)
+                    .and_then(|file| write_buffered(file, write));
+                return quiet_when_closed(written)
+                    .map(|()| Self {
+                        target: path.to_owned(),
+                        temporary: None,
+                    })
+                    .map_err(|error| explain(path, &error));
+            }
+        }
+        // Through a link, to the file that it names.
+        let target = if existing.is_some() {
+            fs::canonicalize(path)
+        } else {
+            Ok(path.to_owned())
+        };
+        let target = target.map_err(|error| explain(path, &error))?;
+        let pending = Self {
+            temporary: Some(create_beside(&target).map_err(|error| explain(path, &error))?),
+            target,
+        };
+        pending
+            .fill(existing.as_ref(), write)
+            .map_err(|error| explain(path, &error))?;
+        Ok(pending)
+    }
+
+    fn fill(
+        &self,
+        existing: Option<&Metadata>,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let Some(temporary) = &self.temporary else {
+            return Ok(());
+        };
+        write_buffered(temporary.as_file(), write)?;
+        if let Some(existing) = existing {
+            temporary
+                .as_file()
+                .set_permissions(existing.permissions())?;
+            // What stood there is lost with the rename, so the new bytes have to be on the disk before.
+            temporary.as_file().sync_all()?;
+        }
+        Ok(())
+    }
+
+    /// Gives the file its name, replacing what stood there.
+    ///
+    /// # Errors
+    /// The rename failed (exit code 1). What stood there is unchanged.
+    pub fn publish(mut self) -> Result<()> {
+        let Some(temporary) = self.temporary.take() else {
+            return Ok(());
+        };
+        let mut unfinished = unfinished();
+        unfinished.retain(|path| path != temporary.path());
+        temporary
+            .persist(&self.target)
+            .map(drop)
+            .map_err(|error| explain(&self.target, &error.error))
+    }
+}
+
+impl Drop for PendingFile {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.temporary {
+            unfinished().retain(|path| path != temporary.path());
+        }
+    }
+}
+
+/// Writes the file `path`, which appears whole or not at all.
+///
+/// # Errors
+/// As [`PendingFile::write`].
+pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    PendingFile::write(path, write)?.publish()
+}
+
+/// Writes to standard output. A reader that closes the pipe early has what it wanted: no error.
+///
+/// # Errors
+/// Standard output cannot be written to, such as a full disk behind it (exit code 1).
+pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    quiet_when_closed(write_buffered(io::stdout().lock(), write))
+        .map_err(|error| explain(Path::new("standard output"), &error))
+}
+
+/// Removes the temporary files of writes that are under way: for a program that is interrupted and about to leave.
+pub fn remove_unfinished() {
+    for path in unfinished().drain(..) {
+        // Nothing is left to be done about a file that cannot be removed.
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn write_buffered(
+    to: impl Write,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut buffered = BufWriter::with_capacity(BUFFER_BYTES, to);
+    write(&mut buffered)?;
+    buffered.flush()
+}
+
+fn quiet_when_closed(written: io::Result<()>) -> io::Result<()> {
+    written.or_else(|error| {
+        if error.kind() == ErrorKind::BrokenPipe {
+            Ok(())
+        } else {
+            Err(error)
+        }
+    })
+}
+
+fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
+    let place = path.display().to_string();
+    if metadata.is_dir() {
+        return Err(Diagnostic::failed(
+            place,
+            "this is a folder",
+            "name a file in it",
+        ));
+    }
+    if metadata.is_file() && metadata.permissions().readonly() {
+        return Err(Diagnostic::failed(
+            place,
+            "this file is write-protected",
+            "choose another name, or allow writing to it",
+        ));
+    }
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".unfinished-");
+    if let Some(permissions) = usual_permissions() {
+        builder.permissions(permissions);
+    }
+    let mut unfinished = unfinished();
+    let temporary = builder.tempfile_in(folder_of(target))?;
+    unfinished.push(temporary.path().to_owned());
+    Ok(temporary)
+}
+
+/// Readable by others as far as the user's own settings allow, as for any new file.
+#[cfg(unix)]
+fn usual_permissions() -> Option<Permissions> {
+    Some(std::os::unix::fs::PermissionsExt::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn usual_permissions() -> Option<Permissions> {
+    None
+}
+
+/// What went wrong when writing to `path`, for a person.
+fn explain(path: &Path, error: &io::Error) -> Diagnostic {
+    let folder = folder_of(path).display();
+    let (problem, remedy) = match error.kind() {
+        ErrorKind::NotFound => (
+            format!("there is no folder '{folder}'"),
+            "make it first, or write elsewhere",
+        ),
+        ErrorKind::NotADirectory => (format!("'{folder}' is not a folder"), "write elsewhere"),
+        ErrorKind::PermissionDenied => (
+            format!("no permission to write in '{folder}'"),
+            "write elsewhere",
+        ),
+        ErrorKind::ReadOnlyFilesystem => (
+            format!("the disk of '{folder}' is read-only"),
+            "write elsewhere",
+        ),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => (
+            format!("no space left: {error}"),
+            "free some space, or write elsewhere",
+        ),
+        _ => (format!("cannot be written: {error}"), ""),
+    };
+    Diagnostic::failed(path.display().to_string(), problem, remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_write_that_fails_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cake.vtp");
+        write_file(&path, |out| out.write_all(b"old")).unwrap();
+        let error = write_file(&path, |out| {
+            out.write_all(b"half a new file")?;
+            Err(ErrorKind::StorageFull.into())
+        })
+        .unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.problem.starts_with("no space left"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["cake.vtp"]);
+        write_file(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn nothing_appears_before_it_is_published() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let pending = PendingFile::write(&path, |out| out.write_all(b"x")).unwrap();
+        assert!(!path.exists());
+        assert_eq!(names(folder.path()).len(), 1);
+        drop(pending);
+        assert!(names(folder.path()).is_empty());
+        PendingFile::write(&path, |out| out.write_all(b"x"))
+            .unwrap()
+            .publish()
+            .unwrap();
+        assert_eq!(names(folder.path()), ["a.csv"]);
+    }
+
+    #[test]
+    fn missing_folder_and_folder_as_target() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_file(&folder.path().join("missing/cake.vtp"), |_| Ok(())).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(
+            error.problem.starts_with("there is no folder '")
+                && error.problem.ends_with("missing'"),
+            "{error}"
+        );
+        let error = write_file(folder.path(), |_| Ok(())).unwrap_err();
+        assert_eq!(error.problem, "this is a folder");
+        fs::write(folder.path().join("file"), "").unwrap();
+        let error = write_file(&folder.path().join("file/cake.vtp"), |_| Ok(())).unwrap_err();
+        assert!(error.problem.ends_with("is not a folder"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_permissions_and_write_protection() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (path, link) = (
+            folder.path().join("cake.vtp"),
+            folder.path().join("link.vtp"),
+        );
+        fs::write(&path, "old").unwrap();
+        let plain = fs::metadata(&path).unwrap().permissions().mode();
+        fs::set_permissions(&path, Permissions::from_mode(0o640)).unwrap();
+        symlink(&path, &link).unwrap();
+        write_file(&link, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(
+            fs::metadata(&path).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
+        let fresh = folder.path().join("fresh.vtp");
+        write_file(&fresh, |_| Ok(())).unwrap();
+        assert_eq!(
+            fs::metadata(&fresh).unwrap().permissions().mode(),
+            plain,
+            "as any new file"
+        );
+        fs::set_permissions(&path, Permissions::from_mode(0o440)).unwrap();
+        assert_eq!(
+            write_file(&path, |_| Ok(())).unwrap_err().problem,
+            "this file is write-protected"
+        );
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written_to_and_stay_devices() {
+        use std::os::unix::fs::FileTypeExt;
+        let error = write_file(Path::new("/dev/full"), |out| out.write_all(b"x")).unwrap_err();
+        assert!(error.problem.starts_with("no space left"), "{error}");
+        write_file(Path::new("/dev/null"), |out| out.write_all(b"x")).unwrap();
+        assert!(
+            fs::metadata("/dev/null")
+                .unwrap()
+                .file_type()
+                .is_char_device()
+        );
+    }
+
+    #[test]
+    fn what_is_under_way_is_known() {
+        let folder = tempfile::tempdir().unwrap();
+        let is_known = |pending: &PathBuf| unfinished().contains(pending);
+        let pending = PendingFile::write(&folder.path().join("a.csv"), |_| Ok(())).unwrap();
+        let temporary = pending.temporary.as_ref().unwrap().path().to_owned();
+        assert!(is_known(&temporary));
+        pending.publish().unwrap();
+        assert!(!is_known(&temporary));
+    }
+}

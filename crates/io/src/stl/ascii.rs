@@ -1,0 +1,281 @@
+//! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop endfacet)* endsolid NAME`, any number
+//! of times; upper or lower case, any white space. Normals are skipped unread: many programs write them badly or not at all.
+
+use super::{Facets, REMEDY_AGAIN, is_blank};
+use crate::{Diagnostic, Result};
+
+/// Reads the facets of all `solid` blocks in `text`, which begins with "solid".
+pub(super) fn read(text: &[u8]) -> Result<Facets> {
+    let mut words = Words {
+        text,
+        next: 0,
+        line: 1,
+    };
+    let mut facets = Facets::default();
+    while let Some(word) = words.next_word() {
+        if is(word, "solid") {
+            words.skip_line();
+            read_solid(&mut words, &mut facets)?;
+        } else if !word.iter().all(|b| *b == 0 || *b == 0x1a) {
+            return Err(unexpected(&words, word, "'solid' or the end of the file"));
+        }
+    }
+    Ok(facets)
+}
+
+/// Reads facets up to `endsolid`.
+fn read_solid(words: &mut Words, facets: &mut Facets) -> Result<()> {
+    loop {
+        match words.next_word() {
+            Some(word) if is(word, "facet") => {
+                let facet = read_facet(words, facets.corners.len() + 1)?;
+                facets.corners.push(facet);
+            }
+            Some(word) if is(word, "endsolid") => {
+                words.skip_line();
+                return Ok(());
+            }
+            Some(word) => return Err(unexpected(words, word, "'facet' or 'endsolid'")),
+            None => {
+                facets.warnings.push(format!(
+                    "The file ends at line {} without 'endsolid'.",
+                    words.line
+                ));
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Reads what follows the word `facet`, up to `endfacet`. `number` counts from 1.
+fn read_facet(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
+    let mut word = words.need(number)?;
+    for _ in 0..4 {
+        if !is(word, "outer") {
+            word = words.need(number)?;
+        }
+    }
+    expect(words, word, "outer")?;
+    let word = words.need(number)?;
+    expect(words, word, "loop")?;
+    let mut corners = [[0.0; 3]; 3];
+    for corner in &mut corners {
+        let word = words.need(number)?;
+        expect(words, word, "vertex")?;
+        for coordinate in corner {
+            let word = words.need(number)?;
+            *coordinate = finite_number(words, word, number)?;
+        }
+    }
+    for keyword in ["endloop", "endfacet"] {
+        let word = words.need(number)?;
+        expect(words, word, keyword)?;
+    }
+    Ok(corners)
+}
+
+fn finite_number(words: &Words, word: &[u8], facet: usize) -> Result<f64> {
+    let value: Option<f64> = std::str::from_utf8(word)
+        .ok()
+        .and_then(|text| text.parse().ok());
+    let place = format!("line {}, triangle {facet}", words.line);
+    match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(_) => Err(Diagnostic::input(
+            place,
+            format!("coordinate '{}' is not a finite number", shown(word)),
+            "repair or export the shape again",
+        )),
+        None => Err(Diagnostic::input(
+            place,
+            format!("coordinate '{}' is not a number", shown(word)),
+            "repair or export the shape again",
+        )),
+    }
+}
+
+fn expect(words: &Words, word: &[u8], keyword: &str) -> Result<()> {
+    if is(word, keyword) {
+        Ok(())
+    } else {
+        Err(unexpected(words, word, &format!("'{keyword}'")))
+    }
+}
+
+fn unexpected(words: &Words, word: &[u8], wanted: &str) -> Diagnostic {
+    let found = if words.at_end() {
+        "truncated: the file ends with"
+    } else {
+        "found"
+    };
+    let problem = format!("{found} '{}' where an ASCII STL has {wanted}", shown(word));
+    Diagnostic::input(
+        format!("line {}", words.line),
+        problem,
+        "repair or export the shape again",
+    )
+}
+
+fn is(word: &[u8], keyword: &str) -> bool {
+    word.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+/// A word for a message: cut short, control characters escaped.
+fn shown(word: &[u8]) -> String {
+    String::from_utf8_lossy(&word[..word.len().min(30)])
+        .escape_debug()
+        .collect()
+}
+
+/// The words of a text and the line (from 1) of the last one.
+struct Words<'a> {
+    text: &'a [u8],
+    next: usize,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn next_word(&mut self) -> Option<&'a [u8]> {
+        while let Some(byte) = self.text.get(self.next).filter(|b| is_blank(**b)) {
+            let line_end =
+                *byte == b'\n' || *byte == b'\r' && self.text.get(self.next + 1) != Some(&b'\n');
+            self.line += usize::from(line_end);
+            self.next += 1;
+        }
+        let start = self.next;
+        while self.text.get(self.next).is_some_and(|b| !is_blank(*b)) {
+            self.next += 1;
+        }
+        (self.next > start).then(|| &self.text[start..self.next])
+    }
+
+    /// The next word of a facet that is not complete yet. A word at the very end of the text may be cut short.
+    fn need(&mut self, facet: usize) -> Result<&'a [u8]> {
+        let word = self
+            .next_word()
+            .filter(|word| !self.at_end() || is(word, "endfacet"));
+        word.ok_or_else(|| {
+            Diagnostic::input(
+                format!("line {}", self.line),
+                format!("truncated: the file ends in the middle of triangle {facet}"),
+                REMEDY_AGAIN,
+            )
+        })
+    }
+
+    fn at_end(&self) -> bool {
+        self.next == self.text.len()
+    }
+
+    /// Leaves out the rest of the line: the name of a solid can be anything.
+    fn skip_line(&mut self) {
+        while self
+            .text
+            .get(self.next)
+            .is_some_and(|b| !matches!(b, b'\n' | b'\r'))
+        {
+            self.next += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use crate::stl::read_facets;
+
+    const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+
+    fn problem(text: &str) -> String {
+        read_facets(text.as_bytes())
+            .expect_err("refused")
+            .to_string()
+    }
+
+    #[test]
+    fn all_solids_are_read() {
+        let text = format!(
+            "solid a facet\n{FACET}{FACET}endsolid a\n\nsolid\n{FACET}endsolid\nsolid empty\nendsolid empty\n"
+        );
+        let facets = read_facets(text.as_bytes()).unwrap();
+        assert_eq!(facets.corners.len(), 3);
+        assert!(facets.warnings.is_empty());
+    }
+
+    #[test]
+    fn case_white_space_and_bad_normals_do_not_matter() {
+        let plain = read_facets(format!("solid a\n{FACET}endsolid a\n").as_bytes()).unwrap();
+        let shouted = format!(
+            "SOLID A\r\n{}ENDSOLID A\r\n",
+            FACET.to_uppercase().replace('\n', "\r\n\t")
+        );
+        let marked = format!("\u{feff}solid a\n{FACET}endsolid a\n\u{1a}");
+        let without_normal = format!("solid a\n{}endsolid a", FACET.replace("normal 0 0 1", ""));
+        let nan_normal = format!(
+            "solid a\n{}endsolid a",
+            FACET.replace("0 0 1", "nan -nan(ind) 1e999")
+        );
+        let old_mac = format!("solid a\n{FACET}endsolid a\n").replace('\n', "\r");
+        for text in [shouted, marked, old_mac, without_normal, nan_normal] {
+            assert_eq!(read_facets(text.as_bytes()).unwrap(), plain, "{text}");
+        }
+    }
+
+    #[test]
+    fn errors_carry_the_line() {
+        let with = |from: &str, to: &str| {
+            problem(&format!(
+                "solid a\n{FACET}{}endsolid a\n",
+                FACET.replacen(from, to, 1)
+            ))
+        };
+        assert!(
+            with("vertex 1 0 0", "vertex 1 0,5 0")
+                .starts_with("line 12, triangle 2: coordinate '0,5' is not a number")
+        );
+        assert!(
+            with("vertex 1 0 0", "vertex 1 0 NaN")
+                .starts_with("line 12, triangle 2: coordinate 'NaN' is not a finite number")
+        );
+        assert!(
+            with("vertex 1 0 0", "vertex 1 0 1e999")
+                .starts_with("line 12, triangle 2: coordinate '1e999' is not a finite")
+        );
+        assert!(
+            with("vertex 1 0 0", "vertex 1 0")
+                .starts_with("line 13, triangle 2: coordinate 'vertex' is not a number")
+        );
+        assert!(
+            with(" endloop", "  vertex 1 1 0\n endloop")
+                .starts_with("line 14: found 'vertex' where an ASCII STL has 'endloop'")
+        );
+        assert!(
+            with("facet normal", "color 1 1 1\nfacet normal").starts_with("line 9: found 'color'")
+        );
+        assert!(
+            problem(&format!("solid a\n{FACET}endsolid a\nmore"))
+                .starts_with("line 10: truncated: the file ends with 'more'")
+        );
+    }
+
+    #[test]
+    fn a_file_that_ends_within_a_facet_is_refused_and_one_without_endsolid_is_not() {
+        let whole = format!("solid a\n{FACET}{FACET}");
+        let facets = read_facets(whole.as_bytes()).unwrap();
+        assert_eq!((facets.corners.len(), facets.warnings.len()), (2, 1));
+        for cut in 9..FACET.len() - 1 {
+            let text = &whole[..whole.len() - cut];
+            let line = text.trim_end().lines().count();
+            let message = problem(text);
+            assert!(message.contains("line "), "{message}");
+            if text.ends_with('\n') {
+                assert!(
+                    message.contains(&format!("line {}", line + 1))
+                        && message.contains("middle of triangle 2"),
+                    "{message}"
+                );
+            }
+        }
+        assert!(problem("solid a\nendsolid a\n").contains("no triangles"));
+    }
+}

@@ -1,0 +1,94 @@
+//! Parts that cross or overlap: the union is meant.
+
+use crate::solids::{ascii, binary, block, turned};
+use crate::{METRES, read};
+
+#[test]
+fn overlapping_parts_form_their_union() {
+    let first = block([0.0; 3], [2.0; 3]);
+    for (second, union, crossing) in [
+        (
+            block([1.0, 0.7, 0.9], [3.0, 2.7, 2.9]),
+            16.0 - 1.0 * 1.3 * 1.1,
+            true,
+        ),
+        // Faces in one plane: no edge goes through a face, but the parts overlap.
+        (block([1.0, 0.0, 0.0], [3.0, 2.0, 2.0]), 12.0, false),
+        // Through and through.
+        (
+            block([0.5, 0.5, -1.0], [1.0, 1.0, 3.0]),
+            8.0 + 0.25 * 2.0,
+            true,
+        ),
+    ] {
+        for second in [turned(&second), second] {
+            let surface = read(ascii(&[&first, &second]).as_bytes(), METRES);
+            assert_eq!(
+                surface
+                    .shells
+                    .iter()
+                    .filter(|shell| shell.is_cavity)
+                    .count(),
+                0
+            );
+            assert_eq!(surface.repairs.self_intersections > 0, crossing);
+            let error = (surface.volume_m3() - union).abs();
+            assert!(
+                error <= surface.overlap_volume_error_m3,
+                "{error} {}",
+                surface.overlap_volume_error_m3
+            );
+            assert!(surface.overlap_volume_error_m3 < 1e-5 * union);
+            assert!(
+                surface
+                    .warnings
+                    .iter()
+                    .any(|text| text.contains("the union of what they enclose is filled"))
+            );
+        }
+    }
+}
+
+#[test]
+fn parts_that_overlap_with_a_face_in_common_form_their_union() {
+    let first = block([0.0; 3], [1.0; 3]);
+    for (second, union) in [
+        (block([0.0; 3], [2.0, 1.0, 1.0]), 2.0),
+        (block([0.0; 3], [3.0, 1.0, 2.0]), 6.0),
+    ] {
+        for facets in [
+            [first.clone(), second.clone()].concat(),
+            turned(&[first.clone(), second].concat()),
+        ] {
+            let surface = read(&binary(&facets), METRES);
+            assert!(
+                (surface.volume_m3() / union - 1.0).abs() < 1e-5,
+                "{} not {union}: {:?}",
+                surface.volume_m3(),
+                surface.shells
+            );
+        }
+    }
+}
+
+#[test]
+fn a_cavity_within_overlapping_parts_is_still_one() {
+    let mut facets = block([0.0; 3], [4.0; 3]);
+    facets.extend(block([3.0, 0.5, 0.5], [7.0, 3.5, 3.5]));
+    facets.extend(block([1.0; 3], [2.0; 3]));
+    let surface = read(&binary(&facets), METRES);
+    assert_eq!(
+        surface
+            .shells
+            .iter()
+            .filter(|shell| shell.is_cavity)
+            .count(),
+        1
+    );
+    let union = 64.0 + 36.0 - 9.0 - 1.0;
+    assert!(
+        (surface.volume_m3() / union - 1.0).abs() < 1e-3,
+        "{}",
+        surface.volume_m3()
+    );
+}

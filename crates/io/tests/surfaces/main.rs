@@ -1,0 +1,76 @@
+//! Every kind of STL file, good or bad: what comes of it.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../fuzz_bodies/read_stl.rs"]
+mod body;
+mod crossings;
+mod files;
+mod gaps;
+mod properties;
+mod shells;
+mod solids;
+
+use body::assert_solid;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::{Diagnostic, Surface};
+
+const METRES: ReadSettings = ReadSettings {
+    unit_m: 1.0,
+    scale: 1.0,
+    fill_holes: false,
+};
+const FILL: ReadSettings = ReadSettings {
+    fill_holes: true,
+    ..METRES
+};
+
+fn shape_bytes(name: &str) -> Vec<u8> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes");
+    std::fs::read(folder.join(format!("{name}.stl"))).expect(name)
+}
+
+fn read(bytes: &[u8], settings: ReadSettings) -> Surface {
+    let surface =
+        surface_from_stl(bytes, "part.stl", settings).unwrap_or_else(|error| panic!("{error}"));
+    assert_solid(&surface);
+    surface
+}
+
+fn shape(name: &str) -> Surface {
+    read(&shape_bytes(name), METRES)
+}
+
+fn refusal(bytes: &[u8], settings: ReadSettings) -> Diagnostic {
+    let error = surface_from_stl(bytes, "part.stl", settings).expect_err("a refusal");
+    assert_eq!(error.exit_code(), 2);
+    assert!(
+        error.place.starts_with("part.stl") && !error.remedy.is_empty(),
+        "{error}"
+    );
+    error
+}
+
+#[track_caller]
+fn assert_volume(surface: &Surface, expected: f64) {
+    let volume = surface.volume_m3();
+    assert!(
+        (volume / expected - 1.0).abs() < 1e-6,
+        "{volume}, not {expected}"
+    );
+}
+
+/// The same vertices, triangles and shells, to the last bit.
+#[track_caller]
+fn assert_same_solid(a: &Surface, b: &Surface) {
+    let bits = |s: &Surface| {
+        s.vertices
+            .iter()
+            .flatten()
+            .map(|x| x.to_bits())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(a), bits(b));
+    assert_eq!(a.triangles, b.triangles);
+    assert_eq!(a.shells, b.shells);
+    assert_eq!(a.unit_m, b.unit_m);
+}

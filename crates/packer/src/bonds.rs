@@ -1,0 +1,224 @@
+//! Bonds: which pairs of spheres are joined.
+//!
+//! A pair is joined when the distance of its centres is at most `bonding_radius * (R_a + R_b)`, true radii (thesis 4.1:
+//! 1.0 and 1.1), and no surface lies between: two fingers of one shape stay two.
+
+use crate::Spheres;
+use dem_io::{Diagnostic, Result};
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use rayon::prelude::*;
+
+/// Whether the straight line between two points (local units) crosses the surface.
+pub type CrossesSurface<'a> = &'a (dyn Fn([f64; 3], [f64; 3]) -> bool + Sync);
+
+/// Beyond this bonding radius a bond would pass through other spheres.
+pub const LARGEST_BONDING_RADIUS: f64 = 2.0;
+/// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres, 4.87).
+pub const WELL_BONDED: f64 = 5.0;
+/// Spheres that one task searches around: fixed, so that the order of results is the same for any number of threads.
+const CHUNK: usize = 4096;
+
+/// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is asked only for pairs farther apart
+/// than the sum of their radii: a closer pair has its line of centres inside its two balls, which lie in the solid.
+///
+/// # Errors
+/// A bonding radius outside (0, [`LARGEST_BONDING_RADIUS`]]; more spheres than 2^32.
+pub fn find_bonds(
+    spheres: &Spheres,
+    bonding_radius: f64,
+    crosses_surface: CrossesSurface,
+) -> Result<Vec<[u32; 2]>> {
+    if !(bonding_radius > 0.0 && bonding_radius <= LARGEST_BONDING_RADIUS) {
+        return Err(Diagnostic::input(
+            "--bonding-radius",
+            format!("{bonding_radius} is not above 0 and at most {LARGEST_BONDING_RADIUS}"),
+            "give the largest distance of two bonded spheres as a multiple of the sum of their radii, such as 1.1",
+        ));
+    }
+    let parts = search(spheres, bonding_radius, |a, b, distance| {
+        is_joined(spheres, a, b, distance, crosses_surface).then(|| [a.min(b), a.max(b)])
+    })?;
+    Ok(sorted(parts, spheres.radii.len()))
+}
+
+/// All pairs with centres at most `ratio * (R_a + R_b)` apart, the smaller index first, sorted.
+///
+/// # Errors
+/// More spheres than 2^32.
+pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
+    let parts = search(spheres, ratio, |a, b, _| Some([a.min(b), a.max(b)]))?;
+    Ok(sorted(parts, spheres.radii.len()))
+}
+
+/// The bonding radius that gives `wanted` bonds per particle (bonds divided by particles), as near as whole bonds allow:
+/// half-way between the last pair that is joined and the first that is not.
+///
+/// # Errors
+/// `wanted` not positive, or not reached with [`LARGEST_BONDING_RADIUS`]; more spheres than 2^32.
+pub fn bonding_radius_for(
+    spheres: &Spheres,
+    wanted: f64,
+    crosses_surface: CrossesSurface,
+) -> Result<f64> {
+    const PLACE: &str = "--bonds-per-particle";
+    let count = spheres.radii.len();
+    if !(wanted > 0.0 && wanted.is_finite()) {
+        return Err(Diagnostic::input(
+            PLACE,
+            format!("{wanted} is not a positive number"),
+            "4 to 6 is usual",
+        ));
+    }
+    let bonds = ((wanted * count as f64).round() as usize).max(1);
+    let mut limit = 1.05_f64;
+    loop {
+        let parts = search(spheres, limit, |a, b, distance| {
+            let sum = spheres.radii[a as usize] + spheres.radii[b as usize];
+            is_joined(spheres, a, b, distance, crosses_surface).then(|| distance / sum)
+        })?;
+        let mut ratios = parts.concat();
+        if ratios.len() >= bonds {
+            let (_, last, rest) = ratios.select_nth_unstable_by(bonds - 1, f64::total_cmp);
+            let next = rest.iter().copied().fold(limit, f64::min);
+            return Ok(0.5 * (*last + next));
+        }
+        if limit >= LARGEST_BONDING_RADIUS {
+            return Err(Diagnostic::input(
+                PLACE,
+                format!(
+                    "{wanted} bonds per particle cannot be reached: {} even with the largest bonding radius of {LARGEST_BONDING_RADIUS}",
+                    dem_io::units::significant(ratios.len() as f64 / count.max(1) as f64, 3)
+                ),
+                "ask for fewer",
+            ));
+        }
+        limit = (limit * 1.2).min(LARGEST_BONDING_RADIUS);
+    }
+}
+
+/// A bonding radius to advise when a packing has too few bonds: gives [`WELL_BONDED`] bonds per particle, rounded up to
+/// two decimals. None where no bonding radius does.
+pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
+    bonding_radius_for(spheres, WELL_BONDED, crosses_surface)
+        .ok()
+        .map(|radius| (radius * 100.0).ceil() / 100.0)
+}
+
+/// Distances of the centres of bonded spheres: the initial lengths of the bonds, local units. One per bond.
+pub fn bond_lengths(spheres: &Spheres, bonds: &[[u32; 2]]) -> Vec<f64> {
+    bonds
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|[a, b]| centre_distance(spheres, *a, *b))
+        .collect()
+}
+
+/// Radii of bonds: `factor` times the smaller of the two spheres' radii, local units. One per bond.
+pub fn bond_radii(spheres: &Spheres, bonds: &[[u32; 2]], factor: f64) -> Vec<f64> {
+    let radii = &spheres.radii;
+    bonds
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|[a, b]| factor * radii[*a as usize].min(radii[*b as usize]))
+        .collect()
+}
+
+pub(crate) fn centre_distance(spheres: &Spheres, a: u32, b: u32) -> f64 {
+    let (p, q) = (spheres.positions[a as usize], spheres.positions[b as usize]);
+    let (x, y, z) = (p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    (x * x + y * y + z * z).sqrt()
+}
+
+/// No surface between two spheres. A point of the line of centres at distance t from a is in ball a if t <= R_a, and in
+/// ball b if distance - t <= R_b; if it were in neither, distance > R_a + R_b. The balls lie inside the solid, so only
+/// pairs farther apart than R_a + R_b can have surface between them.
+fn is_joined(
+    spheres: &Spheres,
+    a: u32,
+    b: u32,
+    distance: f64,
+    crosses_surface: CrossesSurface,
+) -> bool {
+    let (a, b) = (a as usize, b as usize);
+    distance <= spheres.radii[a] + spheres.radii[b]
+        || !crosses_surface(spheres.positions[a], spheres.positions[b])
+}
+
+/// `keep(a, b, distance)` of every pair with distance <= ratio (R_a + R_b), a the larger sphere of the two: once each,
+/// in chunks, in no particular order, which depends on the spheres alone.
+///
+/// Each sphere looks for its smaller neighbours only, all of them within 2 ratio R_a. A point lies within that distance
+/// of at most about 8 ratio^3 centres of spheres that do not overlap much, whatever their sizes: no distribution is slow.
+fn search<T: Send>(
+    spheres: &Spheres,
+    ratio: f64,
+    keep: impl Fn(u32, u32, f64) -> Option<T> + Sync,
+) -> Result<Vec<Vec<T>>> {
+    let radii = &spheres.radii;
+    if radii.is_empty() {
+        return Ok(Vec::new());
+    }
+    let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&spheres.positions)
+        .map_err(|e| {
+            Diagnostic::failed(
+                "",
+                format!("no search tree over {} spheres: {e}", radii.len()),
+                "",
+            )
+        })?;
+    // In the order of the tree's leaves, so that what one sphere reads is at hand for the next.
+    let order: Vec<u32> = tree.iter().map(|(item, _)| item).collect();
+    let search_around = |chunk: &[u32]| {
+        let mut found = Vec::with_capacity(6 * chunk.len());
+        for &a in chunk {
+            let radius_a = radii[a as usize];
+            // A shade more, so that rounding in the tree drops no pair; the exact test follows.
+            let reach = 2.0 * ratio * radius_a * (1.0 + 1e-9);
+            let neighbours = tree
+                .query(&spheres.positions[a as usize])
+                .within::<SquaredEuclidean<f64>>(reach * reach)
+                .unsorted();
+            neighbours.visit(|neighbour| {
+                let b = neighbour.item;
+                let radius_b = radii[b as usize];
+                if radius_b < radius_a || (radius_b == radius_a && b > a) {
+                    let distance = neighbour.distance.sqrt();
+                    if distance <= ratio * (radius_a + radius_b) {
+                        found.extend(keep(a, b, distance));
+                    }
+                }
+            });
+        }
+        found
+    };
+    Ok(order.par_chunks(CHUNK).map(search_around).collect())
+}
+
+/// The pairs sorted: counted and dealt out by their first index, each sphere's few then sorted by the second.
+fn sorted(parts: Vec<Vec<[u32; 2]>>, spheres: usize) -> Vec<[u32; 2]> {
+    let mut starts = vec![0_u32; spheres + 1];
+    for [a, _] in parts.iter().flatten() {
+        starts[*a as usize + 1] += 1;
+    }
+    let mut total = 0_usize;
+    for start in &mut starts {
+        total += *start as usize;
+        *start = total as u32;
+    }
+    let mut pairs = vec![[0_u32; 2]; total];
+    let mut next = starts;
+    for part in parts {
+        for pair in part {
+            let slot = &mut next[pair[0] as usize];
+            pairs[*slot as usize] = pair;
+            *slot += 1;
+        }
+    }
+    // Each slot now stands at the end of its row.
+    let mut begin = 0;
+    for end in &next[..spheres] {
+        pairs[begin..*end as usize].sort_unstable();
+        begin = *end as usize;
+    }
+    pairs
+}

@@ -1,0 +1,111 @@
+//! Distance to the surface. The only module that knows parry3d.
+
+use crate::Vector3;
+use dem_io::{Diagnostic, Result, Surface};
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::BvhNode;
+use parry3d_f64::query::{PointQueryWithLocation, Ray};
+use parry3d_f64::shape::TriMesh;
+
+/// The point of the surface nearest to some other point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Where it is, in local units.
+    pub point: Vector3,
+    /// How far it is, in local units.
+    pub distance: f64,
+}
+
+/// The facets of a surface in a tree, for distance queries.
+pub struct Boundary {
+    mesh: TriMesh,
+}
+
+impl Boundary {
+    /// Builds the tree.
+    ///
+    /// # Errors
+    /// A surface without triangles.
+    pub fn new(surface: &Surface) -> Result<Self> {
+        let vertices = surface.vertices.iter().map(|v| Vector::new(v[0], v[1], v[2])).collect();
+        let mesh = TriMesh::new(vertices, surface.triangles.clone())
+            .map_err(|e| Diagnostic::input(surface.source.clone(), format!("the surface cannot be used: {e}"), ""))?;
+        Ok(Self { mesh })
+    }
+
+    /// The nearest point of the surface, if it is closer than `cut_off` (local units).
+    pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
+        let from = to_parry(point);
+        let (projection, _) = self.mesh.project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
+        let point = from_parry(&projection.point);
+        Some(Nearest { point, distance: (projection.point - from).length() })
+    }
+
+    /// Whether the surface leaves a ball of this radius (local units) free.
+    pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
+        self.nearest(centre, radius).is_none()
+    }
+
+    /// The triangles whose boxes come within `reach` (local units) of `point`, as indices of the surface's triangles.
+    pub fn triangles_near(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
+        let (centre, half) = (to_parry(point), Vector::splat(reach));
+        let around = Aabb::new(centre - half, centre + half);
+        let query = BvhNode::leaf(around, 0);
+        self.mesh.bvh().leaves(move |node| node.intersects(&query))
+    }
+
+    /// The triangles whose boxes a ray passes, as indices of the surface's triangles.
+    pub fn triangles_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + '_ {
+        let ray = Ray::new(to_parry(origin), to_parry(direction));
+        self.mesh.bvh().leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
+    }
+
+    /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
+    /// a face hidden behind a nearer one (the same plane, the far side of an edge) left out. `triangles` limits the search; at most 8 are found.
+    pub fn walls(&self, triangles: impl Iterator<Item = u32>, centre: &Vector3, radius: f64, found: &mut Vec<Nearest>) {
+        const SAME_DIRECTION: f64 = 0.97;
+        const MOST: usize = 8;
+        found.clear();
+        let toward = |near: &Nearest| (near.point - centre) / near.distance;
+        for triangle in triangles {
+            let near = self.nearest_on(triangle, centre);
+            if near.distance >= radius || near.distance <= 0.0 {
+                continue;
+            }
+            let direction = toward(&near);
+            match found.iter().position(|other| toward(other).dot(&direction) > SAME_DIRECTION) {
+                Some(k) if near.distance < found[k].distance => found[k] = near,
+                None if found.len() < MOST => found.push(near),
+                _ => {}
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept = 0;
+        for k in 0..found.len() {
+            let near = found[k];
+            let hidden = found[..kept].iter().any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
+            if !hidden {
+                found[kept] = near;
+                kept += 1;
+            }
+        }
+        found.truncate(kept);
+    }
+
+    /// The nearest point of one triangle of the surface.
+    pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
+        let from = to_parry(point);
+        let (projection, _) = self.mesh.triangle(triangle).project_local_point_and_get_location(from, false);
+        let point = from_parry(&projection.point);
+        Nearest { point, distance: (projection.point - from).length() }
+    }
+}
+
+fn to_parry(v: &Vector3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn from_parry(v: &Vector) -> Vector3 {
+    Vector3::new(v.x, v.y, v.z)
+}

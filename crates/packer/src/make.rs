@@ -1,0 +1,157 @@
+//! The whole job: surface and settings -> body and report.
+
+use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+use crate::boundary::Boundary;
+use crate::density::{DensitySearch, pack_to_density};
+use crate::inside::contains;
+use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
+use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
+use crate::{Spheres, Vector3};
+use dem_io::body::About;
+use dem_io::{Body, Result, Surface};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::time::Instant;
+
+/// What body is wanted.
+#[derive(Debug, Clone)]
+pub struct MakeSettings {
+    /// The spheres.
+    pub packing: PackSettings,
+    /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
+    pub bonding_radius: f64,
+    /// Choose the bonding radius so that bonds / particles is this.
+    pub bonds_per_particle: Option<f64>,
+    /// Bond radius / smaller particle radius.
+    pub bond_radius_factor: f64,
+    /// Density of the particles' material, kg/m3.
+    pub particle_density_kg_m3: Option<f64>,
+    /// Choose the overlap so that mass of the particles / volume of the shape is this, kg/m3.
+    pub solid_density_kg_m3: Option<f64>,
+}
+
+/// Times of the stages, s.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Front, settling, filling, and every packing of a density search.
+    pub packing: f64,
+    /// Finding the bonds.
+    pub bonds: f64,
+    /// Checking and judging.
+    pub report: f64,
+}
+
+/// All that is known of a new body, for `--json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Made {
+    /// How good it is.
+    pub quality: Report,
+    /// How it came about.
+    pub history: PackHistory,
+    /// The bonding radius that was used.
+    pub bonding_radius: f64,
+    /// The search for the overlap, if there was one.
+    pub density_search: Option<DensitySearch>,
+    /// What was repaired in the surface.
+    pub repairs: dem_io::surface::Repairs,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// Packs, bonds and judges.
+///
+/// # Errors
+/// As [`pack`], [`find_bonds`] and [`pack_to_density`].
+pub fn make_body(surface: &Surface, settings: &MakeSettings, progress: Progress) -> Result<(Body, Made)> {
+    let mut seconds = Seconds::default();
+    let started = Instant::now();
+    let boundary = Boundary::new(surface)?;
+    let mut packing_settings = settings.packing.clone();
+    let (packing, density_search) = match (settings.solid_density_kg_m3, settings.particle_density_kg_m3) {
+        (Some(solid), Some(particle)) => {
+            let (packing, search) = pack_to_density(surface, &boundary, &mut packing_settings, solid, particle, progress)?;
+            (packing, Some(search))
+        }
+        _ => (pack(surface, &boundary, &packing_settings, progress)?, None),
+    };
+    seconds.packing = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    progress("bonds", 0.0)?;
+    let spheres = &packing.spheres;
+    let crosses = |a: [f64; 3], b: [f64; 3]| crosses_surface(surface, &boundary, a, b);
+    let bonding_radius = match settings.bonds_per_particle {
+        Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
+        None => settings.bonding_radius,
+    };
+    let bonds = find_bonds(spheres, bonding_radius, &crosses)?;
+    seconds.bonds = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    progress("report", 0.0)?;
+    let quality = judge(surface, &boundary, settings, packing_settings.overlap, spheres, &bonds, &crosses)?;
+    seconds.report = started.elapsed().as_secs_f64();
+
+    let body = Body {
+        bond_radii: bond_radii(spheres, &bonds, settings.bond_radius_factor).into_iter().map(|r| r * surface.unit_m).collect(),
+        bond_lengths: bond_lengths(spheres, &bonds).into_iter().map(|l| l * surface.unit_m).collect(),
+        positions: spheres.positions.iter().map(|p| to_metres(surface, &Vector3::from(*p))).collect(),
+        radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
+        bonds,
+        about: About {
+            program: Some(format!("dem-pack {}", env!("CARGO_PKG_VERSION"))),
+            source: Some(surface.source.clone()),
+            source_hash: Some(surface.source_hash),
+            shape_volume_m3: Some(surface.volume_m3()),
+            particle_density_kg_m3: settings.particle_density_kg_m3,
+            overlap: Some(packing_settings.overlap),
+            bonding_radius: Some(bonding_radius),
+            seed: Some(packing_settings.seed),
+        },
+    };
+    let made = Made { quality, history: packing.history, bonding_radius, density_search, repairs: surface.repairs.clone(), seconds };
+    Ok((body, made))
+}
+
+fn judge(
+    surface: &Surface,
+    boundary: &Boundary,
+    settings: &MakeSettings,
+    overlap: f64,
+    spheres: &Spheres,
+    bonds: &[[u32; 2]],
+    crosses: crate::bonds::CrossesSurface,
+) -> Result<Report> {
+    let depth = depth_needed(spheres);
+    let distance = |p: &Vector3| boundary.nearest(p, depth).map_or(f64::INFINITY, |near| near.distance);
+    let wall_distance: Vec<f64> = spheres.positions.par_iter().map(|p| distance(&Vector3::from(*p))).collect();
+    let distance_inside = |p: [f64; 3]| {
+        let p = Vector3::from(p);
+        if contains(boundary, surface, &p) { distance(&p) } else { -distance(&p) }
+    };
+    assess(&quality::Packing {
+        spheres,
+        overlap,
+        bonds,
+        sizes: &settings.packing.sizes,
+        unit_m: surface.unit_m,
+        shape_volume: surface.volume_m3() / surface.unit_m.powi(3),
+        extent: surface.extent(),
+        particle_density_kg_m3: settings.particle_density_kg_m3,
+        wall_distance: &wall_distance,
+        distance_inside: &distance_inside,
+        crosses_surface: crosses,
+        gap_limit: DEFAULT_GAP_LIMIT,
+    })
+}
+
+/// Whether the straight line between two points inside the solid (local units) meets the surface.
+fn crosses_surface(surface: &Surface, boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
+    let (a, b) = (Vector3::from(a), Vector3::from(b));
+    let length = (b - a).norm();
+    let middle = 0.5 * (a + b);
+    if boundary.clears(&middle, 0.5 * length) {
+        return false;
+    }
+    crate::inside::first_hit(boundary, surface, &a, &((b - a) / length), 0.0).is_some_and(|distance| distance < length)
+}

@@ -1,0 +1,285 @@
+//! From a surface and sizes to spheres: front, settling, filling of what is left.
+
+use crate::boundary::Boundary;
+use crate::front::{Front, FrontSettings};
+use crate::grid::Ball;
+use crate::inside::contains;
+use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
+use crate::settle::settle;
+use crate::sizes::Sizes;
+use crate::{Spheres, Vector3};
+use dem_io::units::show_length;
+use dem_io::{Diagnostic, Result, Surface};
+use serde::Serialize;
+use std::ops::Range;
+use std::time::Instant;
+
+/// How a packing is to be made.
+#[derive(Debug, Clone)]
+pub struct PackSettings {
+    /// Diameters of the spheres.
+    pub sizes: Sizes,
+    /// Spheres touch at reduced radius = radius / (1 + overlap).
+    pub overlap: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// The front runs at radii smaller by this share; then they grow to full size. 0: the bare front.
+    pub settle: f64,
+    /// Where the front begins, in metres; the deepest point if not given. Length 3.
+    pub seed_point_m: Option<[f64; 3]>,
+}
+
+/// What happened while packing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PackHistory {
+    /// Where the first front began, m. Length 3.
+    pub seed_point_m: [f64; 3],
+    /// Diameter of the largest ball that fits into the shape, m.
+    pub largest_inscribed_diameter_m: f64,
+    /// Fronts started: one for each part that the ones before could not reach.
+    pub fronts: usize,
+    /// Steps of the settling minimiser.
+    pub settling_steps: usize,
+    /// Spheres taken out because they were jammed.
+    pub taken_out: usize,
+    /// Spheres put into voids at the end, of sizes that fit there.
+    pub void_fillers: usize,
+    /// Voids that would still take the smallest sphere.
+    pub voids_left: usize,
+    /// Radii drawn that found no place.
+    pub unplaced: usize,
+    /// Time for the front, s.
+    pub front_seconds: f64,
+    /// Time for settling, s.
+    pub settle_seconds: f64,
+    /// Time for filling voids, s.
+    pub fill_seconds: f64,
+}
+
+/// Spheres inside a surface, and how they came there.
+#[derive(Debug, Clone)]
+pub struct Packing {
+    /// The spheres, sorted along a space-filling curve.
+    pub spheres: Spheres,
+    /// What happened.
+    pub history: PackHistory,
+}
+
+/// Before settling a front begins in every cube of so many largest diameters: near enough that directions of growth average out,
+/// far enough that few fronts meet, since where they meet there is less.
+const SEED_SPACING: f64 = 8.0;
+
+/// Told the stage and the share of it that is done (0 to 1); an error stops the work.
+pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
+
+/// Fills the surface.
+///
+/// # Errors
+/// Sizes that do not fit the shape; a seed point outside; what `progress` returns.
+pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, progress: Progress) -> Result<Packing> {
+    let mut history = PackHistory::default();
+    let started = Instant::now();
+    let unit = surface.unit_m;
+    let inner = inner_points(boundary, surface);
+    let deepest = deepest_point(boundary, surface, &inner).ok_or_else(|| {
+        Diagnostic::input(surface.source.clone(), "no point inside the surface was found", "check that it is closed and not flat")
+    })?;
+    history.largest_inscribed_diameter_m = 2.0 * deepest.radius * unit;
+    check_sizes_fit(surface, &settings.sizes, history.largest_inscribed_diameter_m)?;
+    let seed = seed_point(surface, boundary, settings, &deepest)?;
+    history.seed_point_m = to_metres(surface, &seed);
+
+    let shrink = 1.0 - settings.settle;
+    let small = |u: f64| shrink * 0.5 * settings.sizes.quantile_by_number(u) / unit;
+    let range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
+    let front_settings = FrontSettings {
+        radius: &small,
+        radius_range: range.map(|r| shrink * r),
+        overlap: settings.overlap,
+        seed: settings.seed,
+        stock: 1,
+    };
+    let extent = Vector3::from(surface.extent());
+    let mut front = Front::new(front_settings, boundary, &extent);
+    let expected = 0.58 * surface.volume_m3()
+        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3)).max(f64::MIN_POSITIVE);
+    run_fronts(&mut front, surface, boundary, settings, &seed, &inner, &mut history, &|placed| progress("front", placed as f64 / expected))?;
+    history.unplaced = front.waiting.len();
+    let mut balls = std::mem::take(&mut front.balls);
+    drop(front);
+    sort_along_curve(&mut balls, range[1]);
+    history.front_seconds = started.elapsed().as_secs_f64();
+
+    if settings.settle > 0.0 {
+        let started = Instant::now();
+        for ball in &mut balls {
+            ball[3] /= shrink;
+        }
+        let settled = settle(boundary, &mut balls, settings.overlap, &|done| progress("settling", done))?;
+        history.settling_steps = settled.steps;
+        history.taken_out = settled.taken_out;
+        history.settle_seconds = started.elapsed().as_secs_f64();
+    }
+
+    let started = Instant::now();
+    progress("filling voids", 0.0)?;
+    let full = |u: f64| 0.5 * settings.sizes.quantile_by_number(u) / unit;
+    let settings_full =
+        FrontSettings { radius: &full, radius_range: range, overlap: settings.overlap, seed: settings.seed ^ 0x5eed, stock: 1 };
+    let mut front = Front::new(settings_full, boundary, &extent);
+    front.adopt(&balls);
+    fill_voids(&mut front, &mut history);
+    history.fill_seconds = started.elapsed().as_secs_f64();
+
+    let enlarge = 1.0 + settings.overlap;
+    let spheres = Spheres {
+        positions: front.balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
+        radii: front.balls.iter().map(|b| b[3] * enlarge).collect(),
+    };
+    Ok(Packing { spheres, history })
+}
+
+/// A local point in metres.
+pub fn to_metres(surface: &Surface, point: &Vector3) -> [f64; 3] {
+    [0, 1, 2].map(|k| surface.origin_m[k] + surface.unit_m * point[k])
+}
+
+fn check_sizes_fit(surface: &Surface, sizes: &Sizes, inscribed_m: f64) -> Result<()> {
+    let wanted = [(sizes.min_m(), "no sphere fits", "smallest"), (sizes.max_m(), "the largest spheres fit nowhere", "largest")];
+    for (diameter, problem, which) in wanted {
+        if diameter > inscribed_m * (1.0 + 1e-9) {
+            return Err(Diagnostic::input(
+                surface.source.clone(),
+                format!(
+                    "{problem}: the largest inscribed sphere has diameter {}, the {which} wanted has {}",
+                    show_length(inscribed_m),
+                    show_length(diameter)
+                ),
+                "ask for smaller diameters, or check --unit and --scale",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn seed_point(surface: &Surface, boundary: &Boundary, settings: &PackSettings, deepest: &Inscribed) -> Result<Vector3> {
+    let Some(given) = settings.seed_point_m else { return Ok(deepest.centre) };
+    let local = Vector3::from([0, 1, 2].map(|k| (given[k] - surface.origin_m[k]) / surface.unit_m));
+    if contains(boundary, surface, &local) {
+        return Ok(local);
+    }
+    let inside = to_metres(surface, &deepest.centre).map(show_length).join(", ");
+    Err(Diagnostic::input(
+        "--seed-point",
+        format!("({}) lies outside the shape", given.map(show_length).join(", ")),
+        format!("the deepest point inside is ({inside})"),
+    ))
+}
+
+/// Starts fronts at the seed and (before settling) at others spread over the shape, and again wherever room is left that no front has reached.
+fn run_fronts(
+    front: &mut Front,
+    surface: &Surface,
+    boundary: &Boundary,
+    settings: &PackSettings,
+    seed: &Vector3,
+    inner: &[Inscribed],
+    history: &mut PackHistory,
+    progress: &dyn Fn(usize) -> Result<()>,
+) -> Result<()> {
+    let largest = front.settings.radius_range[1] / (1.0 + front.settings.overlap);
+    let mut seeds = vec![*seed];
+    if settings.settle > 0.0 {
+        let others = spread_points(&surface.extent(), SEED_SPACING * 2.0 * largest, settings.seed);
+        seeds.extend(others.into_iter().filter(|p| (p - seed).norm() > 4.0 * largest && contains(boundary, surface, p)));
+    }
+    let mut queue = Vec::new();
+    for seed in &seeds {
+        let first = place_first_spheres(front, seed);
+        history.fronts += usize::from(!first.is_empty());
+        queue.extend(first);
+    }
+    front.advance(&queue, progress)?;
+    // What no front has reached: other shells, and rooms behind a neck narrower than a sphere.
+    let smallest = front.settings.radius_range[0];
+    for place in inner {
+        if place.radius < 0.5 * smallest || front.gap(&place.centre, smallest) < 0.9 * smallest {
+            continue;
+        }
+        let reach = 4.0 * front.settings.radius_range[1];
+        let clearance = |p: &Vector3| {
+            let wall = boundary.nearest(p, f64::MAX).map_or(0.0, |near| near.distance);
+            if wall < 0.25 * smallest || !contains(boundary, surface, p) { -1.0 } else { wall.min(front.reach_to_spheres(p, reach)) }
+        };
+        let room = climb(&place.centre, 0.5 * smallest, &clearance);
+        if room.radius >= smallest {
+            let first: Vec<u32> = place_first_spheres(front, &room.centre).collect();
+            history.fronts += usize::from(!first.is_empty());
+            front.advance(&first, progress)?;
+        }
+    }
+    Ok(())
+}
+
+/// Places as many of the first three spheres around `seed` as find room. Returns their indices.
+fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
+    let mut radii = [front.next_radius(), front.next_radius(), front.next_radius()];
+    radii.sort_by(f64::total_cmp);
+    let reduced = radii.map(|r| r / (1.0 + front.settings.overlap));
+    let placed = first_spheres(seed, radii, reduced, &|centre, radius| front.fits(centre, radius));
+    front.waiting.extend_from_slice(&radii[placed.len()..]);
+    front.begin(seed);
+    let first = front.balls.len() as u32;
+    for (centre, radius) in &placed {
+        front.place(centre, *radius);
+    }
+    first..front.balls.len() as u32
+}
+
+/// Puts spheres into the voids that take at least the smallest one, each of a size drawn among those that fit there,
+/// as long as their number does not distort the distribution of sizes by more than half its statistical noise.
+fn fill_voids(front: &mut Front, history: &mut PackHistory) {
+    let smallest = front.settings.radius_range[0];
+    let most = (0.5 * 1.36 * (front.balls.len() as f64).sqrt()).ceil() as usize;
+    let mut around: Vec<u32> = (0..front.balls.len() as u32).collect();
+    loop {
+        let voids: Vec<Vector3> = front.voids(&around);
+        let first = front.balls.len() as u32;
+        for place in voids {
+            if !front.fits(&place, smallest) {
+                continue;
+            }
+            if history.void_fillers == most && front.settings.radius_range[1] > smallest {
+                history.voids_left += 1;
+                continue;
+            }
+            let (centre, radius) = front.fill(&place);
+            front.place(&centre, radius);
+            history.void_fillers += 1;
+        }
+        around = (first..front.balls.len() as u32).collect();
+        if around.is_empty() {
+            break;
+        }
+    }
+}
+
+/// Sorts spheres by the Morton code of cells of edge 4 `radius`, so that neighbours in space are neighbours in memory.
+fn sort_along_curve(balls: &mut [Ball], radius: f64) {
+    let code = |ball: &Ball| {
+        let cell = [0, 1, 2].map(|k| (ball[k] / (4.0 * radius)).clamp(0.0, 2_097_151.0) as u64);
+        spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2
+    };
+    balls.sort_by_cached_key(code);
+}
+
+/// The 21 lowest bits of `x`, two zeros between each and the next.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0x1f_ffff;
+    for (shift, mask) in
+        [(32, 0x001f_0000_0000_ffff), (16, 0x001f_0000_ff00_00ff), (8, 0x100f_00f0_0f00_f00f), (4, 0x10c3_0c30_c30c_30c3), (2, 0x1249_2492_4924_9249)]
+    {
+        x = (x | x << shift) & mask;
+    }
+    x
+}

@@ -1,0 +1,142 @@
+//! Where a front begins: the deepest point of the solid, and the first three spheres (Platzer 2022, section 4.1.1).
+
+use crate::Vector3;
+use crate::boundary::Boundary;
+use crate::inside::{contains, first_hit};
+use dem_io::Surface;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+/// A ball inside the solid, local units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inscribed {
+    /// Its centre.
+    pub centre: Vector3,
+    /// Its distance to the surface.
+    pub radius: f64,
+}
+
+/// At most this many facets are probed for the thickness of the solid behind them.
+const MOST_PROBES: usize = 20_000;
+/// Grid points along the longest edge of the bounding box.
+const GRID_POINTS: f64 = 24.0;
+
+/// Points spread over the inside of the solid with their distances to the surface, deepest first: middles of the chords that begin
+/// at facets and run inwards (they find every part, however thin), and the points of a coarse grid.
+pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
+    let stride = surface.triangles.len().div_ceil(MOST_PROBES);
+    let chords: Vec<Vector3> = (0..surface.triangles.len())
+        .into_par_iter()
+        .filter(|t| t % stride == 0)
+        .filter_map(|t| {
+            let [a, b, c] = surface.corners(t).map(Vector3::from);
+            let inward = -(b - a).cross(&(c - a)).try_normalize(0.0)?;
+            let start = (a + b + c) / 3.0;
+            let length = first_hit(boundary, surface, &start, &inward, 1e-7)?;
+            Some(start + inward * (0.5 * length))
+        })
+        .collect();
+    let extent = surface.extent();
+    let spacing = extent.iter().copied().fold(0.0, f64::max) / GRID_POINTS;
+    let counts = extent.map(|e| (e / spacing).ceil().max(1.0) as usize);
+    let grid = (0..counts.iter().product::<usize>()).map(|at| {
+        let cell = [at % counts[0], at / counts[0] % counts[1], at / (counts[0] * counts[1])];
+        Vector3::from([0, 1, 2].map(|k| (cell[k] as f64 + 0.5) * extent[k] / counts[k] as f64))
+    });
+    let points: Vec<Vector3> = chords.into_iter().chain(grid).collect();
+    let mut inner: Vec<Inscribed> = points
+        .into_par_iter()
+        .filter(|p| contains(boundary, surface, p))
+        .filter_map(|centre| boundary.nearest(&centre, f64::MAX).map(|near| Inscribed { centre, radius: near.distance }))
+        .collect();
+    inner.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    inner
+}
+
+/// One random point in each cell of a lattice of about `spacing` over the box from the origin to `extent`, local units,
+/// none nearer to another than a third of a cell.
+pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3> {
+    let counts = extent.map(|e| (e / spacing).round().max(1.0) as usize);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(u64::MAX);
+    (0..counts.iter().product())
+        .map(|at: usize| {
+            let cell = [at % counts[0], at / counts[0] % counts[1], at / (counts[0] * counts[1])];
+            Vector3::from([0, 1, 2].map(|k| (cell[k] as f64 + 1.0 / 6.0 + 2.0 / 3.0 * random.random::<f64>()) * extent[k] / counts[k] as f64))
+        })
+        .collect()
+}
+
+/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps that halve.
+pub fn climb(start: &Vector3, first_step: f64, clearance: &dyn Fn(&Vector3) -> f64) -> Inscribed {
+    let mut best = Inscribed { centre: *start, radius: clearance(start) };
+    let mut step = first_step;
+    let diagonal = 1.0 / 3.0_f64.sqrt();
+    while step > 1e-9 * first_step.max(best.radius) {
+        let before = best;
+        for at in 0..27 {
+            if at == 13 {
+                continue;
+            }
+            let direction = Vector3::new((at % 3) as f64 - 1.0, (at / 3 % 3) as f64 - 1.0, (at / 9) as f64 - 1.0) * diagonal;
+            let centre = before.centre + direction * step;
+            let radius = clearance(&centre);
+            if radius > best.radius {
+                best = Inscribed { centre, radius };
+            }
+        }
+        if best == before {
+            step *= 0.5;
+        }
+    }
+    best
+}
+
+/// The largest ball that fits into the solid, as well as climbing from the deepest of `inner_points` finds it;
+/// of several equal ones the nearest to the middle of the bounding box.
+pub fn deepest_point(boundary: &Boundary, surface: &Surface, inner: &[Inscribed]) -> Option<Inscribed> {
+    let clearance = |p: &Vector3| {
+        if contains(boundary, surface, p) { boundary.nearest(p, f64::MAX).map_or(-1.0, |near| near.distance) } else { -1.0 }
+    };
+    let deep = inner.iter().take_while(|ball| ball.radius >= 0.9 * inner[0].radius);
+    let middle = 0.5 * Vector3::from(surface.extent());
+    let mut deep: Vec<&Inscribed> = deep.collect();
+    deep.sort_by(|a, b| (a.centre - middle).norm().total_cmp(&(b.centre - middle).norm()));
+    let found: Vec<Inscribed> = deep.iter().take(8).chain(inner.first().iter()).map(|ball| climb(&ball.centre, 0.5 * ball.radius, &clearance)).collect();
+    let deepest = found.iter().map(|ball| ball.radius).fold(0.0, f64::max);
+    found.into_iter().find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
+}
+
+/// Centres for the first spheres of a front around `centre`: as many of the three (radii and reduced radii, local units) as fit, mutually touching.
+pub fn first_spheres(centre: &Vector3, radii: [f64; 3], reduced: [f64; 3], fits: &dyn Fn(&Vector3, f64) -> bool) -> Vec<(Vector3, f64)> {
+    let [a, b, c] = reduced;
+    // A triangle with sides a + b, a + c, b + c.
+    let (ab, ac, bc) = (a + b, a + c, b + c);
+    let x = (ab * ab + ac * ac - bc * bc) / (2.0 * ab);
+    let corners = [Vector3::zeros(), Vector3::new(ab, 0.0, 0.0), Vector3::new(x, (ac * ac - x * x).max(0.0).sqrt(), 0.0)];
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let mut best: Vec<(Vector3, f64)> = Vec::new();
+    // Around the centre first, then with the first sphere on it, each in a fixed set of orientations.
+    for origin in [middle, Vector3::zeros()] {
+        for turn in 0..64 {
+            let rotation = nalgebra::UnitQuaternion::from_euler_angles(0.41 * f64::from(turn), 1.3 * f64::from(turn / 4), 0.77 * f64::from(turn / 2));
+            let mut found = Vec::new();
+            for k in 0..3 {
+                let place = centre + rotation * (corners[k] - origin);
+                if fits(&place, radii[k]) {
+                    found.push((place, radii[k]));
+                } else {
+                    break;
+                }
+            }
+            if found.len() > best.len() {
+                best = found;
+            }
+            if best.len() == 3 {
+                return best;
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,396 @@
+//! Settling: the spheres of a front that ran at smaller radii grow to their full size while an energy of their overlaps, with each other
+//! and with the wall, is minimised to nothing.
+//!
+//! E = 1/2 sum over pairs (g_a + g_b - d)^2 + 1/2 sum over spheres (r - wall distance)^2, each where positive; g is the reduced radius.
+//! The minimiser is FIRE (Bitzek et al. 2006, with the mid-step correction of Guenole et al. 2020): damped dynamics that restarts when it runs uphill.
+//! Below the jamming density it ends without overlap; radii are held larger than wanted by `MARGIN` meanwhile, so that at
+//! their true size the spheres do not overlap at all.
+
+use crate::Vector3;
+use crate::boundary::Boundary;
+use crate::grid::Ball;
+use dem_io::{Diagnostic, Result};
+use rayon::prelude::*;
+
+/// Relative surplus of the radii while settling.
+const MARGIN: f64 = 1e-5;
+
+/// Neighbours are listed this far beyond contact, in mean radii.
+const SKIN: f64 = 0.15;
+/// Largest time step of the minimiser (unit masses and springs); stable for spheres with about ten contacts.
+const LARGEST_STEP: f64 = 0.6;
+/// Spheres handled by one task; fixed, so that sums do not depend on the number of threads.
+const CHUNK: usize = 1024;
+
+/// Steps before spheres are taken out, at first and then between one time and the next.
+const PATIENCE: [usize; 2] = [3000, 400];
+/// Share of the spheres taken out at a time.
+const TAKEN_OUT: f64 = 0.001;
+/// After so many steps settling is given up.
+const MOST_STEPS: usize = 60_000;
+
+/// How a settling run ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settled {
+    /// Steps of the minimiser.
+    pub steps: usize,
+    /// Spheres taken out because they were jammed.
+    pub taken_out: usize,
+}
+
+/// Spheres with what the minimiser knows of them.
+struct State<'a> {
+    boundary: &'a Boundary,
+    balls: Vec<Ball>,
+    /// Radius over reduced radius: 1 + overlap.
+    enlarge: f64,
+    velocity: Vec<[f64; 3]>,
+    force: Vec<[f64; 3]>,
+    neighbours: Vec<u32>,
+    first: Vec<u32>,
+    wall_triangles: Vec<u32>,
+    wall_first: Vec<u32>,
+    listed_at: Vec<[f64; 3]>,
+    skin: f64,
+}
+
+/// Sums over the spheres that FIRE steers by.
+#[derive(Default, Clone, Copy)]
+struct Sums {
+
+    power: f64,
+    force_squared: f64,
+    velocity_squared: f64,
+    worst: f64,
+}
+
+/// FIRE's time step, damping and memory.
+struct Fire {
+    dt: f64,
+    mixing: f64,
+    downhill_steps: usize,
+}
+
+impl Fire {
+    const START: Self = Self { dt: 0.1, mixing: 0.1, downhill_steps: 0 };
+}
+
+/// Moves `balls` (centre, reduced radius at full size) until none overlaps another or the wall. Where they are jammed, a few are taken out:
+/// of the pairs that overlap most the one with the higher index, which favours no size.
+///
+/// `progress` is told the share of the work done.
+///
+/// # Errors
+/// What `progress` returns; no end after very many steps.
+pub fn settle(boundary: &Boundary, balls: &mut Vec<Ball>, overlap: f64, progress: &dyn Fn(f64) -> Result<()>) -> Result<Settled> {
+    let mut settled = Settled { steps: 0, taken_out: 0 };
+    if balls.is_empty() {
+        return Ok(settled);
+    }
+    for ball in balls.iter_mut() {
+        ball[3] *= 1.0 + MARGIN;
+    }
+    let mut state = State::new(boundary, std::mem::take(balls), 1.0 + overlap);
+    let mut fire = Fire::START;
+    let mut patience = PATIENCE[0];
+    loop {
+        let sums = state.forces();
+        if sums.worst < MARGIN {
+            break;
+        }
+        if settled.steps >= MOST_STEPS {
+            return Err(Diagnostic::failed(
+                "--settle",
+                format!("the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps", sums.worst),
+                "use a smaller share, or --settle 0 for the bare front",
+            ));
+        }
+        if settled.steps >= patience {
+            patience += PATIENCE[1];
+            settled.taken_out += state.take_out_jammed();
+            fire = Fire::START;
+        } else {
+            state.step(&mut fire, &sums);
+            settled.steps += 1;
+            if state.moved_too_far() {
+                state.list_neighbours();
+            }
+        }
+        if settled.steps % 16 == 0 {
+            progress((sums.worst.ln() / MARGIN.ln()).clamp(0.0, 1.0))?;
+        }
+    }
+    *balls = state.balls;
+    for ball in balls.iter_mut() {
+        ball[3] /= 1.0 + MARGIN;
+    }
+    Ok(settled)
+}
+
+impl<'a> State<'a> {
+    fn new(boundary: &'a Boundary, balls: Vec<Ball>, enlarge: f64) -> Self {
+        let n = balls.len();
+        let mean = balls.iter().map(|b| b[3]).sum::<f64>() / n as f64;
+        let mut state = Self {
+            boundary,
+            balls,
+            enlarge,
+            velocity: vec![[0.0; 3]; n],
+            force: vec![[0.0; 3]; n],
+            neighbours: Vec::new(),
+            first: Vec::new(),
+            wall_triangles: Vec::new(),
+            wall_first: Vec::new(),
+            listed_at: Vec::new(),
+            skin: SKIN * mean,
+        };
+        state.list_neighbours();
+        state
+    }
+
+    /// One step of FIRE along the present forces.
+    fn step(&mut self, fire: &mut Fire, sums: &Sums) {
+        if sums.power > 0.0 {
+            fire.downhill_steps += 1;
+            if fire.downhill_steps > 5 {
+                fire.dt = f64::min(fire.dt * 1.1, LARGEST_STEP);
+                fire.mixing *= 0.99;
+            }
+            let turn = fire.mixing * (sums.velocity_squared / sums.force_squared.max(f64::MIN_POSITIVE)).sqrt();
+            self.accelerate_and_move(fire.dt, 1.0 - fire.mixing, turn, 0.0);
+        } else {
+            let back = -0.5 * fire.dt;
+            *fire = Fire { dt: f64::max(fire.dt * 0.5, 0.02), ..Fire::START };
+            self.accelerate_and_move(fire.dt, 0.0, 0.0, back);
+        }
+    }
+
+    /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns how many.
+    fn take_out_jammed(&mut self) -> usize {
+        let mut worst: Vec<(f64, usize)> = (0..self.balls.len())
+            .into_par_iter()
+            .map(|i| {
+                let ball = &self.balls[i];
+                let earlier = self.neighbours[self.first[i] as usize..self.first[i + 1] as usize].iter().filter(|j| (**j as usize) < i);
+                let overlap = |j: &u32| {
+                    let other = &self.balls[*j as usize];
+                    (ball[3] + other[3] - squared_distance(ball, other).sqrt()) / ball[3].min(other[3])
+                };
+                (earlier.map(overlap).fold(0.0, f64::max), i)
+            })
+            .filter(|(overlap, _)| *overlap > MARGIN)
+            .collect();
+        worst.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        worst.truncate((self.balls.len() as f64 * TAKEN_OUT).ceil() as usize);
+        let mut out = vec![false; self.balls.len()];
+        for (_, i) in &worst {
+            out[*i] = true;
+        }
+        let mut index = 0;
+        self.balls.retain(|_| {
+            index += 1;
+            !out[index - 1]
+        });
+        let boundary = self.boundary;
+        *self = Self::new(boundary, std::mem::take(&mut self.balls), self.enlarge);
+        worst.len()
+    }
+    /// Lists, for each sphere, the others that could come to touch it before the lists are made again.
+    fn list_neighbours(&mut self) {
+        let largest = self.balls.iter().map(|b| b[3]).fold(0.0, f64::max);
+        let (low, high) = bounds(&self.balls);
+        let cells = Cells::new(&self.balls, low, high, 2.0 * largest + self.skin);
+        let balls = &self.balls;
+        let skin = self.skin;
+        (self.neighbours, self.first) = lists_of(balls, |i, ball, list| {
+            cells.near(ball, |j| {
+                let other = &balls[j as usize];
+                let reach = ball[3] + other[3] + skin;
+                if j as usize != i && squared_distance(ball, other) < reach * reach {
+                    list.push(j);
+                }
+            });
+        });
+        let (boundary, enlarge) = (self.boundary, self.enlarge);
+        (self.wall_triangles, self.wall_first) = lists_of(balls, |_, ball, list| {
+            let centre = Vector3::new(ball[0], ball[1], ball[2]);
+            let reach = ball[3] * enlarge + 0.5 * skin;
+            list.extend(boundary.triangles_near(&centre, reach).filter(|t| boundary.nearest_on(*t, &centre).distance < reach));
+        });
+        self.listed_at = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
+    }
+
+    fn moved_too_far(&self) -> bool {
+        let limit = (0.5 * self.skin).powi(2);
+        self.balls.par_chunks(CHUNK).zip(self.listed_at.par_chunks(CHUNK)).any(|(balls, old)| {
+            balls.iter().zip(old).any(|(b, o)| (b[0] - o[0]).powi(2) + (b[1] - o[1]).powi(2) + (b[2] - o[2]).powi(2) > limit)
+        })
+    }
+
+    /// Forces at the present positions.
+    fn forces(&mut self) -> Sums {
+        let Self { balls, force, velocity, neighbours, first, wall_triangles, wall_first, boundary, enlarge, .. } = self;
+        let (balls, neighbours, first, velocity) = (&*balls, &*neighbours, &*first, &*velocity);
+        let (wall_triangles, wall_first) = (&*wall_triangles, &*wall_first);
+        let parts: Vec<Sums> = force
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .map(|(chunk, part)| {
+                let mut sums = Sums::default();
+                let mut touched = Vec::new();
+                for (k, f) in part.iter_mut().enumerate() {
+                    let i = chunk * CHUNK + k;
+                    let ball = balls[i];
+                    let mut total = [0.0; 3];
+                    for j in &neighbours[first[i] as usize..first[i + 1] as usize] {
+                        let other = &balls[*j as usize];
+                        let d = [ball[0] - other[0], ball[1] - other[1], ball[2] - other[2]];
+                        let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                        let touching = ball[3] + other[3];
+                        if squared < touching * touching {
+                            let distance = squared.sqrt();
+                            let overlap = touching - distance;
+                            let push = overlap / distance;
+                            total[0] += push * d[0];
+                            total[1] += push * d[1];
+                            total[2] += push * d[2];
+                            sums.worst = sums.worst.max(overlap / ball[3]);
+                        }
+                    }
+                    let walls = &wall_triangles[wall_first[i] as usize..wall_first[i + 1] as usize];
+                    if !walls.is_empty() {
+                        let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * *enlarge);
+                        boundary.walls(walls.iter().copied(), &centre, radius, &mut touched);
+                        for wall in &touched {
+                            let overlap = radius - wall.distance;
+                            let push = overlap / wall.distance;
+                            for axis in 0..3 {
+                                total[axis] += push * (ball[axis] - wall.point[axis]);
+                            }
+                            sums.worst = sums.worst.max(overlap / radius);
+                        }
+                    }
+                    let v = velocity[i];
+                    sums.power += total[0] * v[0] + total[1] * v[1] + total[2] * v[2];
+                    sums.force_squared += total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
+                    sums.velocity_squared += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+                    *f = total;
+                }
+                sums
+            })
+            .collect();
+        parts.iter().fold(Sums::default(), |a, b| Sums {
+            power: a.power + b.power,
+            force_squared: a.force_squared + b.force_squared,
+            velocity_squared: a.velocity_squared + b.velocity_squared,
+            worst: a.worst.max(b.worst),
+        })
+    }
+
+    /// x += back v; v = keep v + (turn + dt) F; x += dt v.
+    fn accelerate_and_move(&mut self, dt: f64, keep: f64, turn: f64, back: f64) {
+        let balls = self.balls.par_chunks_mut(CHUNK);
+        let velocity = self.velocity.par_chunks_mut(CHUNK);
+        balls.zip(velocity).zip(self.force.par_chunks(CHUNK)).for_each(|((balls, velocity), force)| {
+            for ((ball, v), f) in balls.iter_mut().zip(velocity).zip(force) {
+                for axis in 0..3 {
+                    ball[axis] += back * v[axis];
+                    v[axis] = keep * v[axis] + (turn + dt) * f[axis];
+                    ball[axis] += dt * v[axis];
+                }
+            }
+        });
+    }
+}
+
+/// For each sphere a list that `fill` makes, one after the other, and where each begins. Lengths: all lists; spheres + 1.
+fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -> (Vec<u32>, Vec<u32>) {
+    let parts: Vec<(Vec<u32>, Vec<u32>)> = balls
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, part)| {
+            let (mut list, mut ends) = (Vec::with_capacity(part.len() * 10), Vec::with_capacity(part.len()));
+            for (k, ball) in part.iter().enumerate() {
+                fill(chunk * CHUNK + k, ball, &mut list);
+                ends.push(list.len() as u32);
+            }
+            (list, ends)
+        })
+        .collect();
+    let mut all = Vec::with_capacity(parts.iter().map(|(list, _)| list.len()).sum());
+    let mut first = Vec::with_capacity(balls.len() + 1);
+    first.push(0);
+    for (list, ends) in parts {
+        let before = all.len() as u32;
+        all.extend(list);
+        first.extend(ends.into_iter().map(|e| e + before));
+    }
+    (all, first)
+}
+
+fn squared_distance(a: &Ball, b: &Ball) -> f64 {
+    (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)
+}
+
+fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for ball in balls {
+        for k in 0..3 {
+            low[k] = low[k].min(ball[k]);
+            high[k] = high[k].max(ball[k]);
+        }
+    }
+    (low, high)
+}
+
+/// Sphere numbers sorted by cell (counting sort), for one search.
+struct Cells {
+    low: [f64; 3],
+    cell: f64,
+    counts: [usize; 3],
+    first: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl Cells {
+    fn new(balls: &[Ball], low: [f64; 3], high: [f64; 3], cell: f64) -> Self {
+        let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
+        let mut cells = Self { low, cell, counts, first: vec![0; counts.iter().product::<usize>() + 1], members: vec![0; balls.len()] };
+        let at: Vec<u32> = balls.iter().map(|b| cells.index(cells.cell_of(b)) as u32).collect();
+        for a in &at {
+            cells.first[*a as usize + 1] += 1;
+        }
+        for k in 1..cells.first.len() {
+            cells.first[k] += cells.first[k - 1];
+        }
+        let mut next = cells.first.clone();
+        for (i, a) in at.iter().enumerate() {
+            cells.members[next[*a as usize] as usize] = i as u32;
+            next[*a as usize] += 1;
+        }
+        cells
+    }
+
+    fn cell_of(&self, ball: &Ball) -> [usize; 3] {
+        [0, 1, 2].map(|k| (((ball[k] - self.low[k]) / self.cell) as usize).min(self.counts[k] - 1))
+    }
+
+    fn index(&self, cell: [usize; 3]) -> usize {
+        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
+    }
+
+    fn near(&self, ball: &Ball, mut visit: impl FnMut(u32)) {
+        let cell = self.cell_of(ball);
+        let low = cell.map(|c| c.saturating_sub(1));
+        let high = [0, 1, 2].map(|k| (cell[k] + 1).min(self.counts[k] - 1));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = self.index([0, y, z]);
+                for j in &self.members[self.first[row + low[0]] as usize..self.first[row + high[0] + 1] as usize] {
+                    visit(*j);
+                }
+            }
+        }
+    }
+}

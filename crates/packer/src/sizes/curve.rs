@@ -1,0 +1,295 @@
+//! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick to invert.
+
+/// Accepted error of one cell, as a share of the whole.
+const TOLERANCE: f64 = 1e-9;
+/// Cells of the table that says where to begin the search for a quantile.
+const GUIDE_CELLS: usize = 4096;
+/// Nodes and weights of the five-point Gauss-Legendre rule on [-1, 1].
+const GAUSS: [(f64, f64); 5] = [
+    (0.0, 0.568_888_888_888_888_9),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
+/// In `[start, start + width]` the distribution rises from `below` by `share`, along the cubic that leaves with
+/// slope `slope_start` and arrives with `slope_end` (both 1 for a straight line; at most 3, so that it is monotone).
+#[derive(Debug, Clone)]
+struct Cell {
+    start: f64,
+    width: f64,
+    below: f64,
+    share: f64,
+    slope_start: f64,
+    slope_end: f64,
+}
+
+impl Cell {
+    fn rise(&self, t: f64) -> f64 {
+        let (a, b) = (self.slope_start, self.slope_end);
+        t * (a + t * (3.0 - 2.0 * a - b + t * (a + b - 2.0)))
+    }
+
+    fn rise_slope(&self, t: f64) -> f64 {
+        let (a, b) = (self.slope_start, self.slope_end);
+        a + t * (2.0 * (3.0 - 2.0 * a - b) + t * 3.0 * (a + b - 2.0))
+    }
+
+    /// Where in the cell (0 to 1) the rise is `wanted` (0 to 1): Newton, kept inside a bracket.
+    fn solve(&self, wanted: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut t = wanted;
+        for _ in 0..60 {
+            let error = self.rise(t) - wanted;
+            if error > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let mut next = t - error / self.rise_slope(t);
+            if !(next >= low && next <= high) {
+                next = 0.5 * (low + high);
+            }
+            // The next step would be about the square of this one.
+            if (next - t).abs() <= 1e-7 {
+                return next;
+            }
+            t = next;
+        }
+        t
+    }
+}
+
+/// A cumulative distribution of diameters. Lengths in the unit of the density it was made from.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    cells: Vec<Cell>,
+    guide: Vec<u32>,
+    /// Integral of the density it was made from.
+    pub(super) total: f64,
+    /// Mean of the diameter under this distribution.
+    pub(super) mean: f64,
+}
+
+impl Curve {
+    /// Everything at one diameter.
+    pub(super) fn single(diameter: f64) -> Self {
+        let cell = Cell {
+            start: diameter,
+            width: 0.0,
+            below: 0.0,
+            share: 1.0,
+            slope_start: 1.0,
+            slope_end: 1.0,
+        };
+        Self {
+            cells: vec![cell],
+            guide: vec![0; GUIDE_CELLS],
+            total: 1.0,
+            mean: diameter,
+        }
+    }
+
+    /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i, diameter)`: smooth and
+    /// without a peak much narrower than the piece. Need not be normalised. None if the whole is zero or not finite.
+    pub(super) fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
+        let pieces = || {
+            knots
+                .windows(2)
+                .enumerate()
+                .filter(|(_, ends)| ends[1] > ends[0])
+        };
+        let rough: f64 = pieces()
+            .map(|(i, ends)| gauss(ends[0], ends[1], &|d| density(i, d)))
+            .sum();
+        if !(rough.is_finite() && rough > 0.0) {
+            return None;
+        }
+        let mut cells = Vec::new();
+        for (i, ends) in pieces() {
+            refine(
+                ends[0],
+                ends[1],
+                &|d| density(i, d),
+                TOLERANCE * rough,
+                50,
+                &mut cells,
+            );
+        }
+        let total: f64 = cells.iter().map(|c: &Cell| c.share).sum();
+        let mut moment = 0.0;
+        let mut below = 0.0;
+        for cell in &mut cells {
+            cell.share /= total;
+            cell.below = below;
+            below += cell.share;
+            moment += cell.share * (cell.start + cell.width * cell.mean_position());
+        }
+        // Cells without share (a flat part of a sieve curve) are never drawn from and say nothing of the rise.
+        let guide = (0..GUIDE_CELLS)
+            .map(|g| {
+                let u = g as f64 / GUIDE_CELLS as f64;
+                cells
+                    .partition_point(|c| c.below + c.share <= u)
+                    .min(cells.len() - 1) as u32
+            })
+            .collect();
+        Some(Self {
+            cells,
+            guide,
+            total,
+            mean: moment,
+        })
+    }
+
+    /// Share of the distribution at or below `diameter`.
+    pub(super) fn cdf(&self, diameter: f64) -> f64 {
+        let last = &self.cells[self.cells.len() - 1];
+        if diameter >= last.start + last.width {
+            return 1.0;
+        }
+        let after = self.cells.partition_point(|c| c.start <= diameter);
+        let Some(cell) = after.checked_sub(1).map(|i| &self.cells[i]) else {
+            return 0.0;
+        };
+        let t = ((diameter - cell.start) / cell.width).clamp(0.0, 1.0);
+        (cell.below + cell.share * cell.rise(t)).min(1.0)
+    }
+
+    /// The diameter that the share `u` of the distribution lies below. `u` outside [0, 1] counts as the nearer end.
+    pub(super) fn quantile(&self, u: f64) -> f64 {
+        let u = u.clamp(0.0, 1.0);
+        let mut index =
+            self.guide[((u * GUIDE_CELLS as f64) as usize).min(GUIDE_CELLS - 1)] as usize;
+        while index + 1 < self.cells.len() && u >= self.cells[index].below + self.cells[index].share
+        {
+            index += 1;
+        }
+        let cell = &self.cells[index];
+        let wanted = if cell.share > 0.0 {
+            ((u - cell.below) / cell.share).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        cell.start + cell.width * cell.solve(wanted)
+    }
+}
+
+impl Cell {
+    /// Mean position (0 to 1) of what the cell holds: one less the integral of the rise.
+    fn mean_position(&self) -> f64 {
+        0.5 - (self.slope_start - self.slope_end) / 12.0
+    }
+}
+
+/// Integral of `density` from `from` to `to`, five-point Gauss-Legendre.
+fn gauss(from: f64, to: f64, density: &impl Fn(f64) -> f64) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    half * GAUSS
+        .iter()
+        .map(|(x, w)| w * density(middle + half * x))
+        .sum::<f64>()
+}
+
+/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the cells with
+/// their integrals as `share`.
+fn refine(
+    from: f64,
+    to: f64,
+    density: &impl Fn(f64) -> f64,
+    tolerance: f64,
+    depth: u32,
+    cells: &mut Vec<Cell>,
+) {
+    let middle = 0.5 * (from + to);
+    let whole = gauss(from, to, density);
+    let left = gauss(from, middle, density);
+    let share = left + gauss(middle, to, density);
+    let width = to - from;
+    let (first, last) = (density(from) * width, density(to) * width);
+    let cubic_left = 0.5 * share + 0.125 * (first - last);
+    let error = (left - cubic_left).abs() + (share - whole).abs();
+    let steep = first.max(last) > 3.0 * share && share > tolerance;
+    if depth > 0 && (error > tolerance || steep) {
+        refine(from, middle, density, tolerance, depth - 1, cells);
+        refine(middle, to, density, tolerance, depth - 1, cells);
+    } else {
+        let slope = |end: f64| {
+            if share > 0.0 {
+                (end / share).min(3.0)
+            } else {
+                1.0
+            }
+        };
+        cells.push(Cell {
+            start: from,
+            width,
+            below: 0.0,
+            share,
+            slope_start: slope(first),
+            slope_end: slope(last),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_exact() {
+        // Density 6 x (1 - x): the distribution is 3 x^2 - 2 x^3, a cubic, with mean 1/2.
+        let curve = Curve::from_density(&[0.0, 1.0], |_, x| 6.0 * x * (1.0 - x)).unwrap();
+        assert!((curve.total - 1.0).abs() < 1e-14);
+        assert!((curve.mean - 0.5).abs() < 1e-14);
+        for i in 0..=100 {
+            let x = f64::from(i) / 100.0;
+            assert!(
+                (curve.cdf(x) - x * x * (3.0 - 2.0 * x)).abs() < 1e-14,
+                "{x}"
+            );
+            assert!((curve.cdf(curve.quantile(x)) - x).abs() < 1e-13, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_steep_power_law_stays_within_tolerance() {
+        // Density x^-4 on [1, 100]: (1 - x^-3)/(1 - 1e-6), mean 3/2 (1 - 1e-4)/(1 - 1e-6).
+        let curve = Curve::from_density(&[1.0, 100.0], |_, x: f64| x.powi(-4)).unwrap();
+        let mut x = 1.0_f64;
+        while x < 100.0 {
+            let exact = (1.0 - x.powi(-3)) / (1.0 - 1e-6);
+            assert!(
+                (curve.cdf(x) - exact).abs() < 1e-8,
+                "{x}: {} {exact}",
+                curve.cdf(x)
+            );
+            x *= 1.003;
+        }
+        assert!(
+            (curve.mean - 1.5 * (1.0 - 1e-4) / (1.0 - 1e-6)).abs() < 1e-7,
+            "{}",
+            curve.mean
+        );
+    }
+
+    #[test]
+    fn nothing_is_drawn_from_a_gap() {
+        let curve =
+            Curve::from_density(&[1.0, 2.0, 3.0, 4.0], |i, _| if i == 1 { 0.0 } else { 1.0 })
+                .unwrap();
+        for i in 0..1000 {
+            let d = curve.quantile(f64::from(i) / 1000.0);
+            assert!(!(d > 2.0 + 1e-9 && d < 3.0 - 1e-9), "{d}");
+        }
+        assert!((curve.cdf(2.5) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn no_mass_is_no_curve() {
+        assert!(Curve::from_density(&[1.0, 2.0], |_, _| 0.0).is_none());
+        assert!(Curve::from_density(&[1.0, 2.0], |_, _| f64::NAN).is_none());
+    }
+}

@@ -1,0 +1,116 @@
+//! The report against closed forms: lattices, lenses, lines, plates and necks.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod densities;
+mod structure;
+mod whole;
+
+use dem_pack::Spheres;
+use dem_pack::bonds::find_bonds;
+use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, Report, assess};
+use dem_pack::sizes::{By, Sizes};
+use std::f64::consts::PI;
+
+/// Uniform numbers in [0, 1), splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    /// A direction, all equally likely.
+    fn direction(&mut self) -> [f64; 3] {
+        let (z, phi) = (2.0 * self.next() - 1.0, 2.0 * PI * self.next());
+        let rho = (1.0 - z * z).sqrt();
+        [rho * phi.cos(), rho * phi.sin(), z]
+    }
+}
+
+/// Spheres in a box whose walls are all six sides, or a solid given by its own distance.
+struct Case {
+    spheres: Spheres,
+    extent: [f64; 3],
+    overlap: f64,
+    bonding_radius: f64,
+    sizes: String,
+    particle_density: Option<f64>,
+}
+
+impl Case {
+    fn new(spheres: Spheres, extent: [f64; 3]) -> Self {
+        let sizes = format!("{}m", 2.0 * spheres.radii.first().copied().unwrap_or(1.0));
+        Self {
+            spheres,
+            extent,
+            overlap: 0.0,
+            bonding_radius: 1.0 + 1e-9,
+            sizes,
+            particle_density: None,
+        }
+    }
+
+    fn report(&self) -> Report {
+        let extent = self.extent;
+        self.report_in(&move |p| {
+            (0..3)
+                .map(|k| p[k].min(extent[k] - p[k]))
+                .fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    fn report_in(&self, distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync)) -> Report {
+        let wall_distance: Vec<f64> = self
+            .spheres
+            .positions
+            .iter()
+            .map(|p| distance_inside(*p))
+            .collect();
+        self.report_with(&wall_distance, distance_inside)
+    }
+
+    fn report_with(
+        &self,
+        wall_distance: &[f64],
+        distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync),
+    ) -> Report {
+        let open = |_: [f64; 3], _: [f64; 3]| false;
+        let bonds = find_bonds(&self.spheres, self.bonding_radius, &open).unwrap();
+        assess(&Packing {
+            spheres: &self.spheres,
+            overlap: self.overlap,
+            bonds: &bonds,
+            sizes: &Sizes::parse(&self.sizes, By::Number).unwrap(),
+            unit_m: 1.0,
+            shape_volume: self.extent.iter().product(),
+            extent: self.extent,
+            particle_density_kg_m3: self.particle_density,
+            wall_distance,
+            distance_inside,
+            crosses_surface: &open,
+            gap_limit: DEFAULT_GAP_LIMIT,
+        })
+        .unwrap()
+    }
+}
+
+/// n[0] x n[1] x n[2] spheres one apart, the first at (1/2, 1/2, 1/2).
+fn cubic(n: [usize; 3], radius: f64) -> Spheres {
+    let mut positions = Vec::new();
+    for z in 0..n[2] {
+        for y in 0..n[1] {
+            for x in 0..n[0] {
+                positions.push([x, y, z].map(|i| i as f64 + 0.5));
+            }
+        }
+    }
+    Spheres {
+        radii: vec![radius; positions.len()],
+        positions,
+    }
+}
