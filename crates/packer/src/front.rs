@@ -14,7 +14,7 @@
 use crate::Vector3;
 use crate::boundary::{Boundary, Nearest};
 use crate::grid::{Ball, Grid};
-use crate::halo::{Halo, Neighbours, rims_meet};
+use crate::halo::{Halo, Neighbours};
 use crate::seed::climb;
 use dem_io::Result;
 use rand::rngs::ChaCha8Rng;
@@ -138,7 +138,7 @@ impl<'a> Front<'a> {
             let wall = self.boundary.nearest(p, largest).map_or(largest, |near| near.distance);
             wall.min(self.reach_to_spheres(p, largest)).min(largest)
         };
-        let roomiest = climb(void, 0.1 * smallest, &room);
+        let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &room);
         let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
         random.set_stream(self.streams);
         self.streams += 1;
@@ -332,40 +332,27 @@ impl<'a> Front<'a> {
         halo.set(front, radius / (1.0 + self.settings.overlap), neighbours);
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
-        let mut nearest = f64::INFINITY;
-        for j in 0..halo.neighbours() {
-            let (u_j, rim_j) = halo.cap(j);
-            for k in 0..j {
-                let (u_k, rim_k) = halo.cap(k);
-                let Some(places) = rims_meet(&u_j, rim_j, &u_k, rim_k) else { continue };
-                for p in places {
-                    let order = p.dot(&from_seed);
-                    if order < nearest && halo.is_free(&p) {
-                        let p = p.normalize();
-                        let centre = halo.position(&p);
-                        if halo.is_free(&p) && self.clears_wall(&centre, radius) {
-                            nearest = order;
-                            best = Some(centre);
-                        }
-                    }
-                }
+        halo.corners(&from_seed, |halo, p| {
+            let centre = halo.position(p);
+            let takes = self.clears_wall(&centre, radius);
+            if takes {
+                best = Some(centre);
             }
-        }
+            takes
+        });
+        let order_at = |place: &Vector3| (place - centre_of(front)).dot(&from_seed);
+        let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
         for wall in walls.iter() {
             let towards = (wall.point - halo.centre) / wall.distance;
-            let rim = (wall.distance - radius) / halo.radius;
             for j in 0..halo.neighbours() {
-                let (u_j, rim_j) = halo.cap(j);
-                let Some(places) = rims_meet(&u_j, rim_j, &towards, rim) else { continue };
+                let Some(places) = halo.wall_corners(j, &towards, wall.distance - radius) else { continue };
                 for p in places {
-                    let order = p.dot(&from_seed) - WALL_PREFERENCE * radius * from_seed.norm() / halo.radius;
-                    if order < nearest && halo.is_free(&p) {
-                        if let Some(p) = self.touch_wall(halo, radius, &u_j, rim_j, &p) {
-                            if halo.is_free(&p) {
-                                nearest = order;
-                                best = Some(halo.position(&p));
-                            }
-                        }
+                    let order = order_at(&halo.position(&p)) - WALL_PREFERENCE * radius * from_seed.norm();
+                    if order >= least || !halo.is_free(&p) {
+                        continue;
+                    }
+                    if let Some(centre) = self.touch_wall(halo, radius, j, &p) {
+                        (least, best) = (order, Some(centre));
                     }
                 }
             }
@@ -373,21 +360,20 @@ impl<'a> Front<'a> {
         best
     }
 
-    /// From a place `p` on the rim of a neighbour's cap, near to a place where a sphere of (not reduced) `radius` touches the wall: that place.
-    /// The wall is taken for a plane at its nearest point, again and again.
-    fn touch_wall(&self, halo: &Halo, radius: f64, u_j: &Vector3, rim_j: f64, p: &Vector3) -> Option<Vector3> {
+    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
+    /// if it is free. The wall is taken for a plane at its nearest point, again and again.
+    fn touch_wall(&self, halo: &mut Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
         let wanted = radius * (1.0 + 1e-12);
-        let mut p = p.normalize();
+        let mut p = *p;
         for _ in 0..8 {
             let centre = halo.position(&p);
             let near = self.boundary.nearest(&centre, 2.0 * radius)?;
             if near.distance >= radius && near.distance <= radius * (1.0 + 1e-10) {
-                return Some(p);
+                return halo.is_free(&p).then_some(centre);
             }
             let towards = (near.point - centre) / near.distance;
-            let rim = ((near.point - halo.centre).dot(&towards) - wanted) / halo.radius;
-            let places = rims_meet(u_j, rim_j, &towards, rim)?;
-            p = if (places[0] - p).norm_squared() < (places[1] - p).norm_squared() { places[0] } else { places[1] }.normalize();
+            let places = halo.wall_corners(j, &towards, (near.point - halo.centre).dot(&towards) - wanted)?;
+            p = if (places[0] - p).norm_squared() < (places[1] - p).norm_squared() { places[0] } else { places[1] };
         }
         None
     }
@@ -399,6 +385,10 @@ struct Workspace {
     neighbours: Neighbours,
     halo: Halo,
     walls: Vec<Nearest>,
+}
+
+fn centre_of(ball: &Ball) -> Vector3 {
+    Vector3::new(ball[0], ball[1], ball[2])
 }
 
 fn distance(ball: &Ball, point: &Vector3) -> f64 {

@@ -10,8 +10,20 @@ use crate::grid::Ball;
 
 /// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.
 const RIM_TOLERANCE: f64 = 1e-12;
+/// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
+const SMALLEST_SINE_SQUARED: f64 = 1e-8;
 /// The caps are tested in groups of this many, without a branch inside.
-const LANES: usize = 8;
+const LANES: usize = 4;
+
+/// What a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
+#[derive(Debug, Clone, Copy)]
+struct Cap {
+    axis: Vector3,
+    /// Cosine of the cap's angle.
+    rim: f64,
+    /// Its sine, squared.
+    sine_squared: f64,
+}
 
 /// The caps on the halo of one sphere for one radius of the new sphere. Reused from call to call.
 #[derive(Debug, Default)]
@@ -20,15 +32,12 @@ pub struct Halo {
     pub centre: Vector3,
     /// Radius of the halo, local units.
     pub radius: f64,
-    /// Axes and rims of the caps, as arrays padded to a multiple of `LANES` with caps that cover nothing.
-    ux: Vec<f64>,
-    uy: Vec<f64>,
-    uz: Vec<f64>,
-    rim: Vec<f64>,
-    /// Number of caps that come from spheres.
-    spheres: usize,
-    /// Axes and rims of the caps that come from walls.
-    pub walls: Vec<(Vector3, f64)>,
+    /// The caps that no other one contains, largest first.
+    caps: Vec<Cap>,
+    /// The same as groups of x, y, z of the axes and rims, the last one filled up with caps that cover nothing.
+    groups: Vec<[[f64; LANES]; 4]>,
+    /// The group that covered the last place that was not free.
+    last_cover: usize,
 }
 
 /// Spheres near one front sphere, with the distances that all radii of a new sphere share.
@@ -68,61 +77,104 @@ impl Halo {
     pub fn set(&mut self, ball: &Ball, new: f64, neighbours: &Neighbours) {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
-        for array in [&mut self.ux, &mut self.uy, &mut self.uz, &mut self.rim] {
-            array.clear();
-        }
+        self.caps.clear();
         for k in 0..neighbours.axis.len() {
             let (distance, touching) = (neighbours.distance[k], neighbours.radius[k] + new);
             if distance < self.radius + touching {
                 let rim = (self.radius * self.radius + distance * distance - touching * touching) / (2.0 * self.radius * distance);
-                self.push(&neighbours.axis[k], rim);
+                self.caps.push(Cap { axis: neighbours.axis[k], rim, sine_squared: 1.0 - rim * rim });
             }
         }
-        self.spheres = self.rim.len();
-        self.walls.clear();
-        while self.rim.len() % LANES != 0 {
-            self.push(&Vector3::zeros(), f64::INFINITY);
+        self.caps.sort_unstable_by(|a, b| a.rim.total_cmp(&b.rim));
+        self.drop_contained();
+        self.groups.clear();
+        for part in self.caps.chunks(LANES) {
+            let mut group = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [f64::INFINITY; LANES]];
+            for (k, cap) in part.iter().enumerate() {
+                (group[0][k], group[1][k], group[2][k], group[3][k]) = (cap.axis.x, cap.axis.y, cap.axis.z, cap.rim);
+            }
+            self.groups.push(group);
         }
+        self.last_cover = 0;
     }
 
-    fn push(&mut self, axis: &Vector3, rim: f64) {
-        self.ux.push(axis.x);
-        self.uy.push(axis.y);
-        self.uz.push(axis.z);
-        self.rim.push(rim);
-    }
-
-    /// Adds a wall as a cap: its direction from the front sphere, and the distance to it less the radius of the new sphere.
-    /// Caps of walls give candidate points; whether a place is inside the surface is for the distance query to say.
-    pub fn add_wall(&mut self, towards: &Vector3, clearance: f64) {
-        self.walls.push((*towards, clearance / self.radius));
-    }
-
-    /// Number of neighbours that cut the halo.
-    pub fn neighbours(&self) -> usize {
-        self.spheres
-    }
-
-    /// Axis and rim of one cap.
-    pub fn cap(&self, k: usize) -> (Vector3, f64) {
-        (Vector3::new(self.ux[k], self.uy[k], self.uz[k]), self.rim[k])
+    /// Drops caps that lie within a larger one: their rims are covered, and what they cover is covered without them.
+    fn drop_contained(&mut self) {
+        let mut kept = 0;
+        for k in 0..self.caps.len() {
+            let cap = self.caps[k];
+            let contained = self.caps[..kept].iter().any(|larger| {
+                // Angle between the axes <= difference of the caps' angles.
+                let excess = larger.axis.dot(&cap.axis) - larger.rim * cap.rim;
+                excess > 0.0 && excess * excess >= larger.sine_squared * cap.sine_squared
+            });
+            if !contained {
+                self.caps[kept] = cap;
+                kept += 1;
+            }
+        }
+        self.caps.truncate(kept);
     }
 
     /// Whether no neighbour's cap covers the place.
     #[inline]
-    pub fn is_free(&self, p: &Vector3) -> bool {
-        let (px, py, pz) = (p.x, p.y, p.z);
-        let groups = self.ux.chunks_exact(LANES).zip(self.uy.chunks_exact(LANES)).zip(self.uz.chunks_exact(LANES)).zip(self.rim.chunks_exact(LANES));
-        for (((ux, uy), uz), rim) in groups {
-            let mut covered = false;
-            for k in 0..LANES {
-                covered |= ux[k] * px + uy[k] * py + uz[k] * pz > rim[k] + RIM_TOLERANCE;
+    pub fn is_free(&mut self, p: &Vector3) -> bool {
+        // What covered the last place often covers this one.
+        if self.groups.get(self.last_cover).is_some_and(|group| covers(group, p)) {
+            return false;
+        }
+        match self.groups.iter().position(|group| covers(group, p)) {
+            Some(group) => {
+                self.last_cover = group;
+                false
             }
-            if covered {
-                return false;
+            None => true,
+        }
+    }
+
+    /// Calls `found` with each point where two rims meet and no cap covers, as long as it is better than the best one so far:
+    /// `found` is given the place and its order, p . `wanted` (small is good), and returns whether it takes it.
+    #[inline]
+    pub fn corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Self, &Vector3) -> bool) {
+        let mut least = f64::INFINITY;
+        for j in 1..self.caps.len() {
+            let a = self.caps[j];
+            for k in 0..j {
+                let b = self.caps[k];
+                let cosine = a.axis.dot(&b.axis);
+                let excess = cosine - a.rim * b.rim;
+                let inner = a.sine_squared * b.sine_squared - excess * excess;
+                if inner < 0.0 {
+                    continue;
+                }
+                for p in corners_of(&a, &b, cosine, inner) {
+                    let order = p.dot(wanted);
+                    if order < least && self.is_free(&p) {
+                        let p = p.normalize();
+                        if self.is_free(&p) && found(self, &p) {
+                            least = order;
+                        }
+                    }
+                }
             }
         }
-        true
+    }
+
+    /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is the direction to the wall,
+    /// `clearance` the distance of the wall from the front sphere's centre less the radius of the new sphere.
+    pub fn wall_corners(&self, neighbour: usize, towards: &Vector3, clearance: f64) -> Option<[Vector3; 2]> {
+        let rim = clearance / self.radius;
+        let (a, wall) = (self.caps[neighbour], Cap { axis: *towards, rim, sine_squared: 1.0 - rim * rim });
+        let cosine = a.axis.dot(towards);
+        let excess = cosine - a.rim * rim;
+        let inner = a.sine_squared * wall.sine_squared - excess * excess;
+        let sharp = inner >= 0.0 && 1.0 - cosine * cosine > SMALLEST_SINE_SQUARED;
+        sharp.then(|| corners_of(&a, &wall, cosine, inner).map(|p| p.normalize()))
+    }
+
+    /// Number of neighbours whose rims count.
+    pub fn neighbours(&self) -> usize {
+        self.caps.len()
     }
 
     /// Position in space of a place on the halo, local units.
@@ -131,21 +183,21 @@ impl Halo {
     }
 }
 
-/// The two unit vectors where the rims of two caps meet, if they do.
 #[inline]
-pub fn rims_meet(u_a: &Vector3, rim_a: f64, u_b: &Vector3, rim_b: f64) -> Option<[Vector3; 2]> {
-    let cosine = u_a.dot(u_b);
-    let sine_squared = 1.0 - cosine * cosine;
-    if sine_squared < 1e-12 {
-        return None;
+fn covers([x, y, z, rim]: &[[f64; LANES]; 4], p: &Vector3) -> bool {
+    let mut covered = false;
+    for k in 0..LANES {
+        covered |= x[k] * p.x + y[k] * p.y + z[k] * p.z > rim[k] + RIM_TOLERANCE;
     }
-    let along_a = (rim_a - cosine * rim_b) / sine_squared;
-    let along_b = (rim_b - cosine * rim_a) / sine_squared;
-    let height_squared = (1.0 - along_a * rim_a - along_b * rim_b) / sine_squared;
-    if height_squared < 0.0 {
-        return None;
-    }
-    let foot = u_a * along_a + u_b * along_b;
-    let off = u_a.cross(u_b) * height_squared.sqrt();
-    Some([foot + off, foot - off])
+    covered
+}
+
+/// The two unit vectors where the rims of two caps meet: a foot in the plane of the axes, and as far off it to either side as `inner` says,
+/// sin^2 sin^2 - (cosine - cos cos)^2 >= 0.
+#[inline]
+fn corners_of(a: &Cap, b: &Cap, cosine: f64, inner: f64) -> [Vector3; 2] {
+    let inverse = 1.0 / (1.0 - cosine * cosine).max(SMALLEST_SINE_SQUARED);
+    let foot = (a.axis * (a.rim - cosine * b.rim) + b.axis * (b.rim - cosine * a.rim)) * inverse;
+    let off = a.axis.cross(&b.axis) * (inner.sqrt() * inverse);
+    [foot + off, foot - off]
 }

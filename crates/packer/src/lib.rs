@@ -6,6 +6,7 @@ pub mod bonds;
 pub mod boundary;
 pub mod cli;
 pub mod density;
+pub mod depth_map;
 pub mod front;
 pub mod grid;
 pub mod halo;

@@ -2,8 +2,8 @@
 
 use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
 use crate::boundary::Boundary;
+use crate::depth_map::DepthMap;
 use crate::density::{DensitySearch, pack_to_density};
-use crate::inside::contains;
 use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::{Spheres, Vector3};
@@ -122,13 +122,10 @@ fn judge(
     bonds: &[[u32; 2]],
     crosses: crate::bonds::CrossesSurface,
 ) -> Result<Report> {
-    let depth = depth_needed(spheres);
-    let distance = |p: &Vector3| boundary.nearest(p, depth).map_or(f64::INFINITY, |near| near.distance);
-    let wall_distance: Vec<f64> = spheres.positions.par_iter().map(|p| distance(&Vector3::from(*p))).collect();
-    let distance_inside = |p: [f64; 3]| {
-        let p = Vector3::from(p);
-        if contains(boundary, surface, &p) { distance(&p) } else { -distance(&p) }
-    };
+    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
+    let map = DepthMap::new(surface, boundary, depth_needed(spheres), 4.0 * mean_radius);
+    let distance_inside = |p: [f64; 3]| map.depth(p);
+    let wall_distance: Vec<f64> = spheres.positions.par_iter().map(|p| map.depth(*p)).collect();
     assess(&quality::Packing {
         spheres,
         overlap,

@@ -44,7 +44,7 @@ pub struct PackHistory {
     pub taken_out: usize,
     /// Spheres put into voids at the end, of sizes that fit there.
     pub void_fillers: usize,
-    /// Voids that would still take the smallest sphere.
+    /// Voids that would still take the smallest sphere, about: extrapolated when more fillers would distort the sizes.
     pub voids_left: usize,
     /// Radii drawn that found no place.
     pub unplaced: usize,
@@ -68,6 +68,9 @@ pub struct Packing {
 /// Before settling a front begins in every cube of so many largest diameters: near enough that directions of growth average out,
 /// far enough that few fronts meet, since where they meet there is less.
 const SEED_SPACING: f64 = 8.0;
+
+/// Spheres around which voids are searched at a time.
+const VOID_SEARCH_GROUP: usize = 2000;
 
 /// Told the stage and the share of it that is done (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
@@ -211,7 +214,7 @@ fn run_fronts(
             let wall = boundary.nearest(p, f64::MAX).map_or(0.0, |near| near.distance);
             if wall < 0.25 * smallest || !contains(boundary, surface, p) { -1.0 } else { wall.min(front.reach_to_spheres(p, reach)) }
         };
-        let room = climb(&place.centre, 0.5 * smallest, &clearance);
+        let room = climb(&place.centre, 0.5 * smallest, 1e-9 * smallest, &clearance);
         if room.radius >= smallest {
             let first: Vec<u32> = place_first_spheres(front, &room.centre).collect();
             history.fronts += usize::from(!first.is_empty());
@@ -239,28 +242,35 @@ fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
 /// Puts spheres into the voids that take at least the smallest one, each of a size drawn among those that fit there,
 /// as long as their number does not distort the distribution of sizes by more than half its statistical noise.
 fn fill_voids(front: &mut Front, history: &mut PackHistory) {
+    let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
+    let count = front.balls.len();
+    let most = if one_size { usize::MAX } else { (0.5 * 1.36 * (count as f64).sqrt()).ceil() as usize };
+    // Neighbours in memory are neighbours in space: the search goes round in strides, so that what it finds first is spread evenly.
+    let groups = count.div_ceil(VOID_SEARCH_GROUP);
+    for group in 0..groups {
+        let around: Vec<u32> = (group..count).step_by(groups).map(|i| i as u32).collect();
+        fill_voids_around(front, around, most, history);
+        if history.void_fillers == most {
+            let searched = (group + 1) as f64 / groups as f64;
+            history.voids_left = (most as f64 * (1.0 / searched - 1.0)).round() as usize;
+            return;
+        }
+    }
+}
+
+/// Searches around the spheres `around` and then around those that were added, until there are `most` of them.
+fn fill_voids_around(front: &mut Front, mut around: Vec<u32>, most: usize, history: &mut PackHistory) {
     let smallest = front.settings.radius_range[0];
-    let most = (0.5 * 1.36 * (front.balls.len() as f64).sqrt()).ceil() as usize;
-    let mut around: Vec<u32> = (0..front.balls.len() as u32).collect();
-    loop {
-        let voids: Vec<Vector3> = front.voids(&around);
+    while !around.is_empty() {
         let first = front.balls.len() as u32;
-        for place in voids {
-            if !front.fits(&place, smallest) {
-                continue;
+        for place in front.voids(&around) {
+            if history.void_fillers < most && front.fits(&place, smallest) {
+                let (centre, radius) = front.fill(&place);
+                front.place(&centre, radius);
+                history.void_fillers += 1;
             }
-            if history.void_fillers == most && front.settings.radius_range[1] > smallest {
-                history.voids_left += 1;
-                continue;
-            }
-            let (centre, radius) = front.fill(&place);
-            front.place(&centre, radius);
-            history.void_fillers += 1;
         }
         around = (first..front.balls.len() as u32).collect();
-        if around.is_empty() {
-            break;
-        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! How good a packing is: density, sizes, bonds, contacts, fabric, and what a user should know before using it.
 
 mod contacts;
+mod densities;
 mod depth;
 mod fabric;
 mod pieces;
-mod sampling;
+mod points;
 mod text;
 mod thickness;
 
@@ -14,9 +15,9 @@ use crate::sizes::{Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
 pub use contacts::Contacts;
 use dem_io::Result;
 use dem_io::units::{show_length, significant};
+pub use densities::{Layer, Share};
 pub use fabric::Fabric;
 pub use pieces::Pieces;
-pub use sampling::{Layer, Share};
 use serde::{Deserialize, Serialize};
 pub use thickness::Thinnest;
 
@@ -57,8 +58,8 @@ pub struct Packing<'a> {
     pub particle_density_kg_m3: Option<f64>,
     /// Distance of each centre to the surface, exact where finite; the others are measured. One per sphere.
     pub wall_distance: &'a [f64],
-    /// Distance of a point to the surface, positive inside the solid, negative outside. May be infinite deeper than
-    /// [`depth_needed`]. The only slow part: called about 300,000 times.
+    /// Distance of a point to the surface, positive inside the solid, negative outside. May be infinite farther than
+    /// [`depth_needed`] on either side. The only slow part: called a few hundred thousand times.
     pub distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
     /// Whether the straight line between two points crosses the surface; asked only to advise a bonding radius.
     pub crosses_surface: CrossesSurface<'a>,
@@ -66,7 +67,7 @@ pub struct Packing<'a> {
     pub gap_limit: f64,
 }
 
-/// Distances to the wall matter up to here, local units; deeper is all the same.
+/// Distances to the wall matter up to here, local units; farther is all the same.
 pub fn depth_needed(spheres: &Spheres) -> f64 {
     let largest = 2.0 * spheres.radii.iter().copied().fold(0.0, f64::max);
     (INTERIOR_DEPTH_IN_LARGEST_DIAMETERS * largest)
@@ -120,7 +121,7 @@ pub struct Report {
     pub pieces: Pieces,
     /// Directions of all bonds. None without bonds.
     pub fabric: Option<Fabric>,
-    /// Directions of the bonds with both ends in the interior. None without such.
+    /// Directions of the bonds of the interior: those with one end in it count half. None without such.
     pub interior_fabric: Option<Fabric>,
     /// The thinnest part. None without particles.
     pub thinnest: Option<Thinnest>,
@@ -140,6 +141,13 @@ impl Report {
 /// # Errors
 /// More spheres than the search tree can number (2^32).
 pub fn assess(packing: &Packing) -> Result<Report> {
+    let far = depth_needed(packing.spheres);
+    // Finite, a distance also bounds those of the points around.
+    let distance_inside = |point| (packing.distance_inside)(point).clamp(-far, far);
+    let packing = &Packing {
+        distance_inside: &distance_inside,
+        ..*packing
+    };
     let spheres = packing.spheres;
     let unit = packing.unit_m;
     let count = spheres.radii.len();
@@ -153,8 +161,8 @@ pub fn assess(packing: &Packing) -> Result<Report> {
         .sum();
     let share_if_disjoint = volume / packing.shape_volume;
 
-    let depths = depth::of_centres(packing, depth_needed(spheres));
-    let sampled = sampling::sample(packing, interior_depth, mean_diameter);
+    let depths = depth::of_centres(packing, far);
+    let sampled = densities::sample(packing, interior_depth, mean_diameter);
     let diameters_m: Vec<f64> = spheres.radii.iter().map(|r| 2.0 * r * unit).collect();
     let bonds_per_particle = packing.bonds.len() as f64 / count.max(1) as f64;
 
@@ -181,8 +189,8 @@ pub fn assess(packing: &Packing) -> Result<Report> {
         contacts: contacts::count(packing, &depths)?,
         pieces: pieces::find(count, packing.bonds),
         fabric: fabric::of(spheres, packing.bonds, |_| true),
-        interior_fabric: fabric::of(spheres, packing.bonds, |[a, b]| {
-            depths[a as usize] > interior_depth && depths[b as usize] > interior_depth
+        interior_fabric: fabric::of(spheres, packing.bonds, |i| {
+            depths[i as usize] > interior_depth
         }),
         thinnest: thickness::thinnest(&depths, packing.bonds, mean_diameter, unit),
         warnings: Vec::new(),

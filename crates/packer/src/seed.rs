@@ -68,12 +68,13 @@ pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3>
         .collect()
 }
 
-/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps that halve.
-pub fn climb(start: &Vector3, first_step: f64, clearance: &dyn Fn(&Vector3) -> f64) -> Inscribed {
+/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps
+/// that halve from `first_step` to `last_step`.
+pub fn climb(start: &Vector3, first_step: f64, last_step: f64, clearance: &dyn Fn(&Vector3) -> f64) -> Inscribed {
     let mut best = Inscribed { centre: *start, radius: clearance(start) };
     let mut step = first_step;
     let diagonal = 1.0 / 3.0_f64.sqrt();
-    while step > 1e-9 * first_step.max(best.radius) {
+    while step > last_step {
         let before = best;
         for at in 0..27 {
             if at == 13 {
@@ -103,7 +104,7 @@ pub fn deepest_point(boundary: &Boundary, surface: &Surface, inner: &[Inscribed]
     let middle = 0.5 * Vector3::from(surface.extent());
     let mut deep: Vec<&Inscribed> = deep.collect();
     deep.sort_by(|a, b| (a.centre - middle).norm().total_cmp(&(b.centre - middle).norm()));
-    let found: Vec<Inscribed> = deep.iter().take(8).chain(inner.first().iter()).map(|ball| climb(&ball.centre, 0.5 * ball.radius, &clearance)).collect();
+    let found: Vec<Inscribed> = deep.iter().take(8).chain(inner.first().iter()).map(|ball| climb(&ball.centre, 0.5 * ball.radius, 1e-9 * ball.radius, &clearance)).collect();
     let deepest = found.iter().map(|ball| ball.radius).fold(0.0, f64::max);
     found.into_iter().find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
 }

@@ -4,8 +4,7 @@
 
 use dem_pack::Spheres;
 use dem_pack::bonds::{
-    WELL_BONDED, bond_lengths, bond_radii, bonding_radius_for, close_pairs, find_bonds,
-    suggested_bonding_radius,
+    bond_lengths, bond_radii, bonding_radius_for, close_pairs, find_bonds, suggested_bonding_radius,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -172,7 +171,6 @@ fn what_cannot_be_is_said() {
         "{error}"
     );
     assert_eq!(suggested_bonding_radius(&cubic(2, 0.5), &open), None);
-    assert!(WELL_BONDED > 4.0);
     assert!(
         find_bonds(&Spheres::default(), 1.1, &open)
             .unwrap()

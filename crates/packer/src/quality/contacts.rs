@@ -47,11 +47,7 @@ pub(super) fn count(packing: &Packing, depths: &[f64]) -> Result<Contacts> {
     }
     let mut at_wall = 0;
     let mut largest_protrusion = 0.0_f64;
-    for ((radius, distance), contacts) in radii
-        .iter()
-        .zip(packing.wall_distance)
-        .zip(&mut contacts_of)
-    {
+    for ((radius, depth), contacts) in radii.iter().zip(depths).zip(&mut contacts_of) {
         let gap = (depth - radius) / radius;
         largest_protrusion = largest_protrusion.max(-gap);
         if gap <= packing.gap_limit {

@@ -12,21 +12,24 @@ const SPHERES_PER_CELL: f64 = 4.0;
 /// changes by no more than the way from the last point that was measured, which often settles the matter.
 pub(super) struct Probe<'a> {
     distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
+    /// Shallower is all the same.
+    floor: f64,
     /// Deeper is all the same.
     cap: f64,
     last: Option<([f64; 3], f64)>,
 }
 
 impl<'a> Probe<'a> {
-    pub(super) fn new(packing: &Packing<'a>, cap: f64) -> Self {
+    pub(super) fn new(packing: &Packing<'a>, floor: f64, cap: f64) -> Self {
         Self {
             distance_inside: packing.distance_inside,
+            floor,
             cap,
             last: None,
         }
     }
 
-    /// Depth of a point below the surface: exact below the cap, the cap if deeper, zero if outside.
+    /// Depth of a point below the surface: exact between floor and cap, the cap if deeper, zero if not above the floor.
     pub(super) fn depth(&mut self, point: [f64; 3]) -> f64 {
         if let Some((measured, distance)) = self.last {
             let way = (0..3)
@@ -36,13 +39,17 @@ impl<'a> Probe<'a> {
             if distance - way >= self.cap {
                 return self.cap;
             }
-            if distance + way <= 0.0 {
+            if distance + way <= self.floor {
                 return 0.0;
             }
         }
         let distance = (self.distance_inside)(point);
-        self.last = distance.is_finite().then_some((point, distance));
-        distance.clamp(0.0, self.cap)
+        self.last = Some((point, distance));
+        if distance <= self.floor {
+            0.0
+        } else {
+            distance.min(self.cap)
+        }
     }
 }
 
@@ -69,7 +76,7 @@ pub(super) fn of_centres(packing: &Packing, cap: f64) -> Vec<f64> {
     let measured: Vec<Vec<f64>> = unknown
         .par_chunks(CHUNK)
         .map(|spheres| {
-            let mut probe = Probe::new(packing, cap);
+            let mut probe = Probe::new(packing, 0.0, cap);
             spheres
                 .iter()
                 .map(|i| probe.depth(packing.spheres.positions[*i as usize]))

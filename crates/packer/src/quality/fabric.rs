@@ -32,36 +32,43 @@ pub struct Fabric {
     pub chance: f64,
 }
 
-/// The fabric of the bonds that `counts` says count. None if none does.
+/// The fabric of the bonds, each end counted for half a bond if `counts` says that its particle counts. None if none does.
+///
+/// To count only bonds with both ends in a region would favour directions along its border.
 pub(super) fn of(
     spheres: &Spheres,
     bonds: &[[u32; 2]],
-    counts: impl Fn([u32; 2]) -> bool + Sync,
+    counts: impl Fn(u32) -> bool + Sync,
 ) -> Option<Fabric> {
     let parts: Vec<(usize, Matrix3<f64>)> = bonds
         .par_chunks(CHUNK)
         .map(|bonds| {
             let mut sum = Matrix3::zeros();
             let mut count = 0;
-            for bond in bonds.iter().filter(|bond| counts(**bond)) {
+            for bond in bonds {
+                let ends = bond.iter().filter(|i| counts(**i)).count();
+                if ends == 0 {
+                    continue;
+                }
                 let [p, q] = bond.map(|i| nalgebra::Vector3::from(spheres.positions[i as usize]));
                 if let Some(direction) = (q - p).try_normalize(0.0) {
-                    sum += direction * direction.transpose();
-                    count += 1;
+                    sum += direction * direction.transpose() * ends as f64;
+                    count += ends;
                 }
             }
             (count, sum)
         })
         .collect();
-    let (count, sum) = parts
+    let (ends, sum) = parts
         .iter()
         .fold((0, Matrix3::zeros()), |(n, sum), (m, part)| {
             (n + m, sum + part)
         });
-    if count == 0 {
+    if ends == 0 {
         return None;
     }
-    let tensor = sum / count as f64;
+    let tensor = sum / ends as f64;
+    let count = ends.div_ceil(2);
     let eigen = SymmetricEigen::new(tensor);
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));

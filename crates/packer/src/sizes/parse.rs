@@ -3,14 +3,15 @@
 use super::sieve::{self, SieveCurve};
 use dem_io::units::{length_m, show_length};
 use dem_io::{Diagnostic, Result};
+use std::ops::RangeInclusive;
 
 const FORMS: &str = "write one of 2.5mm, 2mm..3mm, normal:MEAN,STD,MIN..MAX, lognormal:MEAN,STD,MIN..MAX, \
                      weibull:SCALE,SHAPE,MIN..MAX, sieve:FILE.csv";
 /// Diameters that a program for particles can mean, m.
-const SENSIBLE_M: [f64; 2] = [1e-12, 1e6];
+const SENSIBLE_M: RangeInclusive<f64> = 1e-12..=1e6;
 /// A smaller ratio of standard deviation to mean is one size.
 const SMALLEST_SPREAD: f64 = 1e-6;
-const SHAPES: [f64; 2] = [0.05, 1000.0];
+const SHAPES: RangeInclusive<f64> = 0.05..=1000.0;
 
 /// Limits of a distribution, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,10 +125,10 @@ fn weibull(rest: &str) -> Result<Law> {
             "write a number such as 3.5, without a unit",
         )
     })?;
-    if !(shape >= SHAPES[0] && shape <= SHAPES[1]) {
+    if !SHAPES.contains(&shape) {
         return Err(Diagnostic::input(
             "shape",
-            format!("{shape} is outside {} to {}", SHAPES[0], SHAPES[1]),
+            format!("{shape} is outside {} to {}", SHAPES.start(), SHAPES.end()),
             "a larger shape is a narrower distribution; 1 to 10 is usual",
         ));
     }
@@ -198,14 +199,14 @@ fn diameter(text: &str) -> Result<f64> {
             "a diameter must be above zero, such as 2.5mm",
         ));
     }
-    if !(length >= SENSIBLE_M[0] && length <= SENSIBLE_M[1]) {
+    if !SENSIBLE_M.contains(&length) {
         return Err(Diagnostic::input(
             "",
             format!(
                 "the size '{}' is outside {} m to {} m",
                 text.trim(),
-                SENSIBLE_M[0],
-                SENSIBLE_M[1]
+                SENSIBLE_M.start(),
+                SENSIBLE_M.end()
             ),
             "check the unit, such as 2.5mm",
         ));

@@ -1,22 +1,12 @@
 //! Densities: lattices, lenses, layers, and the error that is stated beside them.
 
-use crate::{Case, Random, cubic};
+use crate::{Case, Random, close, cubic};
 use dem_pack::Spheres;
-use dem_pack::quality::Share;
 use std::f64::consts::PI;
 
 /// Volume that two balls of radius `r` at distance `d` have in common.
 fn lens(r: f64, d: f64) -> f64 {
     PI * (4.0 * r + d) * (2.0 * r - d).powi(2) / 12.0
-}
-
-#[track_caller]
-fn close(share: Share, wanted: f64) {
-    assert!(share.error > 0.0 && share.error < 0.003, "{share:?}");
-    assert!(
-        (share.value - wanted).abs() < 4.0 * share.error,
-        "{share:?} {wanted}"
-    );
 }
 
 #[test]
@@ -217,4 +207,3 @@ fn the_stated_error_is_the_error() {
     // Chi-squared of 40 degrees: 40 +- 9; between its 0.05 % and 99.95 %.
     assert!((16.0..77.0).contains(&squares), "{squares}");
 }
-

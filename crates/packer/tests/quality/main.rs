@@ -8,7 +8,7 @@ mod whole;
 
 use dem_pack::Spheres;
 use dem_pack::bonds::find_bonds;
-use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, Report, assess};
+use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, Report, Share, assess};
 use dem_pack::sizes::{By, Sizes};
 use std::f64::consts::PI;
 
@@ -113,4 +113,14 @@ fn cubic(n: [usize; 3], radius: f64) -> Spheres {
         radii: vec![radius; positions.len()],
         positions,
     }
+}
+
+/// Within four of the stated errors, which is small.
+#[track_caller]
+fn close(share: Share, wanted: f64) {
+    assert!(share.error > 0.0 && share.error < 0.003, "{share:?}");
+    assert!(
+        (share.value - wanted).abs() < 4.0 * share.error,
+        "{share:?} {wanted}"
+    );
 }

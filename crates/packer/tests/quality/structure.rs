@@ -183,4 +183,3 @@ fn thin_parts_are_found() {
     let neck = report.thinnest.unwrap();
     assert!((neck.particles_across - 3.0).abs() < 0.1, "{neck:?}");
 }
-

@@ -1,0 +1,231 @@
+//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres cover.
+//!
+//! The standard error comes from the differences of the two random points of a cell: for a region with indicator r,
+//! cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r at one - (c - f) r at the other)^2)/sum(r).
+//! Everything is counted in integers, so that the order of counting does not matter.
+
+use super::Packing;
+use super::points::{Cells, over_pairs};
+use serde::{Deserialize, Serialize};
+
+/// Points in the solid for the whole and the layers: a standard error of 0.001 for the whole.
+const POINTS_IN_SOLID: f64 = 200_000.0;
+/// Points in the interior, for a standard error of about 0.001, as long as no more than so many in the solid are needed.
+const POINTS_IN_INTERIOR: f64 = 250_000.0;
+const MOST_POINTS_IN_SOLID: f64 = 1_000_000.0;
+const LAYERS: usize = 20;
+const LAYERS_PER_DIAMETER: f64 = 4.0;
+const SLABS: usize = 10;
+/// A region with fewer points than this has no density to speak of.
+const FEWEST_POINTS: u64 = 100;
+
+/// A share found by sampling.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// The share, 0 to 1.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+/// The density of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    /// Where it begins, m.
+    pub from_m: f64,
+    /// Where it ends, m.
+    pub to_m: f64,
+    /// Its density. None if hardly a point fell into it.
+    pub density: Option<Share>,
+}
+
+/// What the points say.
+pub(super) struct Sampled {
+    pub(super) union_density: Share,
+    pub(super) interior_union_density: Option<Share>,
+    pub(super) interior_generating_density: Option<Share>,
+    pub(super) wall_profile: Vec<Layer>,
+    pub(super) slab_profile: Vec<Layer>,
+}
+
+/// Counts of one region.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    points: u64,
+    covered: u64,
+    /// Sums over cells of products of the differences of its two points, in cover (c) and in region (r).
+    cover_cover: u64,
+    cover_region: i64,
+    region_region: u64,
+}
+
+impl Tally {
+    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is covered.
+    fn add(&mut self, region: [bool; 2], covered: [bool; 2]) {
+        if !(region[0] || region[1]) {
+            return;
+        }
+        let r = region.map(i64::from);
+        let c = [r[0] * i64::from(covered[0]), r[1] * i64::from(covered[1])];
+        let (dr, dc) = (r[0] - r[1], c[0] - c[1]);
+        self.points += (r[0] + r[1]) as u64;
+        self.covered += (c[0] + c[1]) as u64;
+        self.cover_cover += (dc * dc) as u64;
+        self.cover_region += dc * dr;
+        self.region_region += (dr * dr) as u64;
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.points += other.points;
+        self.covered += other.covered;
+        self.cover_cover += other.cover_cover;
+        self.cover_region += other.cover_region;
+        self.region_region += other.region_region;
+    }
+
+    fn share(&self) -> Option<Share> {
+        if self.points < FEWEST_POINTS {
+            return None;
+        }
+        let points = self.points as f64;
+        let value = self.covered as f64 / points;
+        let squares = self.cover_cover as f64 - 2.0 * value * self.cover_region as f64
+            + value * value * self.region_region as f64;
+        Some(Share {
+            value,
+            error: squares.max(0.0).sqrt() / points,
+        })
+    }
+}
+
+/// Counts for the whole and the layers from the wall.
+#[derive(Clone, Default)]
+struct Whole {
+    union: Tally,
+    interior: Tally,
+    layers: [Tally; LAYERS],
+}
+
+/// Counts for the interior.
+#[derive(Clone, Default)]
+struct Interior {
+    union: Tally,
+    generating: Tally,
+    slabs: [Tally; SLABS],
+}
+
+/// Samples the packing. `interior_depth` and `mean_diameter` in local units.
+pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64) -> Sampled {
+    let layer = mean_diameter / LAYERS_PER_DIAMETER;
+    let whole = whole(packing, interior_depth, layer);
+    let interior_share = whole.interior.points as f64 / (whole.union.points as f64).max(1.0);
+    let longest = (0..3).fold(0, |best, k| {
+        if packing.extent[k] > packing.extent[best] {
+            k
+        } else {
+            best
+        }
+    });
+    let slab = packing.extent[longest] / SLABS as f64;
+    let interior = interior(packing, interior_depth, interior_share, longest, slab);
+
+    let unit = packing.unit_m;
+    let profile = |tallies: &[Tally], thickness: f64| {
+        let place = |i: usize| i as f64 * thickness * unit;
+        let layer = |(i, t): (usize, &Tally)| Layer {
+            from_m: place(i),
+            to_m: place(i + 1),
+            density: t.share(),
+        };
+        tallies.iter().enumerate().map(layer).collect()
+    };
+    Sampled {
+        union_density: whole.union.share().unwrap_or(Share {
+            value: 0.0,
+            error: 1.0,
+        }),
+        interior_union_density: interior.union.share(),
+        interior_generating_density: interior.generating.share(),
+        wall_profile: profile(&whole.layers, layer),
+        slab_profile: profile(&interior.slabs, slab),
+    }
+}
+
+fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
+    let cells = Cells::new(packing, POINTS_IN_SOLID);
+    let cap = interior_depth.max(layer * LAYERS as f64) * 1.01;
+    let parts = over_pairs(packing, &cells, [0.0, cap], |counts: &mut Whole, pair| {
+        // A covered point is inside, whatever rounding says at the wall.
+        let solid = [0, 1].map(|i| pair.in_union[i] || pair.depths[i] > 0.0);
+        counts.union.add(solid, pair.in_union);
+        counts
+            .interior
+            .add(pair.depths.map(|d| d > interior_depth), pair.in_generating);
+        let layers = [0, 1].map(|i| {
+            if solid[i] {
+                (pair.depths[i] / layer) as usize
+            } else {
+                LAYERS
+            }
+        });
+        add_to_each(&mut counts.layers, layers, pair.in_generating);
+    });
+    parts.iter().fold(Whole::default(), |mut sum, part| {
+        sum.union.merge(&part.union);
+        sum.interior.merge(&part.interior);
+        sum.layers
+            .iter_mut()
+            .zip(&part.layers)
+            .for_each(|(a, b)| a.merge(b));
+        sum
+    })
+}
+
+/// `share` of the solid is interior, about; slabs of thickness `slab` along the axis `longest`.
+fn interior(packing: &Packing, depth: f64, share: f64, longest: usize, slab: f64) -> Interior {
+    if share == 0.0 {
+        return Interior::default();
+    }
+    let cells = Cells::new(
+        packing,
+        (POINTS_IN_INTERIOR / share).clamp(POINTS_IN_SOLID, MOST_POINTS_IN_SOLID),
+    );
+    let parts = over_pairs(
+        packing,
+        &cells,
+        [depth, depth * (1.0 + 1e-12)],
+        |counts: &mut Interior, pair| {
+            let inside = pair.depths.map(|d| d > depth);
+            counts.union.add(inside, pair.in_union);
+            counts.generating.add(inside, pair.in_generating);
+            let slabs = [0, 1].map(|i| {
+                if inside[i] {
+                    ((pair.points[i][longest] / slab) as usize).min(SLABS - 1)
+                } else {
+                    SLABS
+                }
+            });
+            add_to_each(&mut counts.slabs, slabs, pair.in_generating);
+        },
+    );
+    parts.iter().fold(Interior::default(), |mut sum, part| {
+        sum.union.merge(&part.union);
+        sum.generating.merge(&part.generating);
+        sum.slabs
+            .iter_mut()
+            .zip(&part.slabs)
+            .for_each(|(a, b)| a.merge(b));
+        sum
+    })
+}
+
+/// Adds a cell to the regions its two points are in; an index past the end is in none.
+fn add_to_each(tallies: &mut [Tally], indices: [usize; 2], covered: [bool; 2]) {
+    for i in [0, 1] {
+        if indices[i] >= tallies.len() || (i == 1 && indices[1] == indices[0]) {
+            continue;
+        }
+        let region = indices.map(|other| other == indices[i]);
+        tallies[indices[i]].add(region, covered);
+    }
+}
