@@ -1,6 +1,7 @@
 //! Distance to the surface. The only module that knows parry3d.
 
 use crate::Vector3;
+use crate::union::outer_pieces;
 use dem_io::{Diagnostic, Result, Surface};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -17,9 +18,12 @@ pub struct Nearest {
     pub distance: f64,
 }
 
-/// The facets of a surface in a tree, for distance queries.
+/// The facets of a surface in a tree, for distance queries and rays.
 pub struct Boundary {
-    mesh: TriMesh,
+    /// All facets of the surface, in its order: what rays are counted against.
+    facets: TriMesh,
+    /// What bounds the solid, where that is not all facets: parts of the surface may lie inside others.
+    union: Option<TriMesh>,
 }
 
 impl Boundary {
@@ -28,16 +32,28 @@ impl Boundary {
     /// # Errors
     /// A surface without triangles.
     pub fn new(surface: &Surface) -> Result<Self> {
-        let vertices = surface.vertices.iter().map(|v| Vector::new(v[0], v[1], v[2])).collect();
-        let mesh = TriMesh::new(vertices, surface.triangles.clone())
-            .map_err(|e| Diagnostic::input(surface.source.clone(), format!("the surface cannot be used: {e}"), ""))?;
-        Ok(Self { mesh })
+        let refused = |e| Diagnostic::input(surface.source.clone(), format!("the surface cannot be used: {e}"), "");
+        let vertices = surface.vertices.iter().map(|v| Vector::from(*v)).collect();
+        let facets = TriMesh::new(vertices, surface.triangles.clone()).map_err(refused)?;
+        let mut boundary = Self { facets, union: None };
+        if surface.repairs.self_intersections > 0 {
+            let pieces = outer_pieces(surface, &boundary);
+            let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let corners = pieces.into_iter().flatten().map(Vector::from).collect();
+            boundary.union = Some(TriMesh::new(corners, triangles).map_err(refused)?);
+        }
+        Ok(boundary)
+    }
+
+    /// The triangles that bound the solid.
+    fn wall(&self) -> &TriMesh {
+        self.union.as_ref().unwrap_or(&self.facets)
     }
 
     /// The nearest point of the surface, if it is closer than `cut_off` (local units).
     pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
         let from = to_parry(point);
-        let (projection, _) = self.mesh.project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
+        let (projection, _) = self.wall().project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
         let point = from_parry(&projection.point);
         Some(Nearest { point, distance: (projection.point - from).length() })
     }
@@ -47,18 +63,24 @@ impl Boundary {
         self.nearest(centre, radius).is_none()
     }
 
-    /// The triangles whose boxes come within `reach` (local units) of `point`, as indices of the surface's triangles.
+    /// The triangles of the wall whose boxes come within `reach` (local units) of `point`.
     pub fn triangles_near(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
         let (centre, half) = (to_parry(point), Vector::splat(reach));
-        let around = Aabb::new(centre - half, centre + half);
-        let query = BvhNode::leaf(around, 0);
-        self.mesh.bvh().leaves(move |node| node.intersects(&query))
+        let query = BvhNode::leaf(Aabb::new(centre - half, centre + half), 0);
+        self.wall().bvh().leaves(move |node| node.intersects(&query))
     }
 
-    /// The triangles whose boxes a ray passes, as indices of the surface's triangles.
-    pub fn triangles_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + '_ {
-        let ray = Ray::new(to_parry(origin), to_parry(direction));
-        self.mesh.bvh().leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
+    /// The facets of the surface whose boxes a ray passes, as indices of the surface's triangles.
+    pub fn facets_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + '_ {
+        on_ray(&self.facets, origin, direction)
+    }
+
+    /// The triangles of the wall whose boxes a ray passes, by their corners.
+    pub fn walls_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+        on_ray(self.wall(), origin, direction).map(|t| {
+            let triangle = self.wall().triangle(t);
+            [triangle.a, triangle.b, triangle.c].map(Into::into)
+        })
     }
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
@@ -93,13 +115,18 @@ impl Boundary {
         found.truncate(kept);
     }
 
-    /// The nearest point of one triangle of the surface.
+    /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
         let from = to_parry(point);
-        let (projection, _) = self.mesh.triangle(triangle).project_local_point_and_get_location(from, false);
+        let (projection, _) = self.wall().triangle(triangle).project_local_point_and_get_location(from, false);
         let point = from_parry(&projection.point);
         Nearest { point, distance: (projection.point - from).length() }
     }
+}
+
+fn on_ray<'a>(mesh: &'a TriMesh, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + use<'a> {
+    let ray = Ray::new(to_parry(origin), to_parry(direction));
+    mesh.bvh().leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
 }
 
 fn to_parry(v: &Vector3) -> Vector {

@@ -10,10 +10,10 @@ use dem_io::Surface;
 
 /// Directions in no special position to any axis or to each other.
 const DIRECTIONS: [[f64; 3]; 7] = [
-    [0.577_215_66, 0.318_309_89, 0.751_988_48],
+    [0.577_215_66, 0.321_309_89, 0.751_988_48],
     [-0.414_213_56, 0.732_050_81, 0.540_963_27],
     [0.236_067_98, -0.645_751_31, 0.726_172_92],
-    [-0.693_147_18, -0.301_029_99, 0.654_915_31],
+    [-0.697_147_18, -0.308_029_99, 0.654_915_31],
     [0.138_629_44, 0.915_965_59, -0.376_652_10],
     [-0.850_112_37, 0.210_345_67, -0.482_731_99],
     [0.359_223_11, -0.473_112_29, -0.804_419_52],
@@ -70,7 +70,7 @@ pub fn contains(boundary: &Boundary, surface: &Surface, point: &Vector3) -> bool
 /// Signed crossings of a ray: 1 inside one shell, 0 outside, -1 never; `None` when a facet was grazed.
 fn crossings(boundary: &Boundary, surface: &Surface, origin: &Vector3, direction: &Vector3) -> Option<i32> {
     let mut winding = 0;
-    for triangle in boundary.triangles_on_ray(origin, direction) {
+    for triangle in boundary.facets_on_ray(origin, direction) {
         match moeller_trumbore(origin, direction, &surface.corners(triangle as usize)) {
             Crossing::Miss => {}
             Crossing::Hit(sign) => winding += sign,
@@ -80,14 +80,13 @@ fn crossings(boundary: &Boundary, surface: &Surface, origin: &Vector3, direction
     Some(winding)
 }
 
-/// Distance along a ray (unit direction, local units) to the first facet that it meets farther away than `beyond`.
-pub fn first_hit(boundary: &Boundary, surface: &Surface, origin: &Vector3, direction: &Vector3, beyond: f64) -> Option<f64> {
-    let plane_distance = |triangle: u32| {
-        let corners = surface.corners(triangle as usize);
+/// Distance along a ray (unit direction, local units) to the first wall that it meets farther away than `beyond`.
+pub fn first_hit(boundary: &Boundary, origin: &Vector3, direction: &Vector3, beyond: f64) -> Option<f64> {
+    let plane_distance = |corners: [[f64; 3]; 3]| {
         let [a, b, c] = corners.map(Vector3::from);
         let normal = (b - a).cross(&(c - a));
         let distance = (a - origin).dot(&normal) / direction.dot(&normal);
         (moeller_trumbore(origin, direction, &corners) != Crossing::Miss && distance > beyond).then_some(distance)
     };
-    boundary.triangles_on_ray(origin, direction).filter_map(plane_distance).min_by(f64::total_cmp)
+    boundary.walls_on_ray(origin, direction).filter_map(plane_distance).min_by(f64::total_cmp)
 }

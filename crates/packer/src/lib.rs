@@ -17,6 +17,7 @@ pub mod quality;
 pub mod seed;
 pub mod settle;
 pub mod sizes;
+pub mod union;
 
 /// A point or direction in local units.
 pub type Vector3 = nalgebra::Vector3<f64>;

@@ -79,7 +79,7 @@ pub fn make_body(surface: &Surface, settings: &MakeSettings, progress: Progress)
     let started = Instant::now();
     progress("bonds", 0.0)?;
     let spheres = &packing.spheres;
-    let crosses = |a: [f64; 3], b: [f64; 3]| crosses_surface(surface, &boundary, a, b);
+    let crosses = |a: [f64; 3], b: [f64; 3]| crosses_surface(&boundary, a, b);
     let bonding_radius = match settings.bonds_per_particle {
         Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
         None => settings.bonding_radius,
@@ -143,12 +143,12 @@ fn judge(
 }
 
 /// Whether the straight line between two points inside the solid (local units) meets the surface.
-fn crosses_surface(surface: &Surface, boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
+fn crosses_surface(boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
     let (a, b) = (Vector3::from(a), Vector3::from(b));
     let length = (b - a).norm();
     let middle = 0.5 * (a + b);
     if boundary.clears(&middle, 0.5 * length) {
         return false;
     }
-    crate::inside::first_hit(boundary, surface, &a, &((b - a) / length), 0.0).is_some_and(|distance| distance < length)
+    crate::inside::first_hit(boundary, &a, &((b - a) / length), 0.0).is_some_and(|distance| distance < length)
 }

@@ -104,9 +104,10 @@ pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, pro
     };
     let extent = Vector3::from(surface.extent());
     let mut front = Front::new(front_settings, boundary, &extent);
+    let seeds = front_seeds(surface, boundary, settings, &seed, 2.0 * front.settings.radius_range[1] / (1.0 + settings.overlap));
     let expected = 0.58 * surface.volume_m3()
         / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3)).max(f64::MIN_POSITIVE);
-    run_fronts(&mut front, surface, boundary, settings, &seed, &inner, &mut history, &|placed| progress("front", placed as f64 / expected))?;
+    run_fronts(&mut front, surface, boundary, &seeds, &inner, &mut history, &|placed| progress("front", placed as f64 / expected))?;
     history.unplaced = front.waiting.len();
     let mut balls = std::mem::take(&mut front.balls);
     drop(front);
@@ -179,25 +180,28 @@ fn seed_point(surface: &Surface, boundary: &Boundary, settings: &PackSettings, d
     ))
 }
 
-/// Starts fronts at the seed and (before settling) at others spread over the shape, and again wherever room is left that no front has reached.
+/// The seed and, before settling, others spread over the shape.
+fn front_seeds(surface: &Surface, boundary: &Boundary, settings: &PackSettings, seed: &Vector3, diameter: f64) -> Vec<Vector3> {
+    let mut seeds = vec![*seed];
+    if settings.settle > 0.0 {
+        let others = spread_points(&surface.extent(), SEED_SPACING * diameter, settings.seed);
+        seeds.extend(others.into_iter().filter(|p| (p - seed).norm() > 2.0 * diameter && contains(boundary, surface, p)));
+    }
+    seeds
+}
+
+/// Starts fronts at the seeds, and again wherever room is left that no front has reached.
 fn run_fronts(
     front: &mut Front,
     surface: &Surface,
     boundary: &Boundary,
-    settings: &PackSettings,
-    seed: &Vector3,
+    seeds: &[Vector3],
     inner: &[Inscribed],
     history: &mut PackHistory,
     progress: &dyn Fn(usize) -> Result<()>,
 ) -> Result<()> {
-    let largest = front.settings.radius_range[1] / (1.0 + front.settings.overlap);
-    let mut seeds = vec![*seed];
-    if settings.settle > 0.0 {
-        let others = spread_points(&surface.extent(), SEED_SPACING * 2.0 * largest, settings.seed);
-        seeds.extend(others.into_iter().filter(|p| (p - seed).norm() > 4.0 * largest && contains(boundary, surface, p)));
-    }
     let mut queue = Vec::new();
-    for seed in &seeds {
+    for seed in seeds {
         let first = place_first_spheres(front, seed);
         history.fronts += usize::from(!first.is_empty());
         queue.extend(first);

@@ -33,7 +33,7 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
             let [a, b, c] = surface.corners(t).map(Vector3::from);
             let inward = -(b - a).cross(&(c - a)).try_normalize(0.0)?;
             let start = (a + b + c) / 3.0;
-            let length = first_hit(boundary, surface, &start, &inward, 1e-7)?;
+            let length = first_hit(boundary, &start, &inward, 1e-7)?;
             Some(start + inward * (0.5 * length))
         })
         .collect();

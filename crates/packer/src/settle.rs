@@ -13,7 +13,7 @@ use dem_io::{Diagnostic, Result};
 use rayon::prelude::*;
 
 /// Relative surplus of the radii while settling.
-const MARGIN: f64 = 1e-5;
+const MARGIN: f64 = 5e-5;
 
 /// Neighbours are listed this far beyond contact, in mean radii.
 const SKIN: f64 = 0.15;
@@ -110,13 +110,13 @@ pub fn settle(boundary: &Boundary, balls: &mut Vec<Ball>, overlap: f64, progress
             settled.taken_out += state.take_out_jammed();
             fire = Fire::START;
         } else {
-            state.step(&mut fire, &sums);
+            let moved_too_far = state.step(&mut fire, &sums);
             settled.steps += 1;
-            if state.moved_too_far() {
+            if moved_too_far {
                 state.list_neighbours();
             }
         }
-        if settled.steps % 16 == 0 {
+        if settled.steps.is_multiple_of(16) {
             progress((sums.worst.ln() / MARGIN.ln()).clamp(0.0, 1.0))?;
         }
     }
@@ -148,8 +148,8 @@ impl<'a> State<'a> {
         state
     }
 
-    /// One step of FIRE along the present forces.
-    fn step(&mut self, fire: &mut Fire, sums: &Sums) {
+    /// One step of FIRE along the present forces. Returns whether a sphere has come so far that the lists no longer hold.
+    fn step(&mut self, fire: &mut Fire, sums: &Sums) -> bool {
         if sums.power > 0.0 {
             fire.downhill_steps += 1;
             if fire.downhill_steps > 5 {
@@ -157,11 +157,11 @@ impl<'a> State<'a> {
                 fire.mixing *= 0.99;
             }
             let turn = fire.mixing * (sums.velocity_squared / sums.force_squared.max(f64::MIN_POSITIVE)).sqrt();
-            self.accelerate_and_move(fire.dt, 1.0 - fire.mixing, turn, 0.0);
+            self.accelerate_and_move(fire.dt, 1.0 - fire.mixing, turn, 0.0)
         } else {
             let back = -0.5 * fire.dt;
             *fire = Fire { dt: f64::max(fire.dt * 0.5, 0.02), ..Fire::START };
-            self.accelerate_and_move(fire.dt, 0.0, 0.0, back);
+            self.accelerate_and_move(fire.dt, 0.0, 0.0, back)
         }
     }
 
@@ -220,13 +220,6 @@ impl<'a> State<'a> {
         self.listed_at = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
     }
 
-    fn moved_too_far(&self) -> bool {
-        let limit = (0.5 * self.skin).powi(2);
-        self.balls.par_chunks(CHUNK).zip(self.listed_at.par_chunks(CHUNK)).any(|(balls, old)| {
-            balls.iter().zip(old).any(|(b, o)| (b[0] - o[0]).powi(2) + (b[1] - o[1]).powi(2) + (b[2] - o[2]).powi(2) > limit)
-        })
-    }
-
     /// Forces at the present positions.
     fn forces(&mut self) -> Sums {
         let Self { balls, force, velocity, neighbours, first, wall_triangles, wall_first, boundary, enlarge, .. } = self;
@@ -242,21 +235,22 @@ impl<'a> State<'a> {
                     let i = chunk * CHUNK + k;
                     let ball = balls[i];
                     let mut total = [0.0; 3];
+                    let mut worst_overlap = 0.0;
                     for j in &neighbours[first[i] as usize..first[i + 1] as usize] {
                         let other = &balls[*j as usize];
                         let d = [ball[0] - other[0], ball[1] - other[1], ball[2] - other[2]];
                         let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                         let touching = ball[3] + other[3];
-                        if squared < touching * touching {
-                            let distance = squared.sqrt();
-                            let overlap = touching - distance;
-                            let push = overlap / distance;
-                            total[0] += push * d[0];
-                            total[1] += push * d[1];
-                            total[2] += push * d[2];
-                            sums.worst = sums.worst.max(overlap / ball[3]);
-                        }
+                        // Without a branch: whether near spheres touch changes too often to be predicted.
+                        let distance = squared.sqrt();
+                        let overlap = if touching > distance { touching - distance } else { 0.0 };
+                        let push = overlap / distance;
+                        total[0] += push * d[0];
+                        total[1] += push * d[1];
+                        total[2] += push * d[2];
+                        worst_overlap = if overlap > worst_overlap { overlap } else { worst_overlap };
                     }
+                    sums.worst = sums.worst.max(worst_overlap / ball[3]);
                     let walls = &wall_triangles[wall_first[i] as usize..wall_first[i + 1] as usize];
                     if !walls.is_empty() {
                         let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * *enlarge);
@@ -287,19 +281,26 @@ impl<'a> State<'a> {
         })
     }
 
-    /// x += back v; v = keep v + (turn + dt) F; x += dt v.
-    fn accelerate_and_move(&mut self, dt: f64, keep: f64, turn: f64, back: f64) {
+    /// x += back v; v = keep v + (turn + dt) F; x += dt v. Returns whether a sphere is now farther than half the skin from where it was listed.
+    fn accelerate_and_move(&mut self, dt: f64, keep: f64, turn: f64, back: f64) -> bool {
         let balls = self.balls.par_chunks_mut(CHUNK);
         let velocity = self.velocity.par_chunks_mut(CHUNK);
-        balls.zip(velocity).zip(self.force.par_chunks(CHUNK)).for_each(|((balls, velocity), force)| {
-            for ((ball, v), f) in balls.iter_mut().zip(velocity).zip(force) {
+        let (force, listed_at) = (self.force.par_chunks(CHUNK), self.listed_at.par_chunks(CHUNK));
+        let farthest = balls.zip(velocity).zip(force).zip(listed_at).map(|(((balls, velocity), force), listed_at)| {
+            let mut farthest = 0.0;
+            for (((ball, v), f), old) in balls.iter_mut().zip(velocity).zip(force).zip(listed_at) {
+                let mut squared = 0.0;
                 for axis in 0..3 {
                     ball[axis] += back * v[axis];
                     v[axis] = keep * v[axis] + (turn + dt) * f[axis];
                     ball[axis] += dt * v[axis];
+                    squared += (ball[axis] - old[axis]) * (ball[axis] - old[axis]);
                 }
+                farthest = if squared > farthest { squared } else { farthest };
             }
+            farthest
         });
+        farthest.reduce(|| 0.0, f64::max) > (0.5 * self.skin).powi(2)
     }
 }
 
