@@ -74,7 +74,7 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from LAMMPS data as `write_data` and [`write`] write them. Atoms may stand in any order.
+/// Reads a body from LAMMPS data as `write_data` and [`write()`] write them. Atoms may stand in any order.
 /// A bond is as thick as the smaller of its particles and as long as they are apart. Velocities, coefficients, molecules and
 /// types are left out.
 ///

@@ -54,6 +54,25 @@ impl Bounds {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
     }
 
+    /// Whether a segment comes within `margin` of the box along each axis.
+    pub(super) fn on_segment(&self, [start, end]: [Point; 2], margin: f64) -> bool {
+        let (mut near, mut far) = (0.0_f64, 1.0_f64);
+        for k in 0..3 {
+            let (min, max) = (
+                self.min[k] - margin - start[k],
+                self.max[k] + margin - start[k],
+            );
+            let along = end[k] - start[k];
+            if along != 0.0 {
+                near = near.max((min / along).min(max / along));
+                far = far.min((min / along).max(max / along));
+            } else if min > 0.0 || max < 0.0 {
+                return false;
+            }
+        }
+        near <= far
+    }
+
     /// Whether the ray from `origin` meets the box; `inverse` is 1/direction, no component of it infinite.
     pub(super) fn on_ray(&self, origin: Point, inverse: Point) -> bool {
         let (mut near, mut far) = (0.0_f64, f64::INFINITY);
@@ -84,14 +103,8 @@ pub(super) struct Tree {
 impl Tree {
     /// The tree over `boxes`; none of them empty.
     pub(super) fn new(boxes: &[Bounds]) -> Self {
-        let all = boxes.iter().fold(Bounds::EMPTY, |sum, b| sum.with(*b));
-        let mut keys: Vec<(u64, u32)> = boxes
-            .iter()
-            .enumerate()
-            .map(|(i, b)| (place_on_curve(b, &all), i as u32))
-            .collect();
-        keys.sort_unstable();
-        let order: Vec<u32> = keys.into_iter().map(|(_, i)| i).collect();
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        sort_along_curve(&mut order, boxes);
         let boxes: Vec<Bounds> = order.iter().map(|i| boxes[*i as usize]).collect();
         let leaves = boxes.len().div_ceil(LEAF).max(1).next_power_of_two();
         let mut nodes = vec![Bounds::EMPTY; 2 * leaves];
@@ -175,16 +188,40 @@ impl Tree {
     }
 }
 
-/// The place of a box's middle on the Morton curve through `all`.
-fn place_on_curve(bounds: &Bounds, all: &Bounds) -> u64 {
-    const STEPS: f64 = (1 << 21) as f64;
-    let mut key = 0;
-    for k in 0..3 {
-        let extent = (all.max[k] - all.min[k]).max(f64::MIN_POSITIVE);
-        let share = (0.5 * (bounds.min[k] + bounds.max[k]) - all.min[k]) / extent;
-        key |= spread((share * STEPS).clamp(0.0, STEPS - 1.0) as u64) << k;
+/// Sorts box numbers by the place of the boxes' middles on the Morton curve through them; middles that share a cell of it, by a finer
+/// curve through these alone.
+fn sort_along_curve(order: &mut [u32], boxes: &[Bounds]) {
+    let middle = |i: u32| {
+        let b = &boxes[i as usize];
+        [0, 1, 2].map(|k| 0.5 * (b.min[k] + b.max[k]))
+    };
+    let (min, max) = super::vector::bounds(order.iter().map(|i| middle(*i)));
+    if order.len() <= LEAF || min == max {
+        return;
     }
-    key
+    let mut keys: Vec<(u64, u32)> = order
+        .iter()
+        .map(|i| (place_on_curve(middle(*i), min, max), *i))
+        .collect();
+    keys.sort_unstable();
+    order.iter_mut().zip(&keys).for_each(|(i, key)| *i = key.1);
+    let mut begin = 0;
+    for cell in keys.chunk_by(|a, b| a.0 == b.0) {
+        if cell.len() < keys.len() {
+            sort_along_curve(&mut order[begin..begin + cell.len()], boxes);
+        }
+        begin += cell.len();
+    }
+}
+
+/// The place of a point on the Morton curve through the cube over the box from `min` to `max`.
+fn place_on_curve(point: Point, min: Point, max: Point) -> u64 {
+    const STEPS: f64 = (1 << 21) as f64;
+    let extent = (0..3)
+        .map(|k| max[k] - min[k])
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let step = |k: usize| ((point[k] - min[k]) / extent * STEPS).clamp(0.0, STEPS - 1.0);
+    (0..3).map(|k| spread(step(k) as u64) << k).sum()
 }
 
 /// The lowest 21 bits, two zeros put between each of them.

@@ -300,12 +300,14 @@ fn relate(mesh: &mut Mesh, parts: &mut [Part]) -> Relations {
     }
     let overlap = overlap_in_plane || crossings.pairs > 0;
     let excess = if overlap {
-        let shell_bounds =
-            |shell: u32| Bounds::of(ranges[shell as usize].clone().flat_map(|t| mesh.corners(t)));
+        let shell_bounds: Vec<Bounds> = ranges
+            .iter()
+            .map(|range| Bounds::of(range.clone().flat_map(|t| mesh.corners(t))))
+            .collect();
         let crossing = crossings
             .shells
             .iter()
-            .map(|[a, b]| shell_bounds(*a).common(shell_bounds(*b)));
+            .map(|[a, b]| shell_bounds[*a as usize].common(shell_bounds[*b as usize]));
         let whole = Bounds::of(mesh.vertices.iter().copied());
         let region = if overlap_in_plane {
             whole

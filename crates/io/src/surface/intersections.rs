@@ -26,7 +26,11 @@ pub(super) fn find(mesh: &Mesh, tree: &Tree, shell_of: &[u32]) -> Intersections 
         let pair = [a.min(b), a.max(b)];
         let corners = pair.map(|t| mesh.triangles[t as usize]);
         let share_vertex = corners[0].iter().any(|v| corners[1].contains(v));
-        let crossing = if share_vertex { None } else { crossing_place(mesh.corners(pair[0]), mesh.corners(pair[1])) };
+        let crossing = if share_vertex {
+            None
+        } else {
+            crossing_place(mesh.corners(pair[0]), mesh.corners(pair[1]))
+        };
         if let Some(place) = crossing {
             pairs += 1;
             if first.is_none_or(|(before, _)| pair < before) {
@@ -37,7 +41,11 @@ pub(super) fn find(mesh: &Mesh, tree: &Tree, shell_of: &[u32]) -> Intersections 
         }
         true
     });
-    Intersections { pairs, place: first.map(|(_, place)| place), shells: shells.into_iter().collect() }
+    Intersections {
+        pairs,
+        place: first.map(|(_, place)| place),
+        shells: shells.into_iter().collect(),
+    }
 }
 
 /// A point where an edge of one triangle goes through the other.

@@ -8,11 +8,18 @@ use super::vector::{along, distance, dot, subtract};
 const ROUNDS: usize = 12;
 
 /// Splits open edges at the vertices of other open edges that lie on them, within `tolerance` (local units), and their triangles
-/// with them, so that both sides of a T-junction have the same edges. Returns how many edges were split.
+/// with them, so that both sides of a T-junction have the same edges. Returns how many edges were split. Ends when that closes
+/// nothing more.
 pub(super) fn split(mesh: &mut Mesh, tolerance: f64) -> usize {
     let mut split_edges = 0;
+    let mut open_before = usize::MAX;
     for _ in 0..ROUNDS {
-        let on_edges = vertices_on_open_edges(mesh, tolerance);
+        let open: Vec<u32> = Edges::of(mesh).open().collect();
+        if open.len() >= open_before {
+            break;
+        }
+        open_before = open.len();
+        let on_edges = vertices_on_edges(mesh, &open, tolerance);
         let mut touched = vec![false; mesh.triangles.len()];
         for on_edge in on_edges.chunk_by(|a, b| a.half_edge == b.half_edge) {
             let half_edge = on_edge[0].half_edge;
@@ -36,40 +43,34 @@ struct OnEdge {
 }
 
 /// All vertices of open edges that lie on other open edges, sorted along each of them.
-fn vertices_on_open_edges(mesh: &Mesh, tolerance: f64) -> Vec<OnEdge> {
-    let mut open: Vec<u32> = Edges::of(mesh).open().collect();
+fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
     let mut vertices: Vec<u32> = open.iter().flat_map(|h| mesh.half_edge(*h)).collect();
     vertices.sort_unstable();
     vertices.dedup();
-    // What is shorter than the tolerance is not split any further.
-    open.retain(|h| {
-        let [start, end] = mesh.segment(*h);
-        distance(start, end) > 2.0 * tolerance
-    });
-    let tree = Tree::new(
-        &open
-            .iter()
-            .map(|h| Bounds::of(mesh.segment(*h)).grown(tolerance))
-            .collect::<Vec<_>>(),
-    );
+    let points: Vec<Bounds> = vertices
+        .iter()
+        .map(|v| Bounds::of([mesh.vertices[*v as usize]]))
+        .collect();
+    let tree = Tree::new(&points);
     let mut found = Vec::new();
-    for vertex in vertices {
-        let point = mesh.vertices[vertex as usize];
-        let place = Bounds::of([point]);
+    for half_edge in continued_edges(mesh, open, tolerance) {
+        let [start, end] = mesh.segment(half_edge);
+        // What is shorter than the tolerance is not split any further.
+        if distance(start, end) <= 2.0 * tolerance {
+            continue;
+        }
+        let edge = subtract(end, start);
         tree.visit(
-            |b| b.overlaps(&place),
+            |b| b.on_segment([start, end], tolerance),
             |i| {
-                let half_edge = open[i as usize];
+                let vertex = vertices[i as usize];
                 if mesh.triangles[half_edge as usize / 3].contains(&vertex) {
                     return;
                 }
-                let [start, end] = mesh.segment(half_edge);
-                let edge = subtract(end, start);
+                let point = mesh.vertices[vertex as usize];
                 let share = dot(subtract(point, start), edge) / dot(edge, edge);
-                if share > 0.0
-                    && share < 1.0
-                    && distance(point, along(start, share, edge)) <= tolerance
-                {
+                let apart = distance(point, along(start, share, edge));
+                if share > 0.0 && share < 1.0 && apart <= tolerance {
                     found.push(OnEdge {
                         half_edge,
                         share,
@@ -86,6 +87,42 @@ fn vertices_on_open_edges(mesh: &Mesh, tolerance: f64) -> Vec<OnEdge> {
             .then(a.vertex.cmp(&b.vertex))
     });
     found
+}
+
+/// The open edges that meet, at both ends, another open edge on the same line: the edges of every T-junction do.
+fn continued_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<u32> {
+    let mut ends: Vec<(u32, u32)> = Vec::with_capacity(2 * open.len());
+    for half_edge in open {
+        let [start, end] = mesh.half_edge(*half_edge);
+        ends.extend([(start, end), (end, start)]);
+    }
+    ends.sort_unstable();
+    let continued = |from: u32, to: u32| {
+        let begin = ends.partition_point(|e| e.0 < from);
+        let mut others = ends[begin..]
+            .iter()
+            .take_while(|e| e.0 == from)
+            .filter(|e| e.1 != to);
+        others.any(|e| on_one_line(mesh, from, to, e.1, tolerance))
+    };
+    let both_ends = |h: &u32| {
+        let [start, end] = mesh.half_edge(*h);
+        continued(start, end) && continued(end, start)
+    };
+    open.iter().copied().filter(both_ends).collect()
+}
+
+/// Whether the nearer of two vertices lies on the line from a third one to the farther.
+fn on_one_line(mesh: &Mesh, from: u32, a: u32, b: u32, tolerance: f64) -> bool {
+    let [from, a, b] = [from, a, b].map(|v| mesh.vertices[v as usize]);
+    let (near, far) = if distance(from, a) < distance(from, b) {
+        (a, b)
+    } else {
+        (b, a)
+    };
+    let (to_near, to_far) = (subtract(near, from), subtract(far, from));
+    let share = dot(to_near, to_far) / dot(to_far, to_far);
+    distance(near, along(from, share, to_far)) <= tolerance
 }
 
 /// Replaces the triangle of `half_edge` by a fan from its opposite corner to the pieces of the half-edge.

@@ -5,7 +5,7 @@ use super::rays::Rays;
 use super::vector::{Point, along, cross, dot, unit};
 
 /// Columns along each side of the cross-section.
-const COLUMNS: usize = 512;
+const COLUMNS: usize = 256;
 
 /// Neither the columns nor their rows stand in a special direction to the axes: faces parallel to them would be integrated badly.
 const DIRECTION: Point = [0.237, 0.141, 0.961];

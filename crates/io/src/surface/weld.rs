@@ -12,7 +12,7 @@ pub(super) const LARGEST_TOLERANCE: f64 = 3e-5;
 const TOLERANCES: [f64; 8] = [1e-8, 3e-8, 1e-7, 3e-7, 1e-6, 3e-6, 1e-5, LARGEST_TOLERANCE];
 
 /// With more near pairs than this for each vertex, the tolerance is too large for the surface.
-const MOST_NEIGHBOURS: usize = 64;
+const MOST_NEIGHBOURS: usize = 16;
 
 /// Welds corners that are equal (0.0 and -0.0 are). Vertices are sorted by their coordinates, so that the result does not depend
 /// on the order of the facets, except that triangle i is facet i.
@@ -90,9 +90,10 @@ pub(super) fn near_vertices(mesh: &mut Mesh, edges: &Edges, diagonal: f64) -> Op
         if fewest_bad == 0 {
             break;
         }
-        let Some(clusters) = clusters_within(mesh, &at_bad_edge, &tree, tolerance) else {
-            continue;
+        let Ok(clusters) = clusters_within(mesh, &at_bad_edge, &tree, tolerance) else {
+            break;
         };
+        let Some(clusters) = clusters else { continue };
         let bad = clusters.bad_edges(mesh);
         if bad < fewest_bad {
             fewest_bad = bad;
@@ -112,9 +113,17 @@ struct Clusters {
     tolerance: f64,
 }
 
+/// Very many vertices lie within a tolerance of each other.
+struct TooDense;
+
 /// Clusters of those of `vertices` that lie within `tolerance` of each other. `None` when there are none, or one is much wider than
 /// that: then the distances between neighbouring vertices of the surface are no larger than the tolerance.
-fn clusters_within(mesh: &Mesh, vertices: &[u32], tree: &Tree, tolerance: f64) -> Option<Clusters> {
+fn clusters_within(
+    mesh: &Mesh,
+    vertices: &[u32],
+    tree: &Tree,
+    tolerance: f64,
+) -> Result<Option<Clusters>, TooDense> {
     let mut sets = Sets::new(vertices.len());
     let mut largest = 0.0_f64;
     let mut pairs = 0;
@@ -129,8 +138,11 @@ fn clusters_within(mesh: &Mesh, vertices: &[u32], tree: &Tree, tolerance: f64) -
         }
         pairs <= most_pairs
     });
-    if largest == 0.0 || pairs > most_pairs {
-        return None;
+    if pairs > most_pairs {
+        return Err(TooDense);
+    }
+    if largest == 0.0 {
+        return Ok(None);
     }
     let mut all: Vec<(u32, u32)> = (0..vertices.len() as u32)
         .map(|i| (sets.find(i).0, vertices[i as usize]))
@@ -148,14 +160,14 @@ fn clusters_within(mesh: &Mesh, vertices: &[u32], tree: &Tree, tolerance: f64) -
         let (min, max) =
             super::vector::bounds(cluster.iter().map(|(_, v)| mesh.vertices[*v as usize]));
         if distance(min, max) > 8.0 * tolerance {
-            return None;
+            return Ok(None);
         }
         cluster
             .iter()
             .for_each(|(_, v)| clusters.joined_to[*v as usize] = cluster[0].1);
         clusters.members.extend(cluster);
     }
-    Some(clusters)
+    Ok(Some(clusters))
 }
 
 impl Clusters {

@@ -133,3 +133,17 @@ fn surfaces_without_an_inside_are_refused() {
     let error = refusal(&binary(&with_fin), FILL);
     assert!(error.problem.contains("1 edge belongs to an odd number of facets, the first with 3 from (0, 0, 0) to (1, 0, 0)"), "{error}");
 }
+
+#[test]
+fn holes_with_few_and_with_many_edges_are_closed() {
+    for sides in [5, 200, 201, 400] {
+        let tube = solids::open_tube(sides, 50.0);
+        let surface = read(ascii(&[&tube]).as_bytes(), FILL);
+        let angle = std::f64::consts::TAU / sides as f64;
+        assert_volume(&surface, 0.5 * sides as f64 * angle.sin() * 50.0);
+        assert_eq!(
+            (surface.repairs.filled_holes, surface.repairs.flipped_facets),
+            (1, 0)
+        );
+    }
+}

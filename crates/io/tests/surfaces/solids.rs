@@ -77,6 +77,24 @@ pub(crate) fn moebius_strip(count: usize) -> Vec<Facet> {
         .collect()
 }
 
+/// A tube of radius 1 along z, `count` sides around, closed at the bottom and open at the top.
+pub(crate) fn open_tube(count: usize, height: f64) -> Vec<Facet> {
+    let point = |i: usize, z: f64| {
+        let angle = std::f64::consts::TAU * (i % count) as f64 / count as f64;
+        [angle.cos(), angle.sin(), z]
+    };
+    let side = |i: usize| {
+        let [a, b, c, d] = [
+            point(i, 0.0),
+            point(i + 1, 0.0),
+            point(i + 1, height),
+            point(i, height),
+        ];
+        [[a, b, c], [a, c, d], [[0.0; 3], b, a]]
+    };
+    (0..count).flat_map(side).collect()
+}
+
 /// The facets, each wound the other way round.
 pub(crate) fn turned(facets: &[Facet]) -> Vec<Facet> {
     facets.iter().map(|[a, b, c]| [*a, *c, *b]).collect()
