@@ -24,6 +24,27 @@ pub struct Boundary {
     facets: TriMesh,
     /// What bounds the solid, where that is not all facets: parts of the surface may lie inside others.
     union: Option<TriMesh>,
+    /// The triangles of the wall, prepared for `nearest_on`.
+    planes: Vec<Plane>,
+}
+
+/// A triangle as the plane that it lies in: p is above it where u = (p - corner) . along_u >= 0, v >= 0 and u + v <= 1.
+struct Plane {
+    corner: Vector3,
+    normal: Vector3,
+    along_u: Vector3,
+    along_v: Vector3,
+}
+
+impl Plane {
+    fn new(corners: [[f64; 3]; 3]) -> Self {
+        let [a, b, c] = corners.map(Vector3::from);
+        let (edge_u, edge_v) = (b - a, c - a);
+        let normal = edge_u.cross(&edge_v);
+        let squared = normal.norm_squared();
+        // A triangle without area has no inner part that a point could be above: NaN fails every comparison.
+        Self { corner: a, normal: normal / squared.sqrt(), along_u: edge_v.cross(&normal) / squared, along_v: normal.cross(&edge_u) / squared }
+    }
 }
 
 impl Boundary {
@@ -35,13 +56,14 @@ impl Boundary {
         let refused = |e| Diagnostic::input(surface.source.clone(), format!("the surface cannot be used: {e}"), "");
         let vertices = surface.vertices.iter().map(|v| Vector::from(*v)).collect();
         let facets = TriMesh::new(vertices, surface.triangles.clone()).map_err(refused)?;
-        let mut boundary = Self { facets, union: None };
+        let mut boundary = Self { facets, union: None, planes: Vec::new() };
         if surface.repairs.self_intersections > 0 {
             let pieces = outer_pieces(surface, &boundary);
             let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
             let corners = pieces.into_iter().flatten().map(Vector::from).collect();
             boundary.union = Some(TriMesh::new(corners, triangles).map_err(refused)?);
         }
+        boundary.planes = boundary.wall().triangles().map(|t| Plane::new([t.a, t.b, t.c].map(Into::into))).collect();
         Ok(boundary)
     }
 
@@ -117,6 +139,15 @@ impl Boundary {
 
     /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
+        let plane = self.planes.get(triangle as usize);
+        if let Some(Plane { corner, normal, along_u, along_v }) = plane {
+            let from_corner = point - corner;
+            let (u, v) = (from_corner.dot(along_u), from_corner.dot(along_v));
+            if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+                let height = from_corner.dot(normal);
+                return Nearest { point: point - normal * height, distance: height.abs() };
+            }
+        }
         let from = to_parry(point);
         let (projection, _) = self.wall().triangle(triangle).project_local_point_and_get_location(from, false);
         let point = from_parry(&projection.point);

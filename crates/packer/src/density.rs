@@ -6,7 +6,7 @@ use dem_io::{Diagnostic, Result, Surface};
 use serde::Serialize;
 
 /// The search ends when the density is as near as this, relative.
-const NEAR_ENOUGH: f64 = 5e-4;
+const NEAR_ENOUGH: f64 = 1e-3;
 /// Packings tried at most. Two packings of nearly the same overlap differ by chance, so more do not help.
 const MOST_PACKINGS: usize = 6;
 /// Overlaps are below this: a sphere must not swallow its neighbour's centre.

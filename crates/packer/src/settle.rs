@@ -16,7 +16,7 @@ use rayon::prelude::*;
 const MARGIN: f64 = 5e-5;
 
 /// Neighbours are listed this far beyond contact, in mean radii.
-const SKIN: f64 = 0.15;
+const SKIN: f64 = 0.3;
 /// Largest time step of the minimiser (unit masses and springs); stable for spheres with about ten contacts.
 const LARGEST_STEP: f64 = 0.6;
 /// Spheres handled by one task; fixed, so that sums do not depend on the number of threads.
@@ -28,6 +28,11 @@ const PATIENCE: [usize; 2] = [3000, 400];
 const TAKEN_OUT: f64 = 0.001;
 /// After so many steps settling is given up.
 const MOST_STEPS: usize = 60_000;
+
+/// A coordinate far from everything, in local units.
+const FAR: f64 = 1e6;
+/// Neighbours handled at once.
+const LANES: usize = 2;
 
 /// How a settling run ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,13 +49,15 @@ struct State<'a> {
     balls: Vec<Ball>,
     /// Radius over reduced radius: 1 + overlap.
     enlarge: f64,
-    velocity: Vec<[f64; 3]>,
-    force: Vec<[f64; 3]>,
+    /// x, y, z and 0, as `force`: four numbers each, like the spheres, so that all four are handled at once.
+    velocity: Vec<[f64; 4]>,
+    force: Vec<[f64; 4]>,
     neighbours: Vec<u32>,
     first: Vec<u32>,
     wall_triangles: Vec<u32>,
     wall_first: Vec<u32>,
-    listed_at: Vec<[f64; 3]>,
+    /// The spheres as they were when neighbours were listed.
+    listed_at: Vec<Ball>,
     skin: f64,
 }
 
@@ -135,8 +142,8 @@ impl<'a> State<'a> {
             boundary,
             balls,
             enlarge,
-            velocity: vec![[0.0; 3]; n],
-            force: vec![[0.0; 3]; n],
+            velocity: vec![[0.0; 4]; n],
+            force: vec![[0.0; 4]; n],
             neighbours: Vec::new(),
             first: Vec::new(),
             wall_triangles: Vec::new(),
@@ -217,7 +224,7 @@ impl<'a> State<'a> {
             let reach = ball[3] * enlarge + 0.5 * skin;
             list.extend(boundary.triangles_near(&centre, reach).filter(|t| boundary.nearest_on(*t, &centre).distance < reach));
         });
-        self.listed_at = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
+        self.listed_at.clone_from(balls);
     }
 
     /// Forces at the present positions.
@@ -234,22 +241,20 @@ impl<'a> State<'a> {
                 for (k, f) in part.iter_mut().enumerate() {
                     let i = chunk * CHUNK + k;
                     let ball = balls[i];
-                    let mut total = [0.0; 3];
-                    let mut worst_overlap = 0.0;
-                    for j in &neighbours[first[i] as usize..first[i + 1] as usize] {
-                        let other = &balls[*j as usize];
-                        let d = [ball[0] - other[0], ball[1] - other[1], ball[2] - other[2]];
-                        let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                        let touching = ball[3] + other[3];
-                        // Without a branch: whether near spheres touch changes too often to be predicted.
-                        let distance = squared.sqrt();
-                        let overlap = if touching > distance { touching - distance } else { 0.0 };
-                        let push = overlap / distance;
-                        total[0] += push * d[0];
-                        total[1] += push * d[1];
-                        total[2] += push * d[2];
-                        worst_overlap = if overlap > worst_overlap { overlap } else { worst_overlap };
+                    let mut push = Push::default();
+                    let (fours, rest) = neighbours[first[i] as usize..first[i + 1] as usize].as_chunks::<LANES>();
+                    for four in fours {
+                        push.add(&ball, four.map(|j| balls[j as usize]));
                     }
+                    if !rest.is_empty() {
+                        // Filled up with points far away, which touch nothing.
+                        let mut last = [[FAR, FAR, FAR, 0.0]; LANES];
+                        for (other, j) in last.iter_mut().zip(rest) {
+                            *other = balls[*j as usize];
+                        }
+                        push.add(&ball, last);
+                    }
+                    let (mut total, worst_overlap) = push.sum();
                     sums.worst = sums.worst.max(worst_overlap / ball[3]);
                     let walls = &wall_triangles[wall_first[i] as usize..wall_first[i + 1] as usize];
                     if !walls.is_empty() {
@@ -268,7 +273,7 @@ impl<'a> State<'a> {
                     sums.power += total[0] * v[0] + total[1] * v[1] + total[2] * v[2];
                     sums.force_squared += total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
                     sums.velocity_squared += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-                    *f = total;
+                    *f = [total[0], total[1], total[2], 0.0];
                 }
                 sums
             })
@@ -289,18 +294,62 @@ impl<'a> State<'a> {
         let farthest = balls.zip(velocity).zip(force).zip(listed_at).map(|(((balls, velocity), force), listed_at)| {
             let mut farthest = 0.0;
             for (((ball, v), f), old) in balls.iter_mut().zip(velocity).zip(force).zip(listed_at) {
-                let mut squared = 0.0;
-                for axis in 0..3 {
-                    ball[axis] += back * v[axis];
+                let mut moved = [0.0; 4];
+                for axis in 0..4 {
+                    let x = ball[axis] + back * v[axis];
                     v[axis] = keep * v[axis] + (turn + dt) * f[axis];
-                    ball[axis] += dt * v[axis];
-                    squared += (ball[axis] - old[axis]) * (ball[axis] - old[axis]);
+                    ball[axis] = x + dt * v[axis];
+                    moved[axis] = ball[axis] - old[axis];
                 }
+                let squared = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
                 farthest = if squared > farthest { squared } else { farthest };
             }
             farthest
         });
         farthest.reduce(|| 0.0, f64::max) > (0.5 * self.skin).powi(2)
+    }
+}
+
+/// Forces and largest overlaps of the neighbours of one sphere, in `LANES` sums that are added up at the end.
+#[derive(Default)]
+struct Push {
+    force: [[f64; LANES]; 3],
+    overlap: [f64; LANES],
+}
+
+impl Push {
+    /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres touch changes too often to be predicted.
+    #[inline(always)]
+    fn add(&mut self, ball: &Ball, others: [Ball; LANES]) {
+        let mut d = [[0.0; LANES]; 3];
+        let (mut squared, mut touching, mut overlap, mut push) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            for axis in 0..3 {
+                d[axis][k] = ball[axis] - others[k][axis];
+            }
+            touching[k] = ball[3] + others[k][3];
+        }
+        for k in 0..LANES {
+            squared[k] = d[0][k] * d[0][k] + d[1][k] * d[1][k] + d[2][k] * d[2][k];
+        }
+        let distance = squared.map(f64::sqrt);
+        for k in 0..LANES {
+            overlap[k] = if touching[k] > distance[k] { touching[k] - distance[k] } else { 0.0 };
+        }
+        for k in 0..LANES {
+            push[k] = overlap[k] / distance[k];
+        }
+        for k in 0..LANES {
+            self.overlap[k] = if overlap[k] > self.overlap[k] { overlap[k] } else { self.overlap[k] };
+            for axis in 0..3 {
+                self.force[axis][k] += push[k] * d[axis][k];
+            }
+        }
+    }
+
+    /// The whole force and the largest overlap.
+    fn sum(&self) -> ([f64; 3], f64) {
+        (self.force.map(|lanes| lanes.iter().sum()), self.overlap.iter().copied().fold(0.0, f64::max))
     }
 }
 
