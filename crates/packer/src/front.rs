@@ -362,7 +362,7 @@ impl<'a> Front<'a> {
 
     /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
     /// if it is free. The wall is taken for a plane at its nearest point, again and again.
-    fn touch_wall(&self, halo: &mut Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
+    fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
         let wanted = radius * (1.0 + 1e-12);
         let mut p = *p;
         for _ in 0..8 {
