@@ -123,7 +123,7 @@ struct PackArguments {
     settle: f64,
 
     /// Bond pairs nearer than this times the sum of their radii
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, help_heading = "Bonds")]
+    #[arg(long, default_value_t = 1.1, allow_negative_numbers = true, help_heading = "Bonds")]
     bonding_radius: f64,
     /// Find the bonding radius that gives this many bonds / particles
     #[arg(long, conflicts_with = "bonding_radius", help_heading = "Bonds")]

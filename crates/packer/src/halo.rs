@@ -133,6 +133,7 @@ impl Halo {
     /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
     ///
     /// Nearly all points are covered. Those are found out in single precision, `LANES` pairs of caps at a time.
+    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
     pub fn corners(&self, wanted: &Vector3, mut found: impl FnMut(&Self, &Vector3) -> bool) {
         let mut least = f64::INFINITY;
         for j in 1..self.caps.len() {
@@ -148,6 +149,7 @@ impl Halo {
     }
 
     /// For each cap of a group whether the two points where its rim meets that of cap `j` may be free.
+    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
     #[inline]
     fn open_corners(&self, j: usize, [x, y, z, rim, sine_squared]: &[[f32; LANES]; 5]) -> [[bool; LANES]; 2] {
         let [a_x, a_y, a_z, a_rim] = self.quick[j];

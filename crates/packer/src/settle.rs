@@ -319,6 +319,7 @@ struct Push {
 
 impl Push {
     /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres touch changes too often to be predicted.
+    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
     #[inline(always)]
     fn add(&mut self, ball: &Ball, others: [Ball; LANES]) {
         let mut d = [[0.0; LANES]; 3];
