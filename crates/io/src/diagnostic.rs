@@ -29,19 +29,41 @@ pub type Result<T> = std::result::Result<T, Diagnostic>;
 
 impl Diagnostic {
     /// Bad input at `place`.
-    pub fn input(place: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { kind: Kind::Input, place: place.into(), problem: problem.into(), remedy: remedy.into() }
+    pub fn input(
+        place: impl Into<String>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            kind: Kind::Input,
+            place: place.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
     }
 
     /// The work failed at `place` although the input was good.
-    pub fn failed(place: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { kind: Kind::Failed, place: place.into(), problem: problem.into(), remedy: remedy.into() }
+    pub fn failed(
+        place: impl Into<String>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            kind: Kind::Failed,
+            place: place.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
     }
 
     /// The same message, said of a place in a larger thing (a facet of a file).
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
-        self.place = if self.place.is_empty() { outer.to_owned() } else { format!("{outer}: {}", self.place) };
+        self.place = if self.place.is_empty() {
+            outer.to_owned()
+        } else {
+            format!("{outer}: {}", self.place)
+        };
         self
     }
 

@@ -3,8 +3,15 @@
 use crate::{Diagnostic, Result};
 
 /// Units of length and their size in metres.
-pub const LENGTH_UNITS: [(&str, f64); 7] =
-    [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("km", 1e3), ("in", 0.0254)];
+pub const LENGTH_UNITS: [(&str, f64); 7] = [
+    ("nm", 1e-9),
+    ("um", 1e-6),
+    ("mm", 1e-3),
+    ("cm", 1e-2),
+    ("m", 1.0),
+    ("km", 1e3),
+    ("in", 0.0254),
+];
 
 /// Units of density and their size in kg/m3.
 pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
@@ -38,13 +45,25 @@ fn quantity(text: &str, units: &[(&str, f64)], what: &str, example: &str) -> Res
     let number_end = number_length(text);
     let (number, unit) = text.split_at(number_end);
     let value: f64 = number.parse().map_err(|_| {
-        Diagnostic::input("", format!("'{text}' is not a {what}"), format!("write a number with a unit, such as {example}"))
+        Diagnostic::input(
+            "",
+            format!("'{text}' is not a {what}"),
+            format!("write a number with a unit, such as {example}"),
+        )
     })?;
     let unit = unit.trim();
-    let size = if unit.is_empty() { 1.0 } else { unit_size(unit, units)? };
+    let size = if unit.is_empty() {
+        1.0
+    } else {
+        unit_size(unit, units)?
+    };
     let value = value * size;
     if !value.is_finite() {
-        return Err(Diagnostic::input("", format!("'{text}' is not a finite {what}"), ""));
+        return Err(Diagnostic::input(
+            "",
+            format!("'{text}' is not a finite {what}"),
+            "",
+        ));
     }
     Ok(value)
 }
@@ -57,7 +76,9 @@ fn number_length(text: &str) -> usize {
         let c = bytes[end];
         let exponent = matches!(c, b'e' | b'E')
             && end > 0
-            && bytes.get(end + 1).is_some_and(|n| n.is_ascii_digit() || matches!(n, b'+' | b'-'));
+            && bytes
+                .get(end + 1)
+                .is_some_and(|n| n.is_ascii_digit() || matches!(n, b'+' | b'-'));
         let sign = matches!(c, b'+' | b'-') && (end == 0 || matches!(bytes[end - 1], b'e' | b'E'));
         if !(c.is_ascii_digit() || c == b'.' || exponent || sign) {
             break;
@@ -69,10 +90,18 @@ fn number_length(text: &str) -> usize {
 
 fn unit_size(name: &str, units: &[(&str, f64)]) -> Result<f64> {
     let name = name.replace('µ', "u").replace('³', "3").replace('^', "");
-    units.iter().find(|(known, _)| *known == name).map(|(_, size)| *size).ok_or_else(|| {
-        let known: Vec<&str> = units.iter().map(|(n, _)| *n).collect();
-        Diagnostic::input("", format!("unknown unit '{name}'"), format!("use one of {}", known.join(", ")))
-    })
+    units
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, size)| *size)
+        .ok_or_else(|| {
+            let known: Vec<&str> = units.iter().map(|(n, _)| *n).collect();
+            Diagnostic::input(
+                "",
+                format!("unknown unit '{name}'"),
+                format!("use one of {}", known.join(", ")),
+            )
+        })
 }
 
 /// A length for a person: three to four digits in the unit that suits its size.
@@ -98,7 +127,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
     let decimals = (digits as i32 - 1 - magnitude).max(0) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]

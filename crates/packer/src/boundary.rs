@@ -43,7 +43,12 @@ impl Plane {
         let normal = edge_u.cross(&edge_v);
         let squared = normal.norm_squared();
         // A triangle without area has no inner part that a point could be above: NaN fails every comparison.
-        Self { corner: a, normal: normal / squared.sqrt(), along_u: edge_v.cross(&normal) / squared, along_v: normal.cross(&edge_u) / squared }
+        Self {
+            corner: a,
+            normal: normal / squared.sqrt(),
+            along_u: edge_v.cross(&normal) / squared,
+            along_v: normal.cross(&edge_u) / squared,
+        }
     }
 }
 
@@ -53,17 +58,33 @@ impl Boundary {
     /// # Errors
     /// A surface without triangles.
     pub fn new(surface: &Surface) -> Result<Self> {
-        let refused = |e| Diagnostic::input(surface.source.clone(), format!("the surface cannot be used: {e}"), "");
+        let refused = |e| {
+            Diagnostic::input(
+                surface.source.clone(),
+                format!("the surface cannot be used: {e}"),
+                "",
+            )
+        };
         let vertices = surface.vertices.iter().map(|v| Vector::from(*v)).collect();
         let facets = TriMesh::new(vertices, surface.triangles.clone()).map_err(refused)?;
-        let mut boundary = Self { facets, union: None, planes: Vec::new() };
+        let mut boundary = Self {
+            facets,
+            union: None,
+            planes: Vec::new(),
+        };
         if surface.repairs.self_intersections > 0 {
             let pieces = outer_pieces(surface, &boundary);
-            let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let triangles = (0..pieces.len() as u32)
+                .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
+                .collect();
             let corners = pieces.into_iter().flatten().map(Vector::from).collect();
             boundary.union = Some(TriMesh::new(corners, triangles).map_err(refused)?);
         }
-        boundary.planes = boundary.wall().triangles().map(|t| Plane::new([t.a, t.b, t.c].map(Into::into))).collect();
+        boundary.planes = boundary
+            .wall()
+            .triangles()
+            .map(|t| Plane::new([t.a, t.b, t.c].map(Into::into)))
+            .collect();
         Ok(boundary)
     }
 
@@ -75,9 +96,14 @@ impl Boundary {
     /// The nearest point of the surface, if it is closer than `cut_off` (local units).
     pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
         let from = to_parry(point);
-        let (projection, _) = self.wall().project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
+        let (projection, _) = self
+            .wall()
+            .project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
         let point = from_parry(&projection.point);
-        Some(Nearest { point, distance: (projection.point - from).length() })
+        Some(Nearest {
+            point,
+            distance: (projection.point - from).length(),
+        })
     }
 
     /// Whether the surface leaves a ball of this radius (local units) free.
@@ -89,16 +115,26 @@ impl Boundary {
     pub fn triangles_near(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
         let (centre, half) = (to_parry(point), Vector::splat(reach));
         let query = BvhNode::leaf(Aabb::new(centre - half, centre + half), 0);
-        self.wall().bvh().leaves(move |node| node.intersects(&query))
+        self.wall()
+            .bvh()
+            .leaves(move |node| node.intersects(&query))
     }
 
     /// The facets of the surface whose boxes a ray passes, as indices of the surface's triangles.
-    pub fn facets_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + '_ {
+    pub fn facets_on_ray(
+        &self,
+        origin: &Vector3,
+        direction: &Vector3,
+    ) -> impl Iterator<Item = u32> + '_ {
         on_ray(&self.facets, origin, direction)
     }
 
     /// The triangles of the wall whose boxes a ray passes, by their corners.
-    pub fn walls_on_ray(&self, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+    pub fn walls_on_ray(
+        &self,
+        origin: &Vector3,
+        direction: &Vector3,
+    ) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         on_ray(self.wall(), origin, direction).map(|t| {
             let triangle = self.wall().triangle(t);
             [triangle.a, triangle.b, triangle.c].map(Into::into)
@@ -107,7 +143,13 @@ impl Boundary {
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
     /// a face hidden behind a nearer one (the same plane, the far side of an edge) left out. `triangles` limits the search; at most 8 are found.
-    pub fn walls(&self, triangles: impl Iterator<Item = u32>, centre: &Vector3, radius: f64, found: &mut Vec<Nearest>) {
+    pub fn walls(
+        &self,
+        triangles: impl Iterator<Item = u32>,
+        centre: &Vector3,
+        radius: f64,
+        found: &mut Vec<Nearest>,
+    ) {
         const SAME_DIRECTION: f64 = 0.97;
         const MOST: usize = 8;
         found.clear();
@@ -118,7 +160,10 @@ impl Boundary {
                 continue;
             }
             let direction = toward(&near);
-            match found.iter().position(|other| toward(other).dot(&direction) > SAME_DIRECTION) {
+            match found
+                .iter()
+                .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
+            {
                 Some(k) if near.distance < found[k].distance => found[k] = near,
                 None if found.len() < MOST => found.push(near),
                 _ => {}
@@ -128,7 +173,9 @@ impl Boundary {
         let mut kept = 0;
         for k in 0..found.len() {
             let near = found[k];
-            let hidden = found[..kept].iter().any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
+            let hidden = found[..kept]
+                .iter()
+                .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
             if !hidden {
                 found[kept] = near;
                 kept += 1;
@@ -140,24 +187,44 @@ impl Boundary {
     /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
         let plane = self.planes.get(triangle as usize);
-        if let Some(Plane { corner, normal, along_u, along_v }) = plane {
+        if let Some(Plane {
+            corner,
+            normal,
+            along_u,
+            along_v,
+        }) = plane
+        {
             let from_corner = point - corner;
             let (u, v) = (from_corner.dot(along_u), from_corner.dot(along_v));
             if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
                 let height = from_corner.dot(normal);
-                return Nearest { point: point - normal * height, distance: height.abs() };
+                return Nearest {
+                    point: point - normal * height,
+                    distance: height.abs(),
+                };
             }
         }
         let from = to_parry(point);
-        let (projection, _) = self.wall().triangle(triangle).project_local_point_and_get_location(from, false);
+        let (projection, _) = self
+            .wall()
+            .triangle(triangle)
+            .project_local_point_and_get_location(from, false);
         let point = from_parry(&projection.point);
-        Nearest { point, distance: (projection.point - from).length() }
+        Nearest {
+            point,
+            distance: (projection.point - from).length(),
+        }
     }
 }
 
-fn on_ray<'a>(mesh: &'a TriMesh, origin: &Vector3, direction: &Vector3) -> impl Iterator<Item = u32> + use<'a> {
+fn on_ray<'a>(
+    mesh: &'a TriMesh,
+    origin: &Vector3,
+    direction: &Vector3,
+) -> impl Iterator<Item = u32> + use<'a> {
     let ray = Ray::new(to_parry(origin), to_parry(direction));
-    mesh.bvh().leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
+    mesh.bvh()
+        .leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
 }
 
 fn to_parry(v: &Vector3) -> Vector {

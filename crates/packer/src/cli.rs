@@ -1,7 +1,7 @@
 //! The command line of dem-pack: arguments as typed, and what is done with them.
 
 use crate::density::LARGEST_OVERLAP;
-use crate::make::{MakeSettings, Made, make_body};
+use crate::make::{Made, MakeSettings, make_body};
 use crate::pack::PackSettings;
 use crate::sizes::{By, Sizes};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -104,32 +104,57 @@ struct PackArguments {
     #[arg(long, value_enum, default_value = "number", help_heading = "Spheres")]
     by: ByArgument,
     /// Overlap o: spheres touch at radius/(1 + o)
-    #[arg(long, default_value_t = 0.25, allow_negative_numbers = true, help_heading = "Spheres")]
+    #[arg(
+        long,
+        default_value_t = 0.25,
+        allow_negative_numbers = true,
+        help_heading = "Spheres"
+    )]
     overlap: f64,
     /// Density of the particles' material (kg/m3 unless given)
     #[arg(long, help_heading = "Spheres")]
     particle_density: Option<String>,
     /// Find the overlap that gives this mass of particles / volume of the shape (kg/m3 unless given)
-    #[arg(long, requires = "particle_density", conflicts_with = "overlap", help_heading = "Spheres")]
+    #[arg(
+        long,
+        requires = "particle_density",
+        conflicts_with = "overlap",
+        help_heading = "Spheres"
+    )]
     solid_density: Option<String>,
     /// Random numbers: the same seed gives the same body
     #[arg(long, default_value_t = 1, help_heading = "Spheres")]
     seed: u64,
     /// Where the first front begins: X,Y,Z; the deepest point if not given
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = "Spheres")]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        help_heading = "Spheres"
+    )]
     seed_point: Option<String>,
     /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front
     #[arg(long, default_value_t = DEFAULT_SETTLE, allow_negative_numbers = true, value_name = "SHARE", help_heading = "Spheres")]
     settle: f64,
 
     /// Bond pairs nearer than this times the sum of their radii
-    #[arg(long, default_value_t = 1.1, allow_negative_numbers = true, help_heading = "Bonds")]
+    #[arg(
+        long,
+        default_value_t = 1.1,
+        allow_negative_numbers = true,
+        help_heading = "Bonds"
+    )]
     bonding_radius: f64,
     /// Find the bonding radius that gives this many bonds / particles
     #[arg(long, conflicts_with = "bonding_radius", help_heading = "Bonds")]
     bonds_per_particle: Option<f64>,
     /// Bond radius / radius of the smaller particle
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, help_heading = "Bonds")]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        help_heading = "Bonds"
+    )]
     bond_radius_factor: f64,
 
     /// Number of threads; the result is the same for any
@@ -149,7 +174,11 @@ struct PackArguments {
 /// Bad input, or work that failed; a reader that closes standard output early is no error.
 pub fn run(arguments: &Arguments) -> Result<()> {
     match &arguments.command {
-        Some(Command::Info { file, reading, json }) => info(file, reading, *json),
+        Some(Command::Info {
+            file,
+            reading,
+            json,
+        }) => info(file, reading, *json),
         Some(Command::Convert { from, to }) => {
             body_files(to)?;
             write_body(&read_body(from)?, to)
@@ -158,13 +187,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             clap_complete::generate(*shell, &mut Arguments::command(), "dem-pack", &mut out);
             Ok(())
         }),
-        Some(Command::Man) => write_standard_output(|mut out| clap_mangen::Man::new(Arguments::command()).render(&mut out)),
+        Some(Command::Man) => write_standard_output(|mut out| {
+            clap_mangen::Man::new(Arguments::command()).render(&mut out)
+        }),
         None => pack_command(&arguments.pack),
     }
 }
 
 fn pack_command(arguments: &PackArguments) -> Result<()> {
-    let Some(stl) = &arguments.stl else { return Err(Diagnostic::input("", "no STL file was given", "")) };
+    let Some(stl) = &arguments.stl else {
+        return Err(Diagnostic::input("", "no STL file was given", ""));
+    };
     let output = arguments.output.as_deref().unwrap_or(Path::new("-"));
     check_output(output)?;
     let settings = arguments.checked()?;
@@ -172,8 +205,16 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         set_threads(threads)?;
     }
     let surface = read_surface(stl, &arguments.reading)?;
-    let person = if arguments.quiet { None } else { Some(std::io::stderr()) };
-    let bar = if person.is_some() && std::io::stderr().is_terminal() { progress_bar() } else { ProgressBar::hidden() };
+    let person = if arguments.quiet {
+        None
+    } else {
+        Some(std::io::stderr())
+    };
+    let bar = if person.is_some() && std::io::stderr().is_terminal() {
+        progress_bar()
+    } else {
+        ProgressBar::hidden()
+    };
     let progress = |stage: &str, done: f64| {
         bar.set_message(stage.to_owned());
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
@@ -193,7 +234,11 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         });
     }
     if arguments.output.is_some() && output != Path::new("-") {
-        if arguments.quiet { Ok(()) } else { write_standard_output(|out| out.write_all(text.as_bytes())) }
+        if arguments.quiet {
+            Ok(())
+        } else {
+            write_standard_output(|out| out.write_all(text.as_bytes()))
+        }
     } else {
         if let Some(mut person) = person {
             // Standard error that cannot be written to leaves nobody to tell.
@@ -211,15 +256,43 @@ impl PackArguments {
             ByArgument::Mass => By::Mass,
         };
         let sizes = Sizes::parse(self.diameter.as_deref().unwrap_or_default(), by)?;
-        check_range("--overlap", self.overlap, 0.0, LARGEST_OVERLAP, "0.1 to 0.5 is usual")?;
-        check_range("--settle", self.settle, 0.0, LARGEST_SETTLE, "0.02 to 0.04 is usual, 0 is the bare front")?;
-        check_range("--bond-radius-factor", self.bond_radius_factor, f64::MIN_POSITIVE, 10.0, "1 is usual")?;
-        check_range("--bonding-radius", self.bonding_radius, f64::MIN_POSITIVE, 2.0 + f64::EPSILON * 2.0, "1.0 to 1.2 is usual")?;
+        check_range(
+            "--overlap",
+            self.overlap,
+            0.0,
+            LARGEST_OVERLAP,
+            "0.1 to 0.5 is usual",
+        )?;
+        check_range(
+            "--settle",
+            self.settle,
+            0.0,
+            LARGEST_SETTLE,
+            "0.02 to 0.04 is usual, 0 is the bare front",
+        )?;
+        check_range(
+            "--bond-radius-factor",
+            self.bond_radius_factor,
+            f64::MIN_POSITIVE,
+            10.0,
+            "1 is usual",
+        )?;
+        check_range(
+            "--bonding-radius",
+            self.bonding_radius,
+            f64::MIN_POSITIVE,
+            2.0 + f64::EPSILON * 2.0,
+            "1.0 to 1.2 is usual",
+        )?;
         let density = |option: &str, text: &Option<String>| {
             let Some(text) = text else { return Ok(None) };
             let value = density_kg_m3(text).map_err(|e| e.within(option))?;
             if value <= 0.0 {
-                return Err(Diagnostic::input(option, format!("{value} kg/m3 is not positive"), "give a density such as 2050"));
+                return Err(Diagnostic::input(
+                    option,
+                    format!("{value} kg/m3 is not positive"),
+                    "give a density such as 2050",
+                ));
             }
             Ok(Some(value))
         };
@@ -244,30 +317,61 @@ fn check_range(option: &str, value: f64, least: f64, below: f64, remedy: &str) -
     if value >= least && value < below {
         return Ok(());
     }
-    let limit = if least > 0.0 { "above 0".to_owned() } else { format!("at least {least}") };
-    Err(Diagnostic::input(option, format!("{value} is not {limit} and below {}", significant(below, 3)), remedy))
+    let limit = if least > 0.0 {
+        "above 0".to_owned()
+    } else {
+        format!("at least {least}")
+    };
+    Err(Diagnostic::input(
+        option,
+        format!("{value} is not {limit} and below {}", significant(below, 3)),
+        remedy,
+    ))
 }
 
 fn parse_point(text: &str) -> Result<[f64; 3]> {
-    let bad = || Diagnostic::input("--seed-point", format!("'{text}' is not a point"), "write three lengths, such as 10mm,0mm,5mm");
-    let parts: Vec<f64> = text.split(',').map(length_m).collect::<Result<_>>().map_err(|e| e.within("--seed-point"))?;
+    let bad = || {
+        Diagnostic::input(
+            "--seed-point",
+            format!("'{text}' is not a point"),
+            "write three lengths, such as 10mm,0mm,5mm",
+        )
+    };
+    let parts: Vec<f64> = text
+        .split(',')
+        .map(length_m)
+        .collect::<Result<_>>()
+        .map_err(|e| e.within("--seed-point"))?;
     parts.try_into().map_err(|_| bad())
 }
 
 fn set_threads(threads: usize) -> Result<()> {
     if threads == 0 || threads > 1024 {
-        return Err(Diagnostic::input("--threads", format!("{threads} is not between 1 and 1024"), ""));
+        return Err(Diagnostic::input(
+            "--threads",
+            format!("{threads} is not between 1 and 1024"),
+            "",
+        ));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()
-        .map_err(|e| Diagnostic::failed("--threads", format!("the threads cannot be started: {e}"), "ask for fewer"))
+        .map_err(|e| {
+            Diagnostic::failed(
+                "--threads",
+                format!("the threads cannot be started: {e}"),
+                "ask for fewer",
+            )
+        })
 }
 
 /// Finds out before the work whether the body can be written at all.
 fn check_output(output: &Path) -> Result<()> {
     for file in body_files(output)? {
-        let folder = file.parent().filter(|f| *f != Path::new("")).unwrap_or(Path::new("."));
+        let folder = file
+            .parent()
+            .filter(|f| *f != Path::new(""))
+            .unwrap_or(Path::new("."));
         if !folder.is_dir() {
             return Err(Diagnostic::input(
                 output.display().to_string(),
@@ -277,28 +381,56 @@ fn check_output(output: &Path) -> Result<()> {
         }
     }
     if output == Path::new("-") && std::io::stdout().is_terminal() {
-        return Err(Diagnostic::input("standard output", "a .vtp is no text for a terminal", "give --output FILE, or pipe it into another program"));
+        return Err(Diagnostic::input(
+            "standard output",
+            "a .vtp is no text for a terminal",
+            "give --output FILE, or pipe it into another program",
+        ));
     }
     Ok(())
 }
 
 fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
     if !(reading.scale > 0.0 && reading.scale.is_finite()) {
-        return Err(Diagnostic::input("--scale", format!("{} is not a positive number", reading.scale), "1 leaves the shape as it is"));
+        return Err(Diagnostic::input(
+            "--scale",
+            format!("{} is not a positive number", reading.scale),
+            "1 leaves the shape as it is",
+        ));
     }
     let unit_m = length_unit_m(&reading.unit).map_err(|e| e.within("--unit"))?;
     let (name, bytes) = if path == Path::new("-") {
         let mut bytes = Vec::new();
-        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| ("standard input".to_owned(), bytes))
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map(|_| ("standard input".to_owned(), bytes))
     } else {
         std::fs::read(path).map(|bytes| (path.display().to_string(), bytes))
     }
-    .map_err(|e| Diagnostic::input(path.display().to_string(), format!("cannot be read: {e}"), "check its name and folder"))?;
-    surface_from_stl(&bytes, &name, ReadSettings { unit_m, scale: reading.scale, fill_holes: reading.fill_holes })
+    .map_err(|e| {
+        Diagnostic::input(
+            path.display().to_string(),
+            format!("cannot be read: {e}"),
+            "check its name and folder",
+        )
+    })?;
+    surface_from_stl(
+        &bytes,
+        &name,
+        ReadSettings {
+            unit_m,
+            scale: reading.scale,
+            fill_holes: reading.fill_holes,
+        },
+    )
 }
 
 fn info(file: &Path, reading: &Reading, json: bool) -> Result<()> {
-    if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
+    if file
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("stl"))
+    {
         let surface = read_surface(file, reading)?;
         return write_standard_output(|out| {
             if json {
@@ -335,7 +467,10 @@ fn surface_summary(surface: &Surface) -> serde_json::Value {
 }
 
 fn surface_text(surface: &Surface) -> String {
-    let size = surface.extent().map(|e| show_length(e * surface.unit_m)).join(" x ");
+    let size = surface
+        .extent()
+        .map(|e| show_length(e * surface.unit_m))
+        .join(" x ");
     let corner = surface.origin_m.map(show_length).join(", ");
     let cavities = surface.shells.iter().filter(|s| s.is_cavity).count();
     let mut text = format!(
@@ -355,7 +490,11 @@ fn surface_text(surface: &Surface) -> String {
 /// What a person wants to know: how good the body is, what to mind, where the time went.
 fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
-    let name = if output == Path::new("-") { "standard output".to_owned() } else { output.display().to_string() };
+    let name = if output == Path::new("-") {
+        "standard output".to_owned()
+    } else {
+        output.display().to_string()
+    };
     let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
     if let Some(search) = &made.density_search {
         text += &format!(
@@ -369,7 +508,11 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     let history = &made.history;
     text += &format!(
         "front       {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
-        history.fronts, history.settling_steps, history.taken_out, history.void_fillers, history.voids_left
+        history.fronts,
+        history.settling_steps,
+        history.taken_out,
+        history.void_fillers,
+        history.voids_left
     );
     text += &format!(
         "time        {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
@@ -388,7 +531,9 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
 
 fn progress_bar() -> ProgressBar {
     let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{msg:14} [{bar:40}] {percent:>3} %  {eta} left") {
+    if let Ok(style) =
+        ProgressStyle::with_template("{msg:14} [{bar:40}] {percent:>3} %  {eta} left")
+    {
         bar.set_style(style.progress_chars("=> "));
     }
     bar

@@ -61,16 +61,31 @@ pub fn pack_to_density(
         }
         settings.overlap = next.max(0.0);
     }
-    let Some((off, overlap, packing)) = best else { return Err(unreachable(wanted_kg_m3, particle_kg_m3, 0.6)) };
+    let Some((off, overlap, packing)) = best else {
+        return Err(unreachable(wanted_kg_m3, particle_kg_m3, 0.6));
+    };
     let _ = off;
     settings.overlap = overlap;
     let found_kg_m3 = filled_share(surface, &packing) * particle_kg_m3;
-    Ok((packing, DensitySearch { wanted_kg_m3, found_kg_m3, overlap, packings }))
+    Ok((
+        packing,
+        DensitySearch {
+            wanted_kg_m3,
+            found_kg_m3,
+            overlap,
+            packings,
+        },
+    ))
 }
 
 /// Sum of the particles' volumes / volume of the shape.
 pub fn filled_share(surface: &Surface, packing: &Packing) -> f64 {
-    let spheres: f64 = packing.spheres.radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+    let spheres: f64 = packing
+        .spheres
+        .radii
+        .iter()
+        .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
+        .sum();
     spheres * surface.unit_m.powi(3) / surface.volume_m3()
 }
 
@@ -82,7 +97,9 @@ fn unreachable(wanted: f64, particle: f64, reduced: f64) -> Diagnostic {
     let (least, most) = (particle * reduced, particle * reduced * 8.0);
     Diagnostic::input(
         "--solid-density",
-        format!("{wanted} kg/m3 cannot be reached with particles of {particle} kg/m3: without overlap the body has {least:.0} kg/m3, at overlap 1 {most:.0}"),
+        format!(
+            "{wanted} kg/m3 cannot be reached with particles of {particle} kg/m3: without overlap the body has {least:.0} kg/m3, at overlap 1 {most:.0}"
+        ),
         "change --solid-density or --particle-density",
     )
 }

@@ -41,9 +41,15 @@ impl<'a> DepthMap<'a> {
         let cells = (0..counts.iter().product::<usize>())
             .into_par_iter()
             .map(|at| {
-                let cell = [at % counts[0], at / counts[0] % counts[1], at / (counts[0] * counts[1])];
+                let cell = [
+                    at % counts[0],
+                    at / counts[0] % counts[1],
+                    at / (counts[0] * counts[1]),
+                ];
                 let centre = Vector3::from(cell.map(|c| (c as f64 + 0.5) * edge));
-                let distance = boundary.nearest(&centre, cut_off + half_diagonal).map_or(f64::INFINITY, |near| near.distance);
+                let distance = boundary
+                    .nearest(&centre, cut_off + half_diagonal)
+                    .map_or(f64::INFINITY, |near| near.distance);
                 if distance <= half_diagonal {
                     Cell::Crossed
                 } else if !contains(boundary, surface, &centre) {
@@ -55,7 +61,14 @@ impl<'a> DepthMap<'a> {
                 }
             })
             .collect();
-        Self { surface, boundary, cut_off, edge, counts, cells }
+        Self {
+            surface,
+            boundary,
+            cut_off,
+            edge,
+            counts,
+            cells,
+        }
     }
 
     /// Distance to the surface, positive inside, negative outside; infinite where it is more than the cut-off, and anywhere
@@ -67,7 +80,11 @@ impl<'a> DepthMap<'a> {
         }
         let [x, y, z] = cell.map(|c| c as usize);
         let point = Vector3::from(point);
-        let distance = || self.boundary.nearest(&point, self.cut_off).map_or(f64::INFINITY, |near| near.distance);
+        let distance = || {
+            self.boundary
+                .nearest(&point, self.cut_off)
+                .map_or(f64::INFINITY, |near| near.distance)
+        };
         match self.cells[(z * self.counts[1] + y) * self.counts[0] + x] {
             Cell::Deep => f64::INFINITY,
             Cell::Inside => distance(),

@@ -82,11 +82,23 @@ impl<'a> Front<'a> {
             .into_par_iter()
             .map(|at| {
                 let cell = [at % nx, at / nx % ny, at / (nx * ny)];
-                cell.iter().zip(grid.counts).any(|(c, n)| *c == 0 || *c + 1 == n)
+                cell.iter()
+                    .zip(grid.counts)
+                    .any(|(c, n)| *c == 0 || *c + 1 == n)
                     || !boundary.clears(&grid.centre(cell), half_diagonal + largest)
             })
             .collect();
-        Self { settings, boundary, grid, near_wall, balls: Vec::new(), grew_from: Vec::new(), seeds: Vec::new(), waiting: Vec::new(), streams: 0 }
+        Self {
+            settings,
+            boundary,
+            grid,
+            near_wall,
+            balls: Vec::new(),
+            grew_from: Vec::new(),
+            seeds: Vec::new(),
+            waiting: Vec::new(),
+            streams: 0,
+        }
     }
 
     /// Adds spheres that are there already: centre and reduced radius.
@@ -112,18 +124,20 @@ impl<'a> Front<'a> {
     pub fn gap(&self, point: &Vector3, cut_off: f64) -> f64 {
         let largest = self.settings.radius_range[1] / (1.0 + self.settings.overlap);
         let mut gap = cut_off;
-        self.grid.near(point.x, point.y, point.z, cut_off + largest, |cell| {
-            for ball in cell {
-                gap = gap.min(distance(ball, point) - ball[3]);
-            }
-        });
+        self.grid
+            .near(point.x, point.y, point.z, cut_off + largest, |cell| {
+                for ball in cell {
+                    gap = gap.min(distance(ball, point) - ball[3]);
+                }
+            });
         gap
     }
 
     /// Whether a sphere of this (not reduced) radius with its centre here, known to be inside the solid, overlaps neither sphere nor wall.
     pub fn fits(&self, centre: &Vector3, radius: f64) -> bool {
         let reduced = radius / (1.0 + self.settings.overlap);
-        self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12) && self.boundary.clears(centre, radius)
+        self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12)
+            && self.boundary.clears(centre, radius)
     }
 
     /// Radius (not reduced) of the largest sphere around `point` that overlaps no other, at most `cut_off`, local units.
@@ -135,7 +149,10 @@ impl<'a> Front<'a> {
     pub fn fill(&mut self, void: &Vector3) -> (Vector3, f64) {
         let [smallest, largest] = self.settings.radius_range;
         let room = |p: &Vector3| {
-            let wall = self.boundary.nearest(p, largest).map_or(largest, |near| near.distance);
+            let wall = self
+                .boundary
+                .nearest(p, largest)
+                .map_or(largest, |near| near.distance);
             wall.min(self.reach_to_spheres(p, largest)).min(largest)
         };
         let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &room);
@@ -146,10 +163,18 @@ impl<'a> Front<'a> {
         let (mut fits, mut fits_not) = (0.0, 1.0);
         for _ in 0..52 {
             let middle = 0.5 * (fits + fits_not);
-            if (self.settings.radius)(middle) <= roomiest.radius { fits = middle } else { fits_not = middle }
+            if (self.settings.radius)(middle) <= roomiest.radius {
+                fits = middle
+            } else {
+                fits_not = middle
+            }
         }
         let radius = (self.settings.radius)(fits * random.random::<f64>());
-        if self.fits(&roomiest.centre, radius) { (roomiest.centre, radius) } else { (*void, smallest) }
+        if self.fits(&roomiest.centre, radius) {
+            (roomiest.centre, radius)
+        } else {
+            (*void, smallest)
+        }
     }
 
     /// Places that take a sphere of the smallest radius next to the spheres `around` (indices of `balls`).
@@ -161,7 +186,8 @@ impl<'a> Front<'a> {
             .map_init(Workspace::default, |workspace, i| {
                 let ball = self.balls[*i as usize];
                 let here = Vector3::new(ball[0], ball[1], ball[2]);
-                self.place_from_stock(workspace, &ball, &[], &here, &smallest).map(|(place, _)| place)
+                self.place_from_stock(workspace, &ball, &[], &here, &smallest)
+                    .map(|(place, _)| place)
             })
             .flatten_iter()
             .collect()
@@ -169,7 +195,12 @@ impl<'a> Front<'a> {
 
     /// Adds a sphere of this (not reduced) radius where it is known to fit.
     pub fn place(&mut self, centre: &Vector3, radius: f64) {
-        let ball = [centre.x, centre.y, centre.z, radius / (1.0 + self.settings.overlap)];
+        let ball = [
+            centre.x,
+            centre.y,
+            centre.z,
+            radius / (1.0 + self.settings.overlap),
+        ];
         self.add((ball, self.seeds.len().saturating_sub(1) as u32));
     }
 
@@ -180,7 +211,9 @@ impl<'a> Front<'a> {
 
     /// Whether a sphere of this (not reduced) radius lies inside the surface, given that its centre does not lie beyond it.
     fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
-        let at = self.grid.index(self.grid.cell_of(centre.x, centre.y, centre.z));
+        let at = self
+            .grid
+            .index(self.grid.cell_of(centre.x, centre.y, centre.z));
         !self.near_wall[at] || self.boundary.clears(centre, radius)
     }
 
@@ -218,14 +251,27 @@ impl<'a> Front<'a> {
                 let turns: Vec<Turn> = tasks
                     .into_par_iter()
                     .enumerate()
-                    .map_init(Workspace::default, |workspace, (task, (block, queue, stock))| {
-                        self.advance_block(workspace, within, block, &queue, stock, stream + task as u64)
-                    })
+                    .map_init(
+                        Workspace::default,
+                        |workspace, (task, (block, queue, stock))| {
+                            self.advance_block(
+                                workspace,
+                                within,
+                                block,
+                                &queue,
+                                stock,
+                                stream + task as u64,
+                            )
+                        },
+                    )
                     .collect();
                 for turn in turns {
                     self.waiting.extend(turn.waiting);
                     for front_ball in turn.balls {
-                        shells.entry(self.shell_of(&front_ball)).or_default().push(self.balls.len() as u32);
+                        shells
+                            .entry(self.shell_of(&front_ball))
+                            .or_default()
+                            .push(self.balls.len() as u32);
                         self.add(front_ball);
                     }
                 }
@@ -250,7 +296,10 @@ impl<'a> Front<'a> {
 
     /// Colour and number of the block that a sphere's centre lies in.
     fn block_of(&self, ball: &Ball) -> (usize, usize) {
-        let block = self.grid.cell_of(ball[0], ball[1], ball[2]).map(|c| c / BLOCK);
+        let block = self
+            .grid
+            .cell_of(ball[0], ball[1], ball[2])
+            .map(|c| c / BLOCK);
         let colour = block[0] % 2 + 2 * (block[1] % 2) + 4 * (block[2] % 2);
         (colour, self.grid.index(block))
     }
@@ -270,7 +319,10 @@ impl<'a> Front<'a> {
         let mut draw = || (self.settings.radius)(random.random::<f64>());
         let mut placed: Vec<Ball> = Vec::new();
         let mut balls: Vec<FrontBall> = Vec::new();
-        let mut queue: Vec<FrontBall> = queue.iter().map(|i| (self.balls[*i as usize], self.grew_from[*i as usize])).collect();
+        let mut queue: Vec<FrontBall> = queue
+            .iter()
+            .map(|i| (self.balls[*i as usize], self.grew_from[*i as usize]))
+            .collect();
         let mut next = 0;
         while next < queue.len() {
             let (initial, number) = queue[next];
@@ -281,9 +333,18 @@ impl<'a> Front<'a> {
                     stock.push(draw());
                 }
                 stock.sort_unstable_by(f64::total_cmp);
-                let Some((place, taken)) = self.place_from_stock(workspace, &initial, &placed, seed, &stock) else { break };
+                let Some((place, taken)) =
+                    self.place_from_stock(workspace, &initial, &placed, seed, &stock)
+                else {
+                    break;
+                };
                 let radius = stock.remove(taken);
-                let ball = [place.x, place.y, place.z, radius / (1.0 + self.settings.overlap)];
+                let ball = [
+                    place.x,
+                    place.y,
+                    place.z,
+                    radius / (1.0 + self.settings.overlap),
+                ];
                 placed.push(ball);
                 balls.push((ball, number));
                 if self.block_of(&ball).1 == block && distance(&ball, seed) < within {
@@ -291,7 +352,10 @@ impl<'a> Front<'a> {
                 }
             }
         }
-        Turn { balls, waiting: stock }
+        Turn {
+            balls,
+            waiting: stock,
+        }
     }
 
     /// The largest radius of the stock (ascending) that fits on the halo of `front`, and its best place.
@@ -308,14 +372,23 @@ impl<'a> Front<'a> {
         let reach = front[3] + 2.0 * largest + self.settings.radius_range[1] * reduce;
         let neighbours = &mut workspace.neighbours;
         neighbours.clear();
-        self.grid.near(front[0], front[1], front[2], reach, |cell| neighbours.gather(front, cell, largest));
+        self.grid.near(front[0], front[1], front[2], reach, |cell| {
+            neighbours.gather(front, cell, largest)
+        });
         neighbours.gather(front, placed, largest);
         let centre = Vector3::new(front[0], front[1], front[2]);
         let reach = front[3] + largest * (2.0 + self.settings.overlap);
-        let at = self.grid.index(self.grid.cell_of(front[0], front[1], front[2]));
+        let at = self
+            .grid
+            .index(self.grid.cell_of(front[0], front[1], front[2]));
         workspace.walls.clear();
         if self.near_wall[at] {
-            self.boundary.walls(self.boundary.triangles_near(&centre, reach), &centre, reach, &mut workspace.walls);
+            self.boundary.walls(
+                self.boundary.triangles_near(&centre, reach),
+                &centre,
+                reach,
+                &mut workspace.walls,
+            );
         }
         let smallest_place = self.best_place(workspace, front, stock[0], seed)?;
         for taken in (1..stock.len()).rev() {
@@ -327,8 +400,18 @@ impl<'a> Front<'a> {
     }
 
     /// The place nearest to the seed for a new sphere of (not reduced) `radius` on the halo of `front`.
-    fn best_place(&self, workspace: &mut Workspace, front: &Ball, radius: f64, seed: &Vector3) -> Option<Vector3> {
-        let Workspace { neighbours, halo, walls } = workspace;
+    fn best_place(
+        &self,
+        workspace: &mut Workspace,
+        front: &Ball,
+        radius: f64,
+        seed: &Vector3,
+    ) -> Option<Vector3> {
+        let Workspace {
+            neighbours,
+            halo,
+            walls,
+        } = workspace;
         halo.set(front, radius / (1.0 + self.settings.overlap), neighbours);
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
@@ -345,9 +428,12 @@ impl<'a> Front<'a> {
         for wall in walls.iter() {
             let towards = (wall.point - halo.centre) / wall.distance;
             for j in 0..halo.neighbours() {
-                let Some(places) = halo.wall_corners(j, &towards, wall.distance - radius) else { continue };
+                let Some(places) = halo.wall_corners(j, &towards, wall.distance - radius) else {
+                    continue;
+                };
                 for p in places {
-                    let order = order_at(&halo.position(&p)) - WALL_PREFERENCE * radius * from_seed.norm();
+                    let order =
+                        order_at(&halo.position(&p)) - WALL_PREFERENCE * radius * from_seed.norm();
                     if order >= least || !halo.is_free(&p) {
                         continue;
                     }
@@ -372,8 +458,16 @@ impl<'a> Front<'a> {
                 return halo.is_free(&p).then_some(centre);
             }
             let towards = (near.point - centre) / near.distance;
-            let places = halo.wall_corners(j, &towards, (near.point - halo.centre).dot(&towards) - wanted)?;
-            p = if (places[0] - p).norm_squared() < (places[1] - p).norm_squared() { places[0] } else { places[1] };
+            let places = halo.wall_corners(
+                j,
+                &towards,
+                (near.point - halo.centre).dot(&towards) - wanted,
+            )?;
+            p = if (places[0] - p).norm_squared() < (places[1] - p).norm_squared() {
+                places[0]
+            } else {
+                places[1]
+            };
         }
         None
     }

@@ -23,7 +23,12 @@ impl Grid {
         loop {
             let counts = [0, 1, 2].map(|k| (((high[k] - low[k]) / cell).floor() as usize) + 1);
             if counts.iter().map(|c| *c as f64).product::<f64>() <= most_cells as f64 {
-                return Self { low: *low, cell, counts, cells: vec![Vec::new(); counts.iter().product()] };
+                return Self {
+                    low: *low,
+                    cell,
+                    counts,
+                    cells: vec![Vec::new(); counts.iter().product()],
+                };
             }
             cell *= 1.26;
         }
@@ -32,7 +37,8 @@ impl Grid {
     /// The cell of a point along each axis; points outside belong to the outermost cells.
     pub fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
         let p = [x, y, z];
-        [0, 1, 2].map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
+        [0, 1, 2]
+            .map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
     }
 
     /// Position of a cell in storage.
@@ -42,7 +48,12 @@ impl Grid {
 
     /// Centre of a cell, local units.
     pub fn centre(&self, cell: [usize; 3]) -> Vector3 {
-        self.low + Vector3::new(cell[0] as f64 + 0.5, cell[1] as f64 + 0.5, cell[2] as f64 + 0.5) * self.cell
+        self.low
+            + Vector3::new(
+                cell[0] as f64 + 0.5,
+                cell[1] as f64 + 0.5,
+                cell[2] as f64 + 0.5,
+            ) * self.cell
     }
 
     /// Adds a sphere.

@@ -83,8 +83,13 @@ impl Halo {
         for k in 0..neighbours.axis.len() {
             let (distance, touching) = (neighbours.distance[k], neighbours.radius[k] + new);
             if distance < self.radius + touching {
-                let rim = (self.radius * self.radius + distance * distance - touching * touching) / (2.0 * self.radius * distance);
-                self.caps.push(Cap { axis: neighbours.axis[k], rim, sine_squared: 1.0 - rim * rim });
+                let rim = (self.radius * self.radius + distance * distance - touching * touching)
+                    / (2.0 * self.radius * distance);
+                self.caps.push(Cap {
+                    axis: neighbours.axis[k],
+                    rim,
+                    sine_squared: 1.0 - rim * rim,
+                });
             }
         }
         // Largest first: they cover most, and may contain others.
@@ -95,11 +100,19 @@ impl Halo {
         for part in self.caps.chunks(LANES) {
             let mut group = [[0.0; LANES]; 5];
             for (k, cap) in part.iter().enumerate() {
-                let numbers = [cap.axis.x, cap.axis.y, cap.axis.z, cap.rim, cap.sine_squared].map(|x| x as f32);
+                let numbers = [
+                    cap.axis.x,
+                    cap.axis.y,
+                    cap.axis.z,
+                    cap.rim,
+                    cap.sine_squared,
+                ]
+                .map(|x| x as f32);
                 for (array, number) in group.iter_mut().zip(numbers) {
                     array[k] = number;
                 }
-                self.quick.push([numbers[0], numbers[1], numbers[2], numbers[3]]);
+                self.quick
+                    .push([numbers[0], numbers[1], numbers[2], numbers[3]]);
             }
             self.quick_groups.push(group);
         }
@@ -126,14 +139,20 @@ impl Halo {
     /// Whether no neighbour's cap covers the place.
     #[inline]
     pub fn is_free(&self, p: &Vector3) -> bool {
-        !self.caps.iter().any(|cap| cap.axis.dot(p) > cap.rim + RIM_TOLERANCE)
+        !self
+            .caps
+            .iter()
+            .any(|cap| cap.axis.dot(p) > cap.rim + RIM_TOLERANCE)
     }
 
     /// Calls `found` with each point where two rims meet and no cap covers, as long as it is better than the best one so far:
     /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
     ///
     /// Nearly all points are covered. Those are found out in single precision, `LANES` pairs of caps at a time.
-    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "several arrays side by side, lane by lane"
+    )]
     pub fn corners(&self, wanted: &Vector3, mut found: impl FnMut(&Self, &Vector3) -> bool) {
         let mut least = f64::INFINITY;
         for j in 1..self.caps.len() {
@@ -141,7 +160,13 @@ impl Halo {
                 let open = self.open_corners(j, caps);
                 for lane in 0..LANES.min(j - group * LANES) {
                     if open[0][lane] | open[1][lane] {
-                        self.check_corners(&self.caps[j], &self.caps[group * LANES + lane], wanted, &mut least, &mut found);
+                        self.check_corners(
+                            &self.caps[j],
+                            &self.caps[group * LANES + lane],
+                            wanted,
+                            &mut least,
+                            &mut found,
+                        );
                     }
                 }
             }
@@ -149,9 +174,16 @@ impl Halo {
     }
 
     /// For each cap of a group whether the two points where its rim meets that of cap `j` may be free.
-    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "several arrays side by side, lane by lane"
+    )]
     #[inline]
-    fn open_corners(&self, j: usize, [x, y, z, rim, sine_squared]: &[[f32; LANES]; 5]) -> [[bool; LANES]; 2] {
+    fn open_corners(
+        &self,
+        j: usize,
+        [x, y, z, rim, sine_squared]: &[[f32; LANES]; 5],
+    ) -> [[bool; LANES]; 2] {
         let [a_x, a_y, a_z, a_rim] = self.quick[j];
         let a_sine_squared = 1.0 - a_rim * a_rim;
         let (mut meet, mut sharp) = ([0.0_f32; LANES], [0.0_f32; LANES]);
@@ -167,7 +199,11 @@ impl Halo {
             let along_a = (a_rim - cosine * rim[k]) * inverse;
             let along_b = (rim[k] - cosine * a_rim) * inverse;
             let height = if inner > 0.0 { inner } else { 0.0 }.sqrt() * inverse;
-            let foot = [a_x * along_a + x[k] * along_b, a_y * along_a + y[k] * along_b, a_z * along_a + z[k] * along_b];
+            let foot = [
+                a_x * along_a + x[k] * along_b,
+                a_y * along_a + y[k] * along_b,
+                a_z * along_a + z[k] * along_b,
+            ];
             let off = [
                 (a_y * z[k] - a_z * y[k]) * height,
                 (a_z * x[k] - a_x * z[k]) * height,
@@ -182,7 +218,11 @@ impl Halo {
         let mut open = [[false; LANES]; 2];
         for k in 0..LANES {
             // Rims that do not meet have no corners.
-            let none = if meet[k] < -1e-6 { f32::INFINITY } else { f32::NEG_INFINITY };
+            let none = if meet[k] < -1e-6 {
+                f32::INFINITY
+            } else {
+                f32::NEG_INFINITY
+            };
             cover[0][k] = none;
             cover[1][k] = none;
         }
@@ -213,7 +253,14 @@ impl Halo {
     }
 
     /// The corners of two caps in double precision.
-    fn check_corners(&self, a: &Cap, b: &Cap, wanted: &Vector3, least: &mut f64, found: &mut impl FnMut(&Self, &Vector3) -> bool) {
+    fn check_corners(
+        &self,
+        a: &Cap,
+        b: &Cap,
+        wanted: &Vector3,
+        least: &mut f64,
+        found: &mut impl FnMut(&Self, &Vector3) -> bool,
+    ) {
         let cosine = a.axis.dot(&b.axis);
         let excess = cosine - a.rim * b.rim;
         let inner = a.sine_squared * b.sine_squared - excess * excess;
@@ -231,9 +278,21 @@ impl Halo {
 
     /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is the direction to the wall,
     /// `clearance` the distance of the wall from the front sphere's centre less the radius of the new sphere.
-    pub fn wall_corners(&self, neighbour: usize, towards: &Vector3, clearance: f64) -> Option<[Vector3; 2]> {
+    pub fn wall_corners(
+        &self,
+        neighbour: usize,
+        towards: &Vector3,
+        clearance: f64,
+    ) -> Option<[Vector3; 2]> {
         let rim = clearance / self.radius;
-        let (a, wall) = (self.caps[neighbour], Cap { axis: *towards, rim, sine_squared: 1.0 - rim * rim });
+        let (a, wall) = (
+            self.caps[neighbour],
+            Cap {
+                axis: *towards,
+                rim,
+                sine_squared: 1.0 - rim * rim,
+            },
+        );
         let cosine = a.axis.dot(towards);
         let excess = cosine - a.rim * rim;
         let inner = a.sine_squared * wall.sine_squared - excess * excess;

@@ -42,7 +42,11 @@ fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 
         // Parallel to the plane: harmless unless the ray runs within it.
         let normal = edge_1.cross(&edge_2);
         let off_plane = from_a.dot(&normal).abs();
-        return if off_plane > 1e-9 * normal.norm() { Crossing::Miss } else { Crossing::Unsure };
+        return if off_plane > 1e-9 * normal.norm() {
+            Crossing::Miss
+        } else {
+            Crossing::Unsure
+        };
     }
     let u = from_a.dot(&p) / determinant;
     let q = from_a.cross(&edge_1);
@@ -64,11 +68,19 @@ fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 
 /// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
 /// A point on the surface itself is not inside.
 pub fn contains(boundary: &Boundary, surface: &Surface, point: &Vector3) -> bool {
-    DIRECTIONS.iter().find_map(|d| crossings(boundary, surface, point, &Vector3::from(*d))).is_some_and(|winding| winding > 0)
+    DIRECTIONS
+        .iter()
+        .find_map(|d| crossings(boundary, surface, point, &Vector3::from(*d)))
+        .is_some_and(|winding| winding > 0)
 }
 
 /// Signed crossings of a ray: 1 inside one shell, 0 outside, -1 never; `None` when a facet was grazed.
-fn crossings(boundary: &Boundary, surface: &Surface, origin: &Vector3, direction: &Vector3) -> Option<i32> {
+fn crossings(
+    boundary: &Boundary,
+    surface: &Surface,
+    origin: &Vector3,
+    direction: &Vector3,
+) -> Option<i32> {
     let mut winding = 0;
     for triangle in boundary.facets_on_ray(origin, direction) {
         match moeller_trumbore(origin, direction, &surface.corners(triangle as usize)) {
@@ -81,12 +93,21 @@ fn crossings(boundary: &Boundary, surface: &Surface, origin: &Vector3, direction
 }
 
 /// Distance along a ray (unit direction, local units) to the first wall that it meets farther away than `beyond`.
-pub fn first_hit(boundary: &Boundary, origin: &Vector3, direction: &Vector3, beyond: f64) -> Option<f64> {
+pub fn first_hit(
+    boundary: &Boundary,
+    origin: &Vector3,
+    direction: &Vector3,
+    beyond: f64,
+) -> Option<f64> {
     let plane_distance = |corners: [[f64; 3]; 3]| {
         let [a, b, c] = corners.map(Vector3::from);
         let normal = (b - a).cross(&(c - a));
         let distance = (a - origin).dot(&normal) / direction.dot(&normal);
-        (moeller_trumbore(origin, direction, &corners) != Crossing::Miss && distance > beyond).then_some(distance)
+        (moeller_trumbore(origin, direction, &corners) != Crossing::Miss && distance > beyond)
+            .then_some(distance)
     };
-    boundary.walls_on_ray(origin, direction).filter_map(plane_distance).min_by(f64::total_cmp)
+    boundary
+        .walls_on_ray(origin, direction)
+        .filter_map(plane_distance)
+        .min_by(f64::total_cmp)
 }

@@ -4,7 +4,10 @@ use clap::Parser;
 use dem_pack::cli::{Arguments, run};
 use std::process::ExitCode;
 
-#[expect(clippy::print_stderr, reason = "the one place that tells a person what went wrong")]
+#[expect(
+    clippy::print_stderr,
+    reason = "the one place that tells a person what went wrong"
+)]
 fn main() -> ExitCode {
     let at_interrupt = || {
         dem_io::safe_write::remove_unfinished();

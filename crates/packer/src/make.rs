@@ -2,8 +2,8 @@
 
 use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
 use crate::boundary::Boundary;
-use crate::depth_map::DepthMap;
 use crate::density::{DensitySearch, pack_to_density};
+use crate::depth_map::DepthMap;
 use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::{Spheres, Vector3};
@@ -62,14 +62,28 @@ pub struct Made {
 ///
 /// # Errors
 /// As [`pack`], [`find_bonds`] and [`pack_to_density`].
-pub fn make_body(surface: &Surface, settings: &MakeSettings, progress: Progress) -> Result<(Body, Made)> {
+pub fn make_body(
+    surface: &Surface,
+    settings: &MakeSettings,
+    progress: Progress,
+) -> Result<(Body, Made)> {
     let mut seconds = Seconds::default();
     let started = Instant::now();
     let boundary = Boundary::new(surface)?;
     let mut packing_settings = settings.packing.clone();
-    let (packing, density_search) = match (settings.solid_density_kg_m3, settings.particle_density_kg_m3) {
+    let (packing, density_search) = match (
+        settings.solid_density_kg_m3,
+        settings.particle_density_kg_m3,
+    ) {
         (Some(solid), Some(particle)) => {
-            let (packing, search) = pack_to_density(surface, &boundary, &mut packing_settings, solid, particle, progress)?;
+            let (packing, search) = pack_to_density(
+                surface,
+                &boundary,
+                &mut packing_settings,
+                solid,
+                particle,
+                progress,
+            )?;
             (packing, Some(search))
         }
         _ => (pack(surface, &boundary, &packing_settings, progress)?, None),
@@ -89,13 +103,31 @@ pub fn make_body(surface: &Surface, settings: &MakeSettings, progress: Progress)
 
     let started = Instant::now();
     progress("report", 0.0)?;
-    let quality = judge(surface, &boundary, settings, packing_settings.overlap, spheres, &bonds, &crosses)?;
+    let quality = judge(
+        surface,
+        &boundary,
+        settings,
+        packing_settings.overlap,
+        spheres,
+        &bonds,
+        &crosses,
+    )?;
     seconds.report = started.elapsed().as_secs_f64();
 
     let body = Body {
-        bond_radii: bond_radii(spheres, &bonds, settings.bond_radius_factor).into_iter().map(|r| r * surface.unit_m).collect(),
-        bond_lengths: bond_lengths(spheres, &bonds).into_iter().map(|l| l * surface.unit_m).collect(),
-        positions: spheres.positions.iter().map(|p| to_metres(surface, &Vector3::from(*p))).collect(),
+        bond_radii: bond_radii(spheres, &bonds, settings.bond_radius_factor)
+            .into_iter()
+            .map(|r| r * surface.unit_m)
+            .collect(),
+        bond_lengths: bond_lengths(spheres, &bonds)
+            .into_iter()
+            .map(|l| l * surface.unit_m)
+            .collect(),
+        positions: spheres
+            .positions
+            .iter()
+            .map(|p| to_metres(surface, &Vector3::from(*p)))
+            .collect(),
         radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
         bonds,
         about: About {
@@ -109,7 +141,14 @@ pub fn make_body(surface: &Surface, settings: &MakeSettings, progress: Progress)
             seed: Some(packing_settings.seed),
         },
     };
-    let made = Made { quality, history: packing.history, bonding_radius, density_search, repairs: surface.repairs.clone(), seconds };
+    let made = Made {
+        quality,
+        history: packing.history,
+        bonding_radius,
+        density_search,
+        repairs: surface.repairs.clone(),
+        seconds,
+    };
     Ok((body, made))
 }
 
@@ -125,7 +164,11 @@ fn judge(
     let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
     let map = DepthMap::new(surface, boundary, depth_needed(spheres), 4.0 * mean_radius);
     let distance_inside = |p: [f64; 3]| map.depth(p);
-    let wall_distance: Vec<f64> = spheres.positions.par_iter().map(|p| map.depth(*p)).collect();
+    let wall_distance: Vec<f64> = spheres
+        .positions
+        .par_iter()
+        .map(|p| map.depth(*p))
+        .collect();
     assess(&quality::Packing {
         spheres,
         overlap,
@@ -150,5 +193,6 @@ fn crosses_surface(boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
     if boundary.clears(&middle, 0.5 * length) {
         return false;
     }
-    crate::inside::first_hit(boundary, &a, &((b - a) / length), 0.0).is_some_and(|distance| distance < length)
+    crate::inside::first_hit(boundary, &a, &((b - a) / length), 0.0)
+        .is_some_and(|distance| distance < length)
 }

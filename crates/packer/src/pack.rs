@@ -79,16 +79,29 @@ pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
 ///
 /// # Errors
 /// Sizes that do not fit the shape; a seed point outside; what `progress` returns.
-pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, progress: Progress) -> Result<Packing> {
+pub fn pack(
+    surface: &Surface,
+    boundary: &Boundary,
+    settings: &PackSettings,
+    progress: Progress,
+) -> Result<Packing> {
     let mut history = PackHistory::default();
     let started = Instant::now();
     let unit = surface.unit_m;
     let inner = inner_points(boundary, surface);
     let deepest = deepest_point(boundary, surface, &inner).ok_or_else(|| {
-        Diagnostic::input(surface.source.clone(), "no point inside the surface was found", "check that it is closed and not flat")
+        Diagnostic::input(
+            surface.source.clone(),
+            "no point inside the surface was found",
+            "check that it is closed and not flat",
+        )
     })?;
     history.largest_inscribed_diameter_m = 2.0 * deepest.radius * unit;
-    check_sizes_fit(surface, &settings.sizes, history.largest_inscribed_diameter_m)?;
+    check_sizes_fit(
+        surface,
+        &settings.sizes,
+        history.largest_inscribed_diameter_m,
+    )?;
     let seed = seed_point(surface, boundary, settings, &deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
@@ -104,10 +117,25 @@ pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, pro
     };
     let extent = Vector3::from(surface.extent());
     let mut front = Front::new(front_settings, boundary, &extent);
-    let seeds = front_seeds(surface, boundary, settings, &seed, 2.0 * front.settings.radius_range[1] / (1.0 + settings.overlap));
+    let seeds = front_seeds(
+        surface,
+        boundary,
+        settings,
+        &seed,
+        2.0 * front.settings.radius_range[1] / (1.0 + settings.overlap),
+    );
     let expected = 0.58 * surface.volume_m3()
-        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3)).max(f64::MIN_POSITIVE);
-    run_fronts(&mut front, surface, boundary, &seeds, &inner, &mut history, &|placed| progress("front", placed as f64 / expected))?;
+        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
+            .max(f64::MIN_POSITIVE);
+    run_fronts(
+        &mut front,
+        surface,
+        boundary,
+        &seeds,
+        &inner,
+        &mut history,
+        &|placed| progress("front", placed as f64 / expected),
+    )?;
     history.unplaced = front.waiting.len();
     let mut balls = std::mem::take(&mut front.balls);
     drop(front);
@@ -119,7 +147,9 @@ pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, pro
         for ball in &mut balls {
             ball[3] /= shrink;
         }
-        let settled = settle(boundary, &mut balls, settings.overlap, &|done| progress("settling", done))?;
+        let settled = settle(boundary, &mut balls, settings.overlap, &|done| {
+            progress("settling", done)
+        })?;
         history.settling_steps = settled.steps;
         history.taken_out = settled.taken_out;
         history.settle_seconds = started.elapsed().as_secs_f64();
@@ -128,8 +158,13 @@ pub fn pack(surface: &Surface, boundary: &Boundary, settings: &PackSettings, pro
     let started = Instant::now();
     progress("filling voids", 0.0)?;
     let full = |u: f64| 0.5 * settings.sizes.quantile_by_number(u) / unit;
-    let settings_full =
-        FrontSettings { radius: &full, radius_range: range, overlap: settings.overlap, seed: settings.seed ^ 0x5eed, stock: 1 };
+    let settings_full = FrontSettings {
+        radius: &full,
+        radius_range: range,
+        overlap: settings.overlap,
+        seed: settings.seed ^ 0x5eed,
+        stock: 1,
+    };
     let mut front = Front::new(settings_full, boundary, &extent);
     front.adopt(&balls);
     fill_voids(&mut front, &mut history);
@@ -149,7 +184,10 @@ pub fn to_metres(surface: &Surface, point: &Vector3) -> [f64; 3] {
 }
 
 fn check_sizes_fit(surface: &Surface, sizes: &Sizes, inscribed_m: f64) -> Result<()> {
-    let wanted = [(sizes.min_m(), "no sphere fits", "smallest"), (sizes.max_m(), "the largest spheres fit nowhere", "largest")];
+    let wanted = [
+        (sizes.min_m(), "no sphere fits", "smallest"),
+        (sizes.max_m(), "the largest spheres fit nowhere", "largest"),
+    ];
     for (diameter, problem, which) in wanted {
         if diameter > inscribed_m * (1.0 + 1e-9) {
             return Err(Diagnostic::input(
@@ -166,26 +204,48 @@ fn check_sizes_fit(surface: &Surface, sizes: &Sizes, inscribed_m: f64) -> Result
     Ok(())
 }
 
-fn seed_point(surface: &Surface, boundary: &Boundary, settings: &PackSettings, deepest: &Inscribed) -> Result<Vector3> {
-    let Some(given) = settings.seed_point_m else { return Ok(deepest.centre) };
+fn seed_point(
+    surface: &Surface,
+    boundary: &Boundary,
+    settings: &PackSettings,
+    deepest: &Inscribed,
+) -> Result<Vector3> {
+    let Some(given) = settings.seed_point_m else {
+        return Ok(deepest.centre);
+    };
     let local = Vector3::from([0, 1, 2].map(|k| (given[k] - surface.origin_m[k]) / surface.unit_m));
     if contains(boundary, surface, &local) {
         return Ok(local);
     }
-    let inside = to_metres(surface, &deepest.centre).map(show_length).join(", ");
+    let inside = to_metres(surface, &deepest.centre)
+        .map(show_length)
+        .join(", ");
     Err(Diagnostic::input(
         "--seed-point",
-        format!("({}) lies outside the shape", given.map(show_length).join(", ")),
+        format!(
+            "({}) lies outside the shape",
+            given.map(show_length).join(", ")
+        ),
         format!("the deepest point inside is ({inside})"),
     ))
 }
 
 /// The seed and, before settling, others spread over the shape.
-fn front_seeds(surface: &Surface, boundary: &Boundary, settings: &PackSettings, seed: &Vector3, diameter: f64) -> Vec<Vector3> {
+fn front_seeds(
+    surface: &Surface,
+    boundary: &Boundary,
+    settings: &PackSettings,
+    seed: &Vector3,
+    diameter: f64,
+) -> Vec<Vector3> {
     let mut seeds = vec![*seed];
     if settings.settle > 0.0 {
         let others = spread_points(&surface.extent(), SEED_SPACING * diameter, settings.seed);
-        seeds.extend(others.into_iter().filter(|p| (p - seed).norm() > 2.0 * diameter && contains(boundary, surface, p)));
+        seeds.extend(
+            others
+                .into_iter()
+                .filter(|p| (p - seed).norm() > 2.0 * diameter && contains(boundary, surface, p)),
+        );
     }
     seeds
 }
@@ -215,8 +275,14 @@ fn run_fronts(
         }
         let reach = 4.0 * front.settings.radius_range[1];
         let clearance = |p: &Vector3| {
-            let wall = boundary.nearest(p, f64::MAX).map_or(0.0, |near| near.distance);
-            if wall < 0.25 * smallest || !contains(boundary, surface, p) { -1.0 } else { wall.min(front.reach_to_spheres(p, reach)) }
+            let wall = boundary
+                .nearest(p, f64::MAX)
+                .map_or(0.0, |near| near.distance);
+            if wall < 0.25 * smallest || !contains(boundary, surface, p) {
+                -1.0
+            } else {
+                wall.min(front.reach_to_spheres(p, reach))
+            }
         };
         let room = climb(&place.centre, 0.5 * smallest, 1e-9 * smallest, &clearance);
         if room.radius >= smallest {
@@ -230,10 +296,16 @@ fn run_fronts(
 
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
 fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
-    let mut radii = [front.next_radius(), front.next_radius(), front.next_radius()];
+    let mut radii = [
+        front.next_radius(),
+        front.next_radius(),
+        front.next_radius(),
+    ];
     radii.sort_by(f64::total_cmp);
     let reduced = radii.map(|r| r / (1.0 + front.settings.overlap));
-    let placed = first_spheres(seed, radii, reduced, &|centre, radius| front.fits(centre, radius));
+    let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
+        front.fits(centre, radius)
+    });
     front.waiting.extend_from_slice(&radii[placed.len()..]);
     front.begin(seed);
     let first = front.balls.len() as u32;
@@ -248,7 +320,11 @@ fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
 fn fill_voids(front: &mut Front, history: &mut PackHistory) {
     let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
     let count = front.balls.len();
-    let most = if one_size { usize::MAX } else { (0.5 * 1.36 * (count as f64).sqrt()).ceil() as usize };
+    let most = if one_size {
+        usize::MAX
+    } else {
+        (0.5 * 1.36 * (count as f64).sqrt()).ceil() as usize
+    };
     // Neighbours in memory are neighbours in space: the search goes round in strides, so that what it finds first is spread evenly.
     let groups = count.div_ceil(VOID_SEARCH_GROUP);
     for group in 0..groups {
@@ -263,7 +339,12 @@ fn fill_voids(front: &mut Front, history: &mut PackHistory) {
 }
 
 /// Searches around the spheres `around` and then around those that were added, until there are `most` of them.
-fn fill_voids_around(front: &mut Front, mut around: Vec<u32>, most: usize, history: &mut PackHistory) {
+fn fill_voids_around(
+    front: &mut Front,
+    mut around: Vec<u32>,
+    most: usize,
+    history: &mut PackHistory,
+) {
     let smallest = front.settings.radius_range[0];
     while !around.is_empty() {
         let first = front.balls.len() as u32;
@@ -290,9 +371,13 @@ fn sort_along_curve(balls: &mut [Ball], radius: f64) {
 /// The 21 lowest bits of `x`, two zeros between each and the next.
 fn spread(x: u64) -> u64 {
     let mut x = x & 0x1f_ffff;
-    for (shift, mask) in
-        [(32, 0x001f_0000_0000_ffff), (16, 0x001f_0000_ff00_00ff), (8, 0x100f_00f0_0f00_f00f), (4, 0x10c3_0c30_c30c_30c3), (2, 0x1249_2492_4924_9249)]
-    {
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
         x = (x | x << shift) & mask;
     }
     x

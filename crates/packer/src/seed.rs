@@ -41,14 +41,23 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
     let spacing = extent.iter().copied().fold(0.0, f64::max) / GRID_POINTS;
     let counts = extent.map(|e| (e / spacing).ceil().max(1.0) as usize);
     let grid = (0..counts.iter().product::<usize>()).map(|at| {
-        let cell = [at % counts[0], at / counts[0] % counts[1], at / (counts[0] * counts[1])];
+        let cell = [
+            at % counts[0],
+            at / counts[0] % counts[1],
+            at / (counts[0] * counts[1]),
+        ];
         Vector3::from([0, 1, 2].map(|k| (cell[k] as f64 + 0.5) * extent[k] / counts[k] as f64))
     });
     let points: Vec<Vector3> = chords.into_iter().chain(grid).collect();
     let mut inner: Vec<Inscribed> = points
         .into_par_iter()
         .filter(|p| contains(boundary, surface, p))
-        .filter_map(|centre| boundary.nearest(&centre, f64::MAX).map(|near| Inscribed { centre, radius: near.distance }))
+        .filter_map(|centre| {
+            boundary.nearest(&centre, f64::MAX).map(|near| Inscribed {
+                centre,
+                radius: near.distance,
+            })
+        })
         .collect();
     inner.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     inner
@@ -62,16 +71,31 @@ pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3>
     random.set_stream(u64::MAX);
     (0..counts.iter().product())
         .map(|at: usize| {
-            let cell = [at % counts[0], at / counts[0] % counts[1], at / (counts[0] * counts[1])];
-            Vector3::from([0, 1, 2].map(|k| (cell[k] as f64 + 1.0 / 6.0 + 2.0 / 3.0 * random.random::<f64>()) * extent[k] / counts[k] as f64))
+            let cell = [
+                at % counts[0],
+                at / counts[0] % counts[1],
+                at / (counts[0] * counts[1]),
+            ];
+            Vector3::from([0, 1, 2].map(|k| {
+                (cell[k] as f64 + 1.0 / 6.0 + 2.0 / 3.0 * random.random::<f64>()) * extent[k]
+                    / counts[k] as f64
+            }))
         })
         .collect()
 }
 
 /// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps
 /// that halve from `first_step` to `last_step`.
-pub fn climb(start: &Vector3, first_step: f64, last_step: f64, clearance: &dyn Fn(&Vector3) -> f64) -> Inscribed {
-    let mut best = Inscribed { centre: *start, radius: clearance(start) };
+pub fn climb(
+    start: &Vector3,
+    first_step: f64,
+    last_step: f64,
+    clearance: &dyn Fn(&Vector3) -> f64,
+) -> Inscribed {
+    let mut best = Inscribed {
+        centre: *start,
+        radius: clearance(start),
+    };
     let mut step = first_step;
     let diagonal = 1.0 / 3.0_f64.sqrt();
     while step > last_step {
@@ -80,7 +104,11 @@ pub fn climb(start: &Vector3, first_step: f64, last_step: f64, clearance: &dyn F
             if at == 13 {
                 continue;
             }
-            let direction = Vector3::new((at % 3) as f64 - 1.0, (at / 3 % 3) as f64 - 1.0, (at / 9) as f64 - 1.0) * diagonal;
+            let direction = Vector3::new(
+                (at % 3) as f64 - 1.0,
+                (at / 3 % 3) as f64 - 1.0,
+                (at / 9) as f64 - 1.0,
+            ) * diagonal;
             let centre = before.centre + direction * step;
             let radius = clearance(&centre);
             if radius > best.radius {
@@ -96,32 +124,75 @@ pub fn climb(start: &Vector3, first_step: f64, last_step: f64, clearance: &dyn F
 
 /// The largest ball that fits into the solid, as well as climbing from the deepest of `inner_points` finds it;
 /// of several equal ones the nearest to the middle of the bounding box.
-pub fn deepest_point(boundary: &Boundary, surface: &Surface, inner: &[Inscribed]) -> Option<Inscribed> {
+pub fn deepest_point(
+    boundary: &Boundary,
+    surface: &Surface,
+    inner: &[Inscribed],
+) -> Option<Inscribed> {
     let clearance = |p: &Vector3| {
-        if contains(boundary, surface, p) { boundary.nearest(p, f64::MAX).map_or(-1.0, |near| near.distance) } else { -1.0 }
+        if contains(boundary, surface, p) {
+            boundary
+                .nearest(p, f64::MAX)
+                .map_or(-1.0, |near| near.distance)
+        } else {
+            -1.0
+        }
     };
-    let deep = inner.iter().take_while(|ball| ball.radius >= 0.9 * inner[0].radius);
+    let deep = inner
+        .iter()
+        .take_while(|ball| ball.radius >= 0.9 * inner[0].radius);
     let middle = 0.5 * Vector3::from(surface.extent());
     let mut deep: Vec<&Inscribed> = deep.collect();
-    deep.sort_by(|a, b| (a.centre - middle).norm().total_cmp(&(b.centre - middle).norm()));
-    let found: Vec<Inscribed> = deep.iter().take(8).chain(inner.first().iter()).map(|ball| climb(&ball.centre, 0.5 * ball.radius, 1e-9 * ball.radius, &clearance)).collect();
+    deep.sort_by(|a, b| {
+        (a.centre - middle)
+            .norm()
+            .total_cmp(&(b.centre - middle).norm())
+    });
+    let found: Vec<Inscribed> = deep
+        .iter()
+        .take(8)
+        .chain(inner.first().iter())
+        .map(|ball| {
+            climb(
+                &ball.centre,
+                0.5 * ball.radius,
+                1e-9 * ball.radius,
+                &clearance,
+            )
+        })
+        .collect();
     let deepest = found.iter().map(|ball| ball.radius).fold(0.0, f64::max);
-    found.into_iter().find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
+    found
+        .into_iter()
+        .find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
 }
 
 /// Centres for the first spheres of a front around `centre`: as many of the three (radii and reduced radii, local units) as fit, mutually touching.
-pub fn first_spheres(centre: &Vector3, radii: [f64; 3], reduced: [f64; 3], fits: &dyn Fn(&Vector3, f64) -> bool) -> Vec<(Vector3, f64)> {
+pub fn first_spheres(
+    centre: &Vector3,
+    radii: [f64; 3],
+    reduced: [f64; 3],
+    fits: &dyn Fn(&Vector3, f64) -> bool,
+) -> Vec<(Vector3, f64)> {
     let [a, b, c] = reduced;
     // A triangle with sides a + b, a + c, b + c.
     let (ab, ac, bc) = (a + b, a + c, b + c);
     let x = (ab * ab + ac * ac - bc * bc) / (2.0 * ab);
-    let corners = [Vector3::zeros(), Vector3::new(ab, 0.0, 0.0), Vector3::new(x, (ac * ac - x * x).max(0.0).sqrt(), 0.0)];
+    let corners = [
+        Vector3::zeros(),
+        Vector3::new(ab, 0.0, 0.0),
+        Vector3::new(x, (ac * ac - x * x).max(0.0).sqrt(), 0.0),
+    ];
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let mut best: Vec<(Vector3, f64)> = Vec::new();
     // Around the centre first, then with the first sphere on it, each in a fixed set of orientations.
     for origin in [middle, Vector3::zeros()] {
         for turn in 0..64 {
-            let rotation = nalgebra::UnitQuaternion::from_euler_angles(0.41 * f64::from(turn), 1.3 * f64::from(turn / 4), 0.77 * f64::from(turn / 2));
+            let rotation = nalgebra::UnitQuaternion::from_euler_angles(
+                0.41 * f64::from(turn),
+                1.3 * f64::from(turn / 4),
+                0.77 * f64::from(turn / 2),
+            );
             let mut found = Vec::new();
             for k in 0..3 {
                 let place = centre + rotation * (corners[k] - origin);

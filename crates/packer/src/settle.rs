@@ -64,7 +64,6 @@ struct State<'a> {
 /// Sums over the spheres that FIRE steers by.
 #[derive(Default, Clone, Copy)]
 struct Sums {
-
     power: f64,
     force_squared: f64,
     velocity_squared: f64,
@@ -79,7 +78,11 @@ struct Fire {
 }
 
 impl Fire {
-    const START: Self = Self { dt: 0.1, mixing: 0.1, downhill_steps: 0 };
+    const START: Self = Self {
+        dt: 0.1,
+        mixing: 0.1,
+        downhill_steps: 0,
+    };
 }
 
 /// Moves `balls` (centre, reduced radius at full size) until none overlaps another or the wall. Where they are jammed, a few are taken out:
@@ -89,8 +92,16 @@ impl Fire {
 ///
 /// # Errors
 /// What `progress` returns; no end after very many steps.
-pub fn settle(boundary: &Boundary, balls: &mut Vec<Ball>, overlap: f64, progress: &dyn Fn(f64) -> Result<()>) -> Result<Settled> {
-    let mut settled = Settled { steps: 0, taken_out: 0 };
+pub fn settle(
+    boundary: &Boundary,
+    balls: &mut Vec<Ball>,
+    overlap: f64,
+    progress: &dyn Fn(f64) -> Result<()>,
+) -> Result<Settled> {
+    let mut settled = Settled {
+        steps: 0,
+        taken_out: 0,
+    };
     if balls.is_empty() {
         return Ok(settled);
     }
@@ -108,7 +119,10 @@ pub fn settle(boundary: &Boundary, balls: &mut Vec<Ball>, overlap: f64, progress
         if settled.steps >= MOST_STEPS {
             return Err(Diagnostic::failed(
                 "--settle",
-                format!("the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps", sums.worst),
+                format!(
+                    "the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps",
+                    sums.worst
+                ),
                 "use a smaller share, or --settle 0 for the bare front",
             ));
         }
@@ -163,11 +177,15 @@ impl<'a> State<'a> {
                 fire.dt = f64::min(fire.dt * 1.1, LARGEST_STEP);
                 fire.mixing *= 0.99;
             }
-            let turn = fire.mixing * (sums.velocity_squared / sums.force_squared.max(f64::MIN_POSITIVE)).sqrt();
+            let turn = fire.mixing
+                * (sums.velocity_squared / sums.force_squared.max(f64::MIN_POSITIVE)).sqrt();
             self.accelerate_and_move(fire.dt, 1.0 - fire.mixing, turn, 0.0)
         } else {
             let back = -0.5 * fire.dt;
-            *fire = Fire { dt: f64::max(fire.dt * 0.5, 0.02), ..Fire::START };
+            *fire = Fire {
+                dt: f64::max(fire.dt * 0.5, 0.02),
+                ..Fire::START
+            };
             self.accelerate_and_move(fire.dt, 0.0, 0.0, back)
         }
     }
@@ -178,10 +196,13 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| {
                 let ball = &self.balls[i];
-                let earlier = self.neighbours[self.first[i] as usize..self.first[i + 1] as usize].iter().filter(|j| (**j as usize) < i);
+                let earlier = self.neighbours[self.first[i] as usize..self.first[i + 1] as usize]
+                    .iter()
+                    .filter(|j| (**j as usize) < i);
                 let overlap = |j: &u32| {
                     let other = &self.balls[*j as usize];
-                    (ball[3] + other[3] - squared_distance(ball, other).sqrt()) / ball[3].min(other[3])
+                    (ball[3] + other[3] - squared_distance(ball, other).sqrt())
+                        / ball[3].min(other[3])
                 };
                 (earlier.map(overlap).fold(0.0, f64::max), i)
             })
@@ -222,14 +243,29 @@ impl<'a> State<'a> {
         (self.wall_triangles, self.wall_first) = lists_of(balls, |_, ball, list| {
             let centre = Vector3::new(ball[0], ball[1], ball[2]);
             let reach = ball[3] * enlarge + 0.5 * skin;
-            list.extend(boundary.triangles_near(&centre, reach).filter(|t| boundary.nearest_on(*t, &centre).distance < reach));
+            list.extend(
+                boundary
+                    .triangles_near(&centre, reach)
+                    .filter(|t| boundary.nearest_on(*t, &centre).distance < reach),
+            );
         });
         self.listed_at.clone_from(balls);
     }
 
     /// Forces at the present positions.
     fn forces(&mut self) -> Sums {
-        let Self { balls, force, velocity, neighbours, first, wall_triangles, wall_first, boundary, enlarge, .. } = self;
+        let Self {
+            balls,
+            force,
+            velocity,
+            neighbours,
+            first,
+            wall_triangles,
+            wall_first,
+            boundary,
+            enlarge,
+            ..
+        } = self;
         let (balls, neighbours, first, velocity) = (&*balls, &*neighbours, &*first, &*velocity);
         let (wall_triangles, wall_first) = (&*wall_triangles, &*wall_first);
         let parts: Vec<Sums> = force
@@ -242,7 +278,8 @@ impl<'a> State<'a> {
                     let i = chunk * CHUNK + k;
                     let ball = balls[i];
                     let mut push = Push::default();
-                    let (fours, rest) = neighbours[first[i] as usize..first[i + 1] as usize].as_chunks::<LANES>();
+                    let (fours, rest) =
+                        neighbours[first[i] as usize..first[i + 1] as usize].as_chunks::<LANES>();
                     for four in fours {
                         push.add(&ball, four.map(|j| balls[j as usize]));
                     }
@@ -258,7 +295,8 @@ impl<'a> State<'a> {
                     sums.worst = sums.worst.max(worst_overlap / ball[3]);
                     let walls = &wall_triangles[wall_first[i] as usize..wall_first[i + 1] as usize];
                     if !walls.is_empty() {
-                        let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * *enlarge);
+                        let (centre, radius) =
+                            (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * *enlarge);
                         boundary.walls(walls.iter().copied(), &centre, radius, &mut touched);
                         for wall in &touched {
                             let overlap = radius - wall.distance;
@@ -271,7 +309,8 @@ impl<'a> State<'a> {
                     }
                     let v = velocity[i];
                     sums.power += total[0] * v[0] + total[1] * v[1] + total[2] * v[2];
-                    sums.force_squared += total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
+                    sums.force_squared +=
+                        total[0] * total[0] + total[1] * total[1] + total[2] * total[2];
                     sums.velocity_squared += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
                     *f = [total[0], total[1], total[2], 0.0];
                 }
@@ -290,22 +329,33 @@ impl<'a> State<'a> {
     fn accelerate_and_move(&mut self, dt: f64, keep: f64, turn: f64, back: f64) -> bool {
         let balls = self.balls.par_chunks_mut(CHUNK);
         let velocity = self.velocity.par_chunks_mut(CHUNK);
-        let (force, listed_at) = (self.force.par_chunks(CHUNK), self.listed_at.par_chunks(CHUNK));
-        let farthest = balls.zip(velocity).zip(force).zip(listed_at).map(|(((balls, velocity), force), listed_at)| {
-            let mut farthest = 0.0;
-            for (((ball, v), f), old) in balls.iter_mut().zip(velocity).zip(force).zip(listed_at) {
-                let mut moved = [0.0; 4];
-                for axis in 0..4 {
-                    let x = ball[axis] + back * v[axis];
-                    v[axis] = keep * v[axis] + (turn + dt) * f[axis];
-                    ball[axis] = x + dt * v[axis];
-                    moved[axis] = ball[axis] - old[axis];
+        let (force, listed_at) = (
+            self.force.par_chunks(CHUNK),
+            self.listed_at.par_chunks(CHUNK),
+        );
+        let farthest = balls.zip(velocity).zip(force).zip(listed_at).map(
+            |(((balls, velocity), force), listed_at)| {
+                let mut farthest = 0.0;
+                for (((ball, v), f), old) in
+                    balls.iter_mut().zip(velocity).zip(force).zip(listed_at)
+                {
+                    let mut moved = [0.0; 4];
+                    for axis in 0..4 {
+                        let x = ball[axis] + back * v[axis];
+                        v[axis] = keep * v[axis] + (turn + dt) * f[axis];
+                        ball[axis] = x + dt * v[axis];
+                        moved[axis] = ball[axis] - old[axis];
+                    }
+                    let squared = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+                    farthest = if squared > farthest {
+                        squared
+                    } else {
+                        farthest
+                    };
                 }
-                let squared = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
-                farthest = if squared > farthest { squared } else { farthest };
-            }
-            farthest
-        });
+                farthest
+            },
+        );
         farthest.reduce(|| 0.0, f64::max) > (0.5 * self.skin).powi(2)
     }
 }
@@ -319,11 +369,15 @@ struct Push {
 
 impl Push {
     /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres touch changes too often to be predicted.
-    #[expect(clippy::needless_range_loop, reason = "several arrays side by side, lane by lane")]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "several arrays side by side, lane by lane"
+    )]
     #[inline(always)]
     fn add(&mut self, ball: &Ball, others: [Ball; LANES]) {
         let mut d = [[0.0; LANES]; 3];
-        let (mut squared, mut touching, mut overlap, mut push) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut squared, mut touching, mut overlap, mut push) =
+            ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             for axis in 0..3 {
                 d[axis][k] = ball[axis] - others[k][axis];
@@ -335,13 +389,21 @@ impl Push {
         }
         let distance = squared.map(f64::sqrt);
         for k in 0..LANES {
-            overlap[k] = if touching[k] > distance[k] { touching[k] - distance[k] } else { 0.0 };
+            overlap[k] = if touching[k] > distance[k] {
+                touching[k] - distance[k]
+            } else {
+                0.0
+            };
         }
         for k in 0..LANES {
             push[k] = overlap[k] / distance[k];
         }
         for k in 0..LANES {
-            self.overlap[k] = if overlap[k] > self.overlap[k] { overlap[k] } else { self.overlap[k] };
+            self.overlap[k] = if overlap[k] > self.overlap[k] {
+                overlap[k]
+            } else {
+                self.overlap[k]
+            };
             for axis in 0..3 {
                 self.force[axis][k] += push[k] * d[axis][k];
             }
@@ -350,17 +412,26 @@ impl Push {
 
     /// The whole force and the largest overlap.
     fn sum(&self) -> ([f64; 3], f64) {
-        (self.force.map(|lanes| lanes.iter().sum()), self.overlap.iter().copied().fold(0.0, f64::max))
+        (
+            self.force.map(|lanes| lanes.iter().sum()),
+            self.overlap.iter().copied().fold(0.0, f64::max),
+        )
     }
 }
 
 /// For each sphere a list that `fill` makes, one after the other, and where each begins. Lengths: all lists; spheres + 1.
-fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -> (Vec<u32>, Vec<u32>) {
+fn lists_of(
+    balls: &[Ball],
+    fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync,
+) -> (Vec<u32>, Vec<u32>) {
     let parts: Vec<(Vec<u32>, Vec<u32>)> = balls
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, part)| {
-            let (mut list, mut ends) = (Vec::with_capacity(part.len() * 10), Vec::with_capacity(part.len()));
+            let (mut list, mut ends) = (
+                Vec::with_capacity(part.len() * 10),
+                Vec::with_capacity(part.len()),
+            );
             for (k, ball) in part.iter().enumerate() {
                 fill(chunk * CHUNK + k, ball, &mut list);
                 ends.push(list.len() as u32);
@@ -407,8 +478,17 @@ struct Cells {
 impl Cells {
     fn new(balls: &[Ball], low: [f64; 3], high: [f64; 3], cell: f64) -> Self {
         let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
-        let mut cells = Self { low, cell, counts, first: vec![0; counts.iter().product::<usize>() + 1], members: vec![0; balls.len()] };
-        let at: Vec<u32> = balls.iter().map(|b| cells.index(cells.cell_of(b)) as u32).collect();
+        let mut cells = Self {
+            low,
+            cell,
+            counts,
+            first: vec![0; counts.iter().product::<usize>() + 1],
+            members: vec![0; balls.len()],
+        };
+        let at: Vec<u32> = balls
+            .iter()
+            .map(|b| cells.index(cells.cell_of(b)) as u32)
+            .collect();
         for a in &at {
             cells.first[*a as usize + 1] += 1;
         }
@@ -438,7 +518,9 @@ impl Cells {
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 let row = self.index([0, y, z]);
-                for j in &self.members[self.first[row + low[0]] as usize..self.first[row + high[0] + 1] as usize] {
+                for j in &self.members
+                    [self.first[row + low[0]] as usize..self.first[row + high[0] + 1] as usize]
+                {
                     visit(*j);
                 }
             }

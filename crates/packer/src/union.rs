@@ -23,20 +23,41 @@ pub fn outer_pieces(surface: &Surface, whole: &Boundary) -> Vec<[[f64; 3]; 3]> {
         .into_par_iter()
         .map(|facet| {
             let mut kept = Vec::new();
-            cut(surface, whole, facet, surface.corners(facet).map(Vector3::from), &mut kept);
+            cut(
+                surface,
+                whole,
+                facet,
+                surface.corners(facet).map(Vector3::from),
+                &mut kept,
+            );
             kept
         })
         .collect();
-    pieces.into_iter().flatten().map(|corners| corners.map(Into::into)).collect()
+    pieces
+        .into_iter()
+        .flatten()
+        .map(|corners| corners.map(Into::into))
+        .collect()
 }
 
-fn cut(surface: &Surface, whole: &Boundary, facet: usize, corners: Corners, kept: &mut Vec<Corners>) {
+fn cut(
+    surface: &Surface,
+    whole: &Boundary,
+    facet: usize,
+    corners: Corners,
+    kept: &mut Vec<Corners>,
+) {
     let [a, b, c] = corners;
     let middle = (a + b + c) / 3.0;
-    let reach = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+    let reach = corners
+        .iter()
+        .map(|p| (p - middle).norm())
+        .fold(0.0, f64::max);
     let own = surface.triangles[facet];
     let is_near = |other: u32| {
-        let shares_corner = surface.triangles[other as usize].iter().any(|v| own.contains(v));
+        let shares_corner = surface.triangles[other as usize]
+            .iter()
+            .any(|v| own.contains(v));
         !shares_corner && whole.nearest_on(other, &middle).distance <= reach
     };
     let is_clear = !whole.triangles_near(&middle, reach).any(is_near);
@@ -47,7 +68,10 @@ fn cut(surface: &Surface, whole: &Boundary, facet: usize, corners: Corners, kept
         }
         return;
     }
-    let outward = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+    let outward = (b - a)
+        .cross(&(c - a))
+        .try_normalize(0.0)
+        .unwrap_or_default();
     if !(is_clear && contains(whole, surface, &(middle + OFF * outward))) {
         kept.push(corners);
     }
