@@ -61,10 +61,9 @@ pub fn pack_to_density(
         }
         settings.overlap = next.max(0.0);
     }
-    let Some((off, overlap, packing)) = best else {
+    let Some((_, overlap, packing)) = best else {
         return Err(unreachable(wanted_kg_m3, particle_kg_m3, 0.6));
     };
-    let _ = off;
     settings.overlap = overlap;
     let found_kg_m3 = filled_share(surface, &packing) * particle_kg_m3;
     Ok((

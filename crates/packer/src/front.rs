@@ -110,14 +110,24 @@ impl<'a> Front<'a> {
         self.grew_from.resize(self.balls.len(), 0);
     }
 
-    /// The radius (not reduced) that comes next: one that waits, or a new draw.
-    pub fn next_radius(&mut self) -> f64 {
-        self.waiting.pop().unwrap_or_else(|| {
+    /// The three smallest radii (not reduced, ascending) that wait for a place, drawn as far as fewer wait. They wait no longer.
+    pub fn next_radii(&mut self) -> [f64; 3] {
+        while self.waiting.len() < 3 {
             let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
             random.set_stream(self.streams);
             self.streams += 1;
-            (self.settings.radius)(random.random::<f64>())
-        })
+            self.waiting
+                .push((self.settings.radius)(random.random::<f64>()));
+        }
+        self.waiting.sort_unstable_by(|a, b| b.total_cmp(a));
+        let mut next = self.waiting.split_off(self.waiting.len() - 3).into_iter().rev();
+        [0; 3].map(|_| next.next().unwrap_or(self.settings.radius_range[0]))
+    }
+
+    /// The smallest radius (not reduced) that may be placed next.
+    pub fn smallest_next(&self) -> f64 {
+        let waiting = self.waiting.iter().copied().fold(f64::INFINITY, f64::min);
+        if self.waiting.len() < 3 { self.settings.radius_range[0] } else { waiting }
     }
 
     /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`, local units.

@@ -129,7 +129,6 @@ pub fn pack(
             .max(f64::MIN_POSITIVE);
     run_fronts(
         &mut front,
-        surface,
         boundary,
         &seeds,
         &inner,
@@ -170,6 +169,16 @@ pub fn pack(
     fill_voids(&mut front, &mut history);
     history.fill_seconds = started.elapsed().as_secs_f64();
 
+    if front.balls.is_empty() {
+        return Err(Diagnostic::input(
+            surface.source.clone(),
+            format!(
+                "no sphere found room: the largest inscribed sphere has diameter {}",
+                show_length(history.largest_inscribed_diameter_m)
+            ),
+            "ask for smaller diameters",
+        ));
+    }
     let enlarge = 1.0 + settings.overlap;
     let spheres = Spheres {
         positions: front.balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
@@ -253,7 +262,6 @@ fn front_seeds(
 /// Starts fronts at the seeds, and again wherever room is left that no front has reached.
 fn run_fronts(
     front: &mut Front,
-    surface: &Surface,
     boundary: &Boundary,
     seeds: &[Vector3],
     inner: &[Inscribed],
@@ -268,23 +276,20 @@ fn run_fronts(
     }
     front.advance(&queue, progress)?;
     // What no front has reached: other shells, and rooms behind a neck narrower than a sphere.
-    let smallest = front.settings.radius_range[0];
     for place in inner {
-        if place.radius < 0.5 * smallest || front.gap(&place.centre, smallest) < 0.9 * smallest {
+        let smallest = front.smallest_next();
+        let reduced = smallest / (1.0 + front.settings.overlap);
+        if place.radius < 0.5 * smallest || front.gap(&place.centre, reduced) < 0.9 * reduced {
             continue;
         }
+        // The steps are never longer than the distance to the wall, so that the climb stays on its side of it.
         let reach = 4.0 * front.settings.radius_range[1];
         let clearance = |p: &Vector3| {
-            let wall = boundary
-                .nearest(p, f64::MAX)
-                .map_or(0.0, |near| near.distance);
-            if wall < 0.25 * smallest || !contains(boundary, surface, p) {
-                -1.0
-            } else {
-                wall.min(front.reach_to_spheres(p, reach))
-            }
+            let to_spheres = front.reach_to_spheres(p, reach);
+            let wall = boundary.nearest(p, to_spheres);
+            wall.map_or(to_spheres, |near| near.distance)
         };
-        let room = climb(&place.centre, 0.5 * smallest, 1e-9 * smallest, &clearance);
+        let room = climb(&place.centre, 0.5 * smallest, 1e-6 * smallest, &clearance);
         if room.radius >= smallest {
             let first: Vec<u32> = place_first_spheres(front, &room.centre).collect();
             history.fronts += usize::from(!first.is_empty());
@@ -296,12 +301,7 @@ fn run_fronts(
 
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
 fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
-    let mut radii = [
-        front.next_radius(),
-        front.next_radius(),
-        front.next_radius(),
-    ];
-    radii.sort_by(f64::total_cmp);
+    let radii = front.next_radii();
     let reduced = radii.map(|r| r / (1.0 + front.settings.overlap));
     let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
         front.fits(centre, radius)

@@ -18,9 +18,9 @@ pub struct Inscribed {
 }
 
 /// At most this many facets are probed for the thickness of the solid behind them.
-const MOST_PROBES: usize = 20_000;
+const MOST_PROBES: usize = 4_000;
 /// Grid points along the longest edge of the bounding box.
-const GRID_POINTS: f64 = 24.0;
+const GRID_POINTS: f64 = 16.0;
 
 /// Points spread over the inside of the solid with their distances to the surface, deepest first: middles of the chords that begin
 /// at facets and run inwards (they find every part, however thin), and the points of a coarse grid.
@@ -48,7 +48,11 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
         ];
         Vector3::from([0, 1, 2].map(|k| (cell[k] as f64 + 0.5) * extent[k] / counts[k] as f64))
     });
-    let points: Vec<Vector3> = chords.into_iter().chain(grid).collect();
+    let mut points: Vec<Vector3> = chords.into_iter().chain(grid).collect();
+    // Of points that nearly coincide (all chords of a ball meet in its middle) one is enough.
+    let cell = |p: &Vector3| [p.x, p.y, p.z].map(|x| (x / (0.05 * spacing)).round() as i64);
+    points.sort_by_key(cell);
+    points.dedup_by_key(|p| cell(p));
     let mut inner: Vec<Inscribed> = points
         .into_par_iter()
         .filter(|p| contains(boundary, surface, p))
@@ -129,14 +133,11 @@ pub fn deepest_point(
     surface: &Surface,
     inner: &[Inscribed],
 ) -> Option<Inscribed> {
+    // The steps are never longer than the distance to the wall, so that the climb stays inside.
     let clearance = |p: &Vector3| {
-        if contains(boundary, surface, p) {
-            boundary
-                .nearest(p, f64::MAX)
-                .map_or(-1.0, |near| near.distance)
-        } else {
-            -1.0
-        }
+        boundary
+            .nearest(p, f64::MAX)
+            .map_or(0.0, |near| near.distance)
     };
     let deep = inner
         .iter()
@@ -150,13 +151,13 @@ pub fn deepest_point(
     });
     let found: Vec<Inscribed> = deep
         .iter()
-        .take(8)
+        .take(4)
         .chain(inner.first().iter())
         .map(|ball| {
             climb(
                 &ball.centre,
                 0.5 * ball.radius,
-                1e-9 * ball.radius,
+                1e-8 * ball.radius,
                 &clearance,
             )
         })

@@ -23,9 +23,9 @@ const LARGEST_STEP: f64 = 0.6;
 const CHUNK: usize = 1024;
 
 /// Steps before spheres are taken out, at first and then between one time and the next.
-const PATIENCE: [usize; 2] = [3000, 400];
-/// Share of the spheres taken out at a time.
-const TAKEN_OUT: f64 = 0.001;
+const PATIENCE: [usize; 2] = [2400, 300];
+/// Share of the spheres taken out the first time; each further time twice as many, up to the second share.
+const TAKEN_OUT: [f64; 2] = [0.001, 0.016];
 /// After so many steps settling is given up.
 const MOST_STEPS: usize = 60_000;
 
@@ -111,6 +111,7 @@ pub fn settle(
     let mut state = State::new(boundary, std::mem::take(balls), 1.0 + overlap);
     let mut fire = Fire::START;
     let mut patience = PATIENCE[0];
+    let mut share = TAKEN_OUT[0];
     loop {
         let sums = state.forces();
         if sums.worst < MARGIN {
@@ -128,7 +129,8 @@ pub fn settle(
         }
         if settled.steps >= patience {
             patience += PATIENCE[1];
-            settled.taken_out += state.take_out_jammed();
+            settled.taken_out += state.take_out_jammed(share);
+            share = TAKEN_OUT[1].min(2.0 * share);
             fire = Fire::START;
         } else {
             let moved_too_far = state.step(&mut fire, &sums);
@@ -191,7 +193,7 @@ impl<'a> State<'a> {
     }
 
     /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns how many.
-    fn take_out_jammed(&mut self) -> usize {
+    fn take_out_jammed(&mut self, share: f64) -> usize {
         let mut worst: Vec<(f64, usize)> = (0..self.balls.len())
             .into_par_iter()
             .map(|i| {
@@ -209,7 +211,7 @@ impl<'a> State<'a> {
             .filter(|(overlap, _)| *overlap > MARGIN)
             .collect();
         worst.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        worst.truncate((self.balls.len() as f64 * TAKEN_OUT).ceil() as usize);
+        worst.truncate((self.balls.len() as f64 * share).ceil() as usize);
         let mut out = vec![false; self.balls.len()];
         for (_, i) in &worst {
             out[*i] = true;
