@@ -2,43 +2,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::sync::OnceLock;
 
 use dem_io::Body;
 use dem_io::body::{About, vtp, write_body};
 
-/// The program, built in the profile of this test: cargo builds no binaries for tests of another package.
 fn dem_run() -> Command {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    let program = PROGRAM.get_or_init(|| {
-        let profile = if cfg!(debug_assertions) {
-            "test"
-        } else {
-            "release"
-        };
-        let this_test = std::env::current_exe().unwrap();
-        let target = this_test.ancestors().nth(3).unwrap();
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args([
-            "build",
-            "--quiet",
-            "--package",
-            "dem-run",
-            "--bin",
-            "dem-run",
-            "--profile",
-            profile,
-        ]);
-        cargo
-            .arg("--target-dir")
-            .arg(target)
-            .current_dir(env!("CARGO_MANIFEST_DIR"));
-        assert!(cargo.status().unwrap().success());
-        assert_cmd::cargo::cargo_bin("dem-run")
-    });
-    Command::new(program)
+    dem_tests::program("dem-run")
 }
 
 /// A row of particles, each bonded to the next but for one gap.

@@ -120,14 +120,22 @@ impl<'a> Front<'a> {
                 .push((self.settings.radius)(random.random::<f64>()));
         }
         self.waiting.sort_unstable_by(|a, b| b.total_cmp(a));
-        let mut next = self.waiting.split_off(self.waiting.len() - 3).into_iter().rev();
+        let mut next = self
+            .waiting
+            .split_off(self.waiting.len() - 3)
+            .into_iter()
+            .rev();
         [0; 3].map(|_| next.next().unwrap_or(self.settings.radius_range[0]))
     }
 
     /// The smallest radius (not reduced) that may be placed next.
     pub fn smallest_next(&self) -> f64 {
         let waiting = self.waiting.iter().copied().fold(f64::INFINITY, f64::min);
-        if self.waiting.len() < 3 { self.settings.radius_range[0] } else { waiting }
+        if self.waiting.len() < 3 {
+            self.settings.radius_range[0]
+        } else {
+            waiting
+        }
     }
 
     /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`, local units.

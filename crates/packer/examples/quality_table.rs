@@ -1,0 +1,195 @@
+//! Prints the tables of README.md as Markdown, in the bending sample of `data/shapes`:
+//!
+//! ```text
+//! cargo run --release -p dem-pack --example quality_table              # quality beside time, for each --settle
+//! cargo run --release -p dem-pack --example quality_table -- growth    # 10,000 to 1,000,000 spheres: time and memory
+//! cargo run --release -p dem-pack --example quality_table -- growth 5000000
+//! ```
+//!
+//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux only).
+
+use std::io::{Error, Write};
+use std::process::Command;
+use std::time::Instant;
+
+use dem_io::body::vtp;
+use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
+use dem_io::{Diagnostic, Result};
+use dem_pack::make::{Made, MakeSettings, make_body};
+use dem_pack::pack::PackSettings;
+use dem_pack::sizes::{By, Sizes};
+
+/// The shares of the first table.
+const SETTLE: [f64; 10] = [
+    0.0, 0.01, 0.02, 0.025, 0.03, 0.032, 0.033, 0.034, 0.036, 0.04,
+];
+/// Each line of the first table is the mean over these seeds.
+const SEEDS: [u64; 3] = [1, 2, 3];
+/// Spheres in the bending sample when their diameters are 1.2 mm to 1.5 mm, about.
+const SPHERES_OF_1_35_MM: f64 = 87_000.0;
+
+fn main() -> std::result::Result<(), Error> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        [] => quality_table(),
+        ["growth"] => growth_table(&[10_000, 30_000, 100_000, 300_000, 1_000_000]),
+        ["growth", spheres] => growth_table(&[number(spheres)?]),
+        ["one", spheres, threads] => one_size(number(spheres)?, number(threads)?),
+        _ => Err(Error::other("write nothing, growth, or growth SPHERES")),
+    }
+}
+
+fn number(text: &str) -> std::result::Result<usize, Error> {
+    text.parse()
+        .map_err(|_| Error::other(format!("'{text}' is not a whole number")))
+}
+
+/// Density, isotropy and time on one thread, diameters 2 mm to 3 mm without overlap.
+fn quality_table() -> std::result::Result<(), Error> {
+    let surface = bending_sample()?;
+    let mut out = std::io::stdout();
+    writeln!(
+        out,
+        "| `--settle` | spheres | overall | interior | eigenvalue off 1/3, sigma | taken out | front, s | settling, s | spheres/s |\n\
+         |---|---|---|---|---|---|---|---|---|"
+    )?;
+    for settle in SETTLE {
+        let all = SEEDS
+            .iter()
+            .map(|seed| on_threads(1, || make(&surface, "2mm..3mm", settle, *seed)))
+            .collect::<Result<Vec<_>>>()
+            .map_err(Error::other)?;
+        let mean =
+            |value: &dyn Fn(&Made) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
+        writeln!(
+            out,
+            "| {settle} | {:.0} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.2} | {:.0} |",
+            mean(&|made| made.quality.particles as f64),
+            mean(&|made| made.quality.generating_density),
+            mean(&|made| made
+                .quality
+                .interior_generating_density
+                .map_or(f64::NAN, |share| share.value)),
+            mean(&|made| made
+                .quality
+                .interior_fabric
+                .as_ref()
+                .map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)),
+            mean(&|made| made.history.taken_out as f64),
+            mean(&|made| made.history.front_seconds),
+            mean(&|made| made.history.settle_seconds),
+            mean(&|made| made.quality.particles as f64
+                / (made.seconds.packing + made.seconds.bonds + made.seconds.report)),
+        )?;
+    }
+    Ok(())
+}
+
+/// Time and memory by number of spheres, on one thread and on two.
+fn growth_table(counts: &[usize]) -> std::result::Result<(), Error> {
+    let mut out = std::io::stdout();
+    writeln!(
+        out,
+        "| spheres | threads | front, s | settling, s | all, s | us/sphere | memory, bytes/sphere | interior | overall |\n\
+         |---|---|---|---|---|---|---|---|---|"
+    )?;
+    for count in counts {
+        for threads in ["1", "2"] {
+            let program = std::env::current_exe()?;
+            let status = Command::new(program)
+                .args(["one", &count.to_string(), threads])
+                .status()?;
+            if !status.success() {
+                return Err(Error::other(format!(
+                    "{count} spheres on {threads} threads: {status}"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Prints one line of the second table.
+fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
+    let surface = bending_sample()?;
+    let before = peak_memory_bytes();
+    let factor = (SPHERES_OF_1_35_MM / spheres as f64).cbrt();
+    let diameter = format!("{}mm..{}mm", 1.2 * factor, 1.5 * factor);
+    let started = Instant::now();
+    let made = on_threads(threads, || {
+        let settings = settings(&diameter, dem_pack::cli::DEFAULT_SETTLE, 1)?;
+        let (body, made) = make_body(&surface, &settings, &|_, _| Ok(()))?;
+        vtp::write(&body, &mut std::io::sink())
+            .map_err(|e| Diagnostic::failed("", e.to_string(), ""))?;
+        Ok(made)
+    })
+    .map_err(Error::other)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let placed = made.quality.particles as f64;
+    let memory = peak_memory_bytes().zip(before).map_or_else(
+        || "-".to_owned(),
+        |(peak, before)| format!("{:.0}", (peak - before) / placed),
+    );
+    writeln!(
+        std::io::stdout(),
+        "| {placed} | {threads} | {:.2} | {:.2} | {seconds:.2} | {:.1} | {memory} | {:.4} | {:.4} |",
+        made.history.front_seconds,
+        made.history.settle_seconds,
+        1e6 * seconds / placed,
+        made.quality
+            .interior_generating_density
+            .map_or(f64::NAN, |share| share.value),
+        made.quality.generating_density,
+    )
+}
+
+fn bending_sample() -> std::result::Result<Surface, Error> {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/shapes/bending-sample.stl"
+    );
+    let settings = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    surface_from_stl(&std::fs::read(path)?, "bending-sample.stl", settings).map_err(Error::other)
+}
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Diagnostic::failed("", e.to_string(), ""))?
+        .install(work)
+}
+
+fn make(surface: &Surface, diameter: &str, settle: f64, seed: u64) -> Result<Made> {
+    make_body(surface, &settings(diameter, settle, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
+}
+
+/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the contacts.
+fn settings(diameter: &str, settle: f64, seed: u64) -> Result<MakeSettings> {
+    Ok(MakeSettings {
+        packing: PackSettings {
+            sizes: Sizes::parse(diameter, By::Number)?,
+            overlap: 0.0,
+            seed,
+            settle,
+            seed_point_m: None,
+        },
+        bonding_radius: 1.001,
+        bonds_per_particle: None,
+        bond_radius_factor: 1.0,
+        particle_density_kg_m3: None,
+        solid_density_kg_m3: None,
+    })
+}
+
+/// The most memory that this process has held, as Linux counts it.
+fn peak_memory_bytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024.0 * line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()?)
+}

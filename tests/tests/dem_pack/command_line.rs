@@ -1,0 +1,222 @@
+//! Help, man page, completions, reports.
+
+use super::{Bench, dem_pack, shape};
+use serde_json::Value;
+use std::process::Output;
+
+const OPTIONS: [&str; 20] = [
+    "--output",
+    "--unit",
+    "--scale",
+    "--fill-holes",
+    "--diameter",
+    "--by",
+    "--overlap",
+    "--particle-density",
+    "--solid-density",
+    "--seed",
+    "--seed-point",
+    "--settle",
+    "--bonding-radius",
+    "--bonds-per-particle",
+    "--bond-radius-factor",
+    "--threads",
+    "--json",
+    "--quiet",
+    "--help",
+    "--version",
+];
+
+fn said(arguments: &[&str]) -> String {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = dem_pack().args(arguments).output().unwrap();
+    assert!(status.success() && stderr.is_empty(), "{arguments:?}");
+    String::from_utf8(stdout).unwrap()
+}
+
+#[test]
+fn help_man_page_and_completions_name_every_option() {
+    for arguments in [
+        &["--help"][..],
+        &["-h"],
+        &["man"],
+        &["completions", "bash"],
+        &["completions", "zsh"],
+        &["completions", "fish"],
+    ] {
+        // A man page has its hyphens escaped, fish's completions name options without them.
+        let text = said(arguments).replace("\\-", "-").replace("-l ", "--");
+        for option in OPTIONS {
+            assert!(text.contains(option), "{option} is not in {arguments:?}");
+        }
+        for command in ["info", "convert", "completions", "man"] {
+            assert!(text.contains(command), "{command} is not in {arguments:?}");
+        }
+    }
+    let help = said(&["--help"]);
+    assert!(help.contains("Exit codes: 0 done, 1 failed while running, 2 bad input"));
+    for law in ["normal:", "lognormal:", "weibull:", "sieve:"] {
+        assert!(help.contains(law));
+    }
+    assert!(said(&["man"]).starts_with(".ie"));
+    assert_eq!(
+        said(&["--version"]),
+        format!("dem-pack {}\n", env!("CARGO_PKG_VERSION"))
+    );
+    assert!(said(&["info", "--help"]).contains("--json"));
+    said(&["convert", "--help"]);
+}
+
+#[test]
+fn without_arguments_the_usage_is_shown() {
+    let output = dem_pack().output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("Usage: dem-pack")
+    );
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let bench = Bench::new();
+    let output = bench.run(&shape("02"), &["-d", "2mm", "--quiet", "-o", "body.vtp"]);
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
+    assert_eq!(bench.files(), ["body.vtp"]);
+    let output = bench.run(&shape("02"), &["-d", "30mm", "--quiet", "-o", "other.vtp"]);
+    assert!(
+        !output.stderr.is_empty(),
+        "what is wrong is said all the same"
+    );
+}
+
+#[test]
+fn the_summary_goes_where_the_body_does_not() {
+    let bench = Bench::new();
+    let to_file = bench.run(&shape("02"), &["-d", "2mm", "-o", "body.vtp"]);
+    assert!(to_file.stderr.is_empty());
+    let text = String::from_utf8(to_file.stdout).unwrap();
+    let through_pipe = bench.run(&shape("02"), &["-d", "2mm"]);
+    assert!(through_pipe.stdout.starts_with(b"<?xml"));
+    let other = String::from_utf8(through_pipe.stderr).unwrap();
+    for name in [
+        "particles",
+        "density",
+        "interior",
+        "sizes by number",
+        "sizes by mass",
+        "bonds",
+        "contacts",
+        "exactness",
+        "pieces",
+        "fabric",
+        "time",
+    ] {
+        for text in [&text, &other] {
+            assert!(
+                text.lines().any(|line| line.starts_with(name)),
+                "{name} is not in {text}"
+            );
+        }
+    }
+    assert!(
+        !other.contains('\u{1b}') && !other.contains('\r'),
+        "a progress bar without a terminal"
+    );
+}
+
+#[test]
+fn the_report_as_json_has_its_keys() {
+    let made = Bench::new().pack(
+        &shape("02"),
+        &["-d", "1.5mm..2mm", "--particle-density", "2050"],
+    );
+    let pointers = [
+        "/quality/particles",
+        "/quality/bonds",
+        "/quality/mean_diameter_m",
+        "/quality/overlap",
+        "/quality/shape_volume_m3",
+        "/quality/solid_density_kg_m3",
+        "/quality/union_density/value",
+        "/quality/union_density/error",
+        "/quality/generating_density",
+        "/quality/interior_union_density",
+        "/quality/wall_profile/0/density",
+        "/quality/slab_profile",
+        "/quality/sizes_by_number/distance",
+        "/quality/sizes_by_number/limit_95",
+        "/quality/sizes_by_mass/distance",
+        "/quality/bonds_per_particle",
+        "/quality/contacts/per_particle",
+        "/quality/contacts/largest_overlap",
+        "/quality/contacts/largest_protrusion",
+        "/quality/pieces/count",
+        "/quality/fabric/eigenvalues/2",
+        "/quality/interior_fabric",
+        "/quality/thinnest",
+        "/quality/warnings",
+        "/history/seed_point_m/2",
+        "/history/fronts",
+        "/history/settling_steps",
+        "/bonding_radius",
+        "/density_search",
+        "/repairs/facets_read",
+        "/seconds/packing",
+    ];
+    for pointer in pointers {
+        assert!(
+            made.report.pointer(pointer).is_some(),
+            "{pointer} is not in {}",
+            made.report
+        );
+    }
+    assert_eq!(made.report["density_search"], Value::Null);
+    assert_eq!(
+        made.count("/quality/particles"),
+        made.body.radii.len() as u64
+    );
+    assert_eq!(made.count("/quality/bonds"), made.body.bonds.len() as u64);
+}
+
+#[test]
+fn info_says_what_a_shape_is() {
+    let path = shape("09");
+    let text = said(&["info", path.to_str().unwrap()]);
+    assert!(text.contains("parts       1, cavities 1"), "{text}");
+    let json: Value =
+        serde_json::from_str(&said(&["info", path.to_str().unwrap(), "--json"])).unwrap();
+    assert!((json["volume_m3"].as_f64().unwrap() / 3657.27e-9 - 1.0).abs() < 1e-5);
+    assert_eq!(json["shells"].as_array().unwrap().len(), 2);
+    let json: Value = serde_json::from_str(&said(&[
+        "info",
+        path.to_str().unwrap(),
+        "--json",
+        "--unit",
+        "um",
+        "--scale",
+        "2",
+    ]))
+    .unwrap();
+    assert!((json["volume_m3"].as_f64().unwrap() / (8.0 * 3657.27e-18) - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn info_says_what_a_body_is() {
+    let bench = Bench::new();
+    let made = bench.pack(
+        &shape("02"),
+        &["-d", "1.5mm..2mm", "--particle-density", "2050"],
+    );
+    let path = bench.path("body.vtp");
+    let json: Value =
+        serde_json::from_str(&said(&["info", path.to_str().unwrap(), "--json"])).unwrap();
+    assert_eq!(json["particles"], made.body.radii.len());
+    assert_eq!(json["bonds"], made.body.bonds.len());
+    assert_eq!(json["pieces"], made.report["quality"]["pieces"]["count"]);
+}

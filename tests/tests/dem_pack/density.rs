@@ -1,0 +1,102 @@
+//! A solid density that is asked for is found, and is the one of the file.
+
+use super::{Bench, refusal, shape};
+use std::f64::consts::PI;
+
+#[test]
+fn the_density_asked_for_is_found() {
+    for (name, volume_mm3, wanted, particle) in [
+        ("02", 2400.0, 1650.0, 2050.0),
+        ("02", 2400.0, 1300.0, 2050.0),
+        ("22", 9849.8009, 2.0, 2.5),
+    ] {
+        let [solid, material] = [wanted, particle].map(|d| {
+            if d < 10.0 {
+                format!("{d} g/cm3")
+            } else {
+                format!("{d}")
+            }
+        });
+        let (wanted, particle) = if wanted < 10.0 {
+            (1e3 * wanted, 1e3 * particle)
+        } else {
+            (wanted, particle)
+        };
+        let made = Bench::new().pack(
+            &shape(name),
+            &[
+                "-d",
+                "1mm..1.5mm",
+                "--particle-density",
+                &material,
+                "--solid-density",
+                &solid,
+            ],
+        );
+        let volume: f64 = made
+            .body
+            .radii
+            .iter()
+            .map(|r| 4.0 / 3.0 * PI * r.powi(3))
+            .sum();
+        let found = particle * volume / (volume_mm3 * 1e-9);
+        assert!(
+            (found / wanted - 1.0).abs() < 0.002,
+            "{name}: wanted {wanted}, found {found}"
+        );
+        assert!((made.number("/quality/solid_density_kg_m3") / found - 1.0).abs() < 1e-7);
+        assert!((made.number("/density_search/found_kg_m3") / found - 1.0).abs() < 1e-7);
+        // Reading JSON may cost the last digit.
+        assert!(
+            (made.number("/density_search/overlap") / made.body.about.overlap.unwrap() - 1.0).abs()
+                < 1e-15
+        );
+        assert_eq!(made.body.about.particle_density_kg_m3, Some(particle));
+    }
+}
+
+#[test]
+fn the_density_is_printed() {
+    let bench = Bench::new();
+    let output = bench.run(
+        &shape("02"),
+        &[
+            "-d",
+            "1.5mm..2mm",
+            "--particle-density",
+            "2050",
+            "--solid-density",
+            "1650",
+            "-o",
+            "body.vtp",
+        ],
+    );
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("wanted 1650 kg/m3, found 16"), "{said}");
+}
+
+#[test]
+fn densities_out_of_reach_are_refused() {
+    for (solid, particle) in [("100", "2000"), ("20000", "2000"), ("1 kg/m3", "2.5 g/cm3")] {
+        let bench = Bench::new();
+        let output = bench.run(
+            &shape("02"),
+            &[
+                "-d",
+                "1.5mm..2mm",
+                "--particle-density",
+                particle,
+                "--solid-density",
+                solid,
+                "-o",
+                "body.vtp",
+            ],
+        );
+        let said = refusal(&output, &solid);
+        assert!(
+            said.contains("--solid-density") && said.contains("cannot be reached"),
+            "{said}"
+        );
+        assert!(bench.files().is_empty());
+    }
+}

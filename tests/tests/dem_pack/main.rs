@@ -1,0 +1,207 @@
+//! dem-pack as a person meets it: shapes and options in; bodies, reports and messages out.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bad_input;
+mod bonds;
+mod command_line;
+mod density;
+mod determinism;
+mod files;
+mod interrupted;
+mod refused_shapes;
+mod shapes;
+mod sizes;
+
+#[path = "../../../crates/packer/tests/packing/exact.rs"]
+mod exact;
+#[path = "../../../crates/packer/tests/packing/facets.rs"]
+mod facets;
+
+use dem_io::Body;
+use dem_io::body::read_body;
+use facets::{Facets, Point};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+fn dem_pack() -> Command {
+    dem_tests::program("dem-pack")
+}
+
+/// A difficult STL file, by the beginning of its name.
+fn shape(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/io/tests/shapes");
+    fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .find(|path| {
+            path.file_name()
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .starts_with(name)
+        })
+        .unwrap()
+}
+
+/// Facets of a binary STL file, without those that have no area or stand there already.
+fn read_stl(path: &Path) -> Facets {
+    let bytes = fs::read(path).unwrap();
+    let mut seen = std::collections::BTreeSet::new();
+    let number = |at: &[u8]| f64::from(f32::from_le_bytes(at.try_into().unwrap()));
+    bytes[84..]
+        .chunks_exact(50)
+        .map(|facet| {
+            [0, 1, 2].map(|c| [0, 1, 2].map(|k| number(&facet[12 + 12 * c + 4 * k..][..4])))
+        })
+        .filter(|[a, b, c]| {
+            exact::length(exact::cross(exact::sub(*b, *a), exact::sub(*c, *a))) > 0.0
+        })
+        .filter(|corners| {
+            let mut key = corners.map(|p| p.map(f64::to_bits));
+            key.sort_unstable();
+            seen.insert(key)
+        })
+        .collect()
+}
+
+/// A folder that vanishes after the test, and what was made in it.
+struct Bench {
+    folder: TempDir,
+}
+
+/// A body with the report on it.
+struct Made {
+    body: Body,
+    report: Value,
+    said: String,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes an STL file of these facets.
+    fn stl(&self, name: &str, facets: &[[Point; 3]]) -> PathBuf {
+        fs::write(self.path(name), facets::stl(facets)).unwrap();
+        self.path(name)
+    }
+
+    /// Names of the files in the folder, hidden ones too.
+    fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(self.folder.path())
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// dem-pack STL OPTIONS, in the folder.
+    fn run(&self, stl: &Path, options: &[&str]) -> Output {
+        dem_pack()
+            .current_dir(self.folder.path())
+            .arg(stl)
+            .args(options)
+            .output()
+            .unwrap()
+    }
+
+    /// Packs a shape that can be packed.
+    fn pack(&self, stl: &Path, options: &[&str]) -> Made {
+        let output = self.run(stl, &[options, &["--json", "-o", "body.vtp"]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{}: {said}", stl.display());
+        let report = serde_json::from_slice(&output.stdout).unwrap();
+        Made {
+            body: read_body(&self.path("body.vtp")).unwrap(),
+            report,
+            said,
+        }
+    }
+}
+
+impl Made {
+    fn number(&self, pointer: &str) -> f64 {
+        self.report
+            .pointer(pointer)
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("{pointer} in {}", self.report))
+    }
+
+    fn count(&self, pointer: &str) -> u64 {
+        self.report
+            .pointer(pointer)
+            .and_then(Value::as_u64)
+            .unwrap_or_else(|| panic!("{pointer} in {}", self.report))
+    }
+
+    /// Centres and radii in mm.
+    fn millimetres(&self) -> (Vec<Point>, Vec<f64>) {
+        (
+            self.body
+                .positions
+                .iter()
+                .map(|p| p.map(|x| 1e3 * x))
+                .collect(),
+            self.body.radii.iter().map(|r| 1e3 * r).collect(),
+        )
+    }
+}
+
+/// Positions and radii to the last bit.
+fn bits(body: &Body) -> (Vec<[u64; 3]>, Vec<u64>) {
+    (
+        body.positions.iter().map(|p| p.map(f64::to_bits)).collect(),
+        body.radii.iter().map(|r| r.to_bits()).collect(),
+    )
+}
+
+/// Runs a program with `input` on its standard input.
+fn piped(mut program: Command, input: &[u8]) -> Output {
+    let mut child = program
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    std::thread::scope(|scope| {
+        // A program that refuses its input early closes it.
+        scope.spawn(move || stdin.write_all(input));
+        child.wait_with_output().unwrap()
+    })
+}
+
+/// The one message of a run that was refused: exit code 2, nothing on standard output.
+fn refusal(output: &Output, what: &dyn AsRef<OsStr>) -> String {
+    let what = what.as_ref().display();
+    let said = String::from_utf8(output.stderr.clone()).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{what}: {said}");
+    assert!(
+        output.stdout.is_empty(),
+        "{what}: {}",
+        String::from_utf8_lossy(&output.stdout)
+    );
+    assert!(
+        said.starts_with("error: ") && said.matches("error: ").count() == 1,
+        "{what}: {said}"
+    );
+    assert!(
+        !said.contains("panicked") && !said.contains("RUST_BACKTRACE"),
+        "{what}: {said}"
+    );
+    said.trim_end().to_owned()
+}

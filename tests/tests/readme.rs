@@ -1,0 +1,198 @@
+//! README.md says what is true: its commands run, and the files, options and shapes that it names exist.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use dem_tests::program;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn readme() -> String {
+    fs::read_to_string(root().join("README.md")).unwrap()
+}
+
+/// The lines of all blocks of this language.
+fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
+    let fence = format!("```{language}");
+    let mut inside = false;
+    let mut found = Vec::new();
+    for line in readme.lines() {
+        if line.starts_with("```") {
+            inside = line == fence;
+        } else if inside {
+            found.push(line);
+        }
+    }
+    found
+}
+
+/// Every command runs, in order, in a folder that holds a copy of the shapes. So that it takes little time, spheres are larger, and
+/// a shape with few facets stands in for the rock.
+#[test]
+fn commands_run_as_pasted() {
+    let folder = tempfile::tempdir().unwrap();
+    let shapes = folder.path().join("data/shapes");
+    fs::create_dir_all(&shapes).unwrap();
+    for (name, stands_in) in [
+        ("filter-cake.stl", "filter-cake.stl"),
+        ("rock.stl", "c-shape.stl"),
+    ] {
+        fs::copy(
+            root().join("data/shapes").join(stands_in),
+            shapes.join(name),
+        )
+        .unwrap();
+    }
+    let programs = ["dem-pack", "dem-run"].map(|name| PathBuf::from(program(name).get_program()));
+    let path = std::env::join_paths(
+        programs
+            .iter()
+            .map(|program| program.parent().unwrap().to_owned())
+            .chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+    )
+    .unwrap();
+    let readme = readme();
+    let mut commands = 0;
+    for line in blocks(&readme, "sh") {
+        let line = line.replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
+        if line.starts_with("cargo ") || line.starts_with("export ") {
+            continue;
+        }
+        let small = line.replace(" 2mm..3mm", " 4mm..5mm");
+        let output = Command::new("bash")
+            .args(["-o", "pipefail", "-c", &small])
+            .env("PATH", &path)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{small}\n{said}");
+        assert!(!said.contains("error:"), "{small}\n{said}");
+        commands += 1;
+    }
+    assert!(commands >= 10, "{commands} commands");
+    for made in [
+        "cake.vtp",
+        "cake.data",
+        "cake.particles.csv",
+        "cake.bonds.csv",
+        "again.vtp",
+        "rock.vtp",
+        "dem-pack.1",
+    ] {
+        assert!(
+            fs::metadata(folder.path().join(made)).unwrap().len() > 1000,
+            "{made}"
+        );
+    }
+}
+
+/// Words that begin with one of the repository's folders, and the targets of links.
+#[test]
+fn files_exist() {
+    let readme = readme();
+    let links = readme
+        .split("](")
+        .skip(1)
+        .map(|rest| rest.split(')').next().unwrap());
+    let words = readme
+        .split(|c: char| c.is_whitespace() || "`\"'(),;:".contains(c))
+        .filter(|word| {
+            ["data/", "crates/", "doc/", "fuzz/", ".ci/"]
+                .iter()
+                .any(|folder| word.starts_with(folder))
+        });
+    let mut files = 0;
+    for name in links.filter(|link| !link.starts_with("http")).chain(words) {
+        let path = root().join(name.trim_end_matches('.'));
+        assert!(path.exists(), "README.md names {name}");
+        files += 1;
+    }
+    assert!(files >= 10, "{files} files");
+}
+
+/// Every option outside of commands of cargo is one that a program knows.
+#[test]
+fn options_exist() {
+    let help: String = [
+        vec!["--help"],
+        vec!["info", "--help"],
+        vec!["convert", "--help"],
+    ]
+    .iter()
+    .map(|arguments| program("dem-pack").args(arguments).output().unwrap())
+    .chain([program("dem-run").arg("--help").output().unwrap()])
+    .map(|output| String::from_utf8(output.stdout).unwrap())
+    .collect();
+    let known = options(&help);
+    let readme = readme();
+    let named: Vec<String> = readme
+        .replace("cargo run --release --bin dem-pack -- ", "dem-pack ")
+        .lines()
+        .filter(|line| !line.contains("cargo "))
+        .flat_map(options)
+        .collect();
+    assert!(named.len() >= 20, "{named:?}");
+    for option in &named {
+        assert!(
+            known.contains(option),
+            "README.md names {option}, which no program knows"
+        );
+    }
+    for option in &known {
+        let told_by_help = ["--help", "--version"].contains(&option.as_str());
+        assert!(
+            told_by_help || named.contains(option),
+            "README.md does not name {option}"
+        );
+    }
+}
+
+/// Words such as `--settle` in a text.
+fn options(text: &str) -> Vec<String> {
+    text.split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
+        .filter(|word| {
+            word.starts_with("--") && word.len() > 3 && word.as_bytes()[2].is_ascii_lowercase()
+        })
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Every line of the report begins with a name that the README's table explains.
+#[test]
+fn report_is_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = program("dem-pack")
+        .arg(root().join("data/shapes/tablet.stl"))
+        .args([
+            "--diameter",
+            "1mm..1.2mm",
+            "--particle-density",
+            "2000",
+            "--solid-density",
+            "1500",
+            "-o",
+        ])
+        .arg(folder.path().join("tablet.vtp"))
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let report = String::from_utf8(output.stdout).unwrap();
+    let readme = readme();
+    for line in report.lines().skip(1) {
+        let name = line.split("  ").next().unwrap().split(':').next().unwrap();
+        assert!(
+            readme.contains(&format!("`{name}`")),
+            "the README's table does not explain '{name}':\n{report}"
+        );
+    }
+}
