@@ -91,10 +91,6 @@ fn points_in_line_with_vertices_and_edges_are_decided() {
     }
 }
 
-#[expect(
-    clippy::approx_constant,
-    reason = "the packer's own directions, digit by digit"
-)]
 #[test]
 fn rays_aimed_at_vertices_and_edges_are_decided() {
     // The first directions that are tried, and how far the ray starts from the place that it is aimed at.
