@@ -129,6 +129,12 @@ impl Boundary {
         on_ray(&self.facets, origin, direction)
     }
 
+    /// The corners of a facet of the surface, local units.
+    pub fn facet_corners(&self, facet: u32) -> [[f64; 3]; 3] {
+        let triangle = self.facets.triangle(facet);
+        [triangle.a, triangle.b, triangle.c].map(Into::into)
+    }
+
     /// The triangles of the wall whose boxes a ray passes, by their corners.
     pub fn walls_on_ray(
         &self,

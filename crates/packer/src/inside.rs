@@ -67,23 +67,23 @@ fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 
 
 /// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
 /// A point on the surface itself is not inside.
-pub fn contains(boundary: &Boundary, surface: &Surface, point: &Vector3) -> bool {
+pub fn is_inside(boundary: &Boundary, point: &Vector3) -> bool {
     DIRECTIONS
         .iter()
-        .find_map(|d| crossings(boundary, surface, point, &Vector3::from(*d)))
+        .find_map(|d| crossings(boundary, point, &Vector3::from(*d)))
         .is_some_and(|winding| winding > 0)
 }
 
+/// As [`is_inside`]; the boundary is that of `_surface`.
+pub fn contains(boundary: &Boundary, _surface: &Surface, point: &Vector3) -> bool {
+    is_inside(boundary, point)
+}
+
 /// Signed crossings of a ray: 1 inside one shell, 0 outside, -1 never; `None` when a facet was grazed.
-fn crossings(
-    boundary: &Boundary,
-    surface: &Surface,
-    origin: &Vector3,
-    direction: &Vector3,
-) -> Option<i32> {
+fn crossings(boundary: &Boundary, origin: &Vector3, direction: &Vector3) -> Option<i32> {
     let mut winding = 0;
-    for triangle in boundary.facets_on_ray(origin, direction) {
-        match moeller_trumbore(origin, direction, &surface.corners(triangle as usize)) {
+    for facet in boundary.facets_on_ray(origin, direction) {
+        match moeller_trumbore(origin, direction, &boundary.facet_corners(facet)) {
             Crossing::Miss => {}
             Crossing::Hit(sign) => winding += sign,
             Crossing::Unsure => return None,

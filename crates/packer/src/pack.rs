@@ -316,14 +316,14 @@ fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
 }
 
 /// Puts spheres into the voids that take at least the smallest one, each of a size drawn among those that fit there,
-/// as long as their number does not distort the distribution of sizes by more than half its statistical noise.
+/// as long as their number does not distort the distribution of sizes by more than a tenth of its statistical noise.
 fn fill_voids(front: &mut Front, history: &mut PackHistory) {
     let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
     let count = front.balls.len();
     let most = if one_size {
         usize::MAX
     } else {
-        (0.5 * 1.36 * (count as f64).sqrt()).ceil() as usize
+        (0.1 * 1.36 * (count as f64).sqrt()).ceil() as usize
     };
     // Neighbours in memory are neighbours in space: the search goes round in strides, so that what it finds first is spread evenly.
     let groups = count.div_ceil(VOID_SEARCH_GROUP);

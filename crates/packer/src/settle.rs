@@ -9,6 +9,7 @@
 use crate::Vector3;
 use crate::boundary::Boundary;
 use crate::grid::Ball;
+use crate::inside::is_inside;
 use dem_io::{Diagnostic, Result};
 use rayon::prelude::*;
 
@@ -144,6 +145,15 @@ pub fn settle(
         }
     }
     *balls = state.balls;
+    // Spheres that began almost on the wall may have been pushed through it.
+    let inside: Vec<bool> = balls
+        .par_iter()
+        .map(|b| is_inside(boundary, &Vector3::new(b[0], b[1], b[2])))
+        .collect();
+    let mut inside = inside.into_iter();
+    let before = balls.len();
+    balls.retain(|_| inside.next().unwrap_or(false));
+    settled.taken_out += before - balls.len();
     for ball in balls.iter_mut() {
         ball[3] /= 1.0 + MARGIN;
     }
