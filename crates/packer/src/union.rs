@@ -2,7 +2,7 @@
 //!
 //! Facets that come near others are cut into quarters until the pieces are clear of them or very small. A piece whose outer side
 //! is inside the solid is left out. What is left is the boundary of the union and, along the lines of crossing, strips of it that reach
-//! inwards by at most [`FINEST`] of the largest extent.
+//! inwards by at most `FINEST` of the largest extent.
 
 use crate::Vector3;
 use crate::boundary::Boundary;
