@@ -201,9 +201,16 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
     let output = arguments.output.as_deref().unwrap_or(Path::new("-"));
     check_output(output)?;
     let settings = arguments.checked()?;
-    if let Some(threads) = arguments.threads {
-        set_threads(threads)?;
-    }
+    // The whole job runs in the pool: a parallel loop that is begun outside it puts the beginner to sleep and wakes it again.
+    thread_pool(arguments.threads)?.install(|| pack_and_write(stl, arguments, &settings, output))
+}
+
+fn pack_and_write(
+    stl: &Path,
+    arguments: &PackArguments,
+    settings: &MakeSettings,
+    output: &Path,
+) -> Result<()> {
     let surface = read_surface(stl, &arguments.reading)?;
     let person = if arguments.quiet {
         None
@@ -220,7 +227,7 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
         Ok(())
     };
-    let (body, made) = make_body(&surface, &settings, &progress)?;
+    let (body, made) = make_body(&surface, settings, &progress)?;
     bar.set_message("writing");
     write_body(&body, output)?;
     bar.finish_and_clear();
@@ -345,8 +352,9 @@ fn parse_point(text: &str) -> Result<[f64; 3]> {
     parts.try_into().map_err(|_| bad())
 }
 
-fn set_threads(threads: usize) -> Result<()> {
-    if threads == 0 || threads > 1024 {
+/// As many threads as asked for, or one per core.
+fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+    if let Some(threads @ (0 | 1025..)) = threads {
         return Err(Diagnostic::input(
             "--threads",
             format!("{threads} is not between 1 and 1024"),
@@ -354,8 +362,8 @@ fn set_threads(threads: usize) -> Result<()> {
         ));
     }
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()
+        .num_threads(threads.unwrap_or(0))
+        .build()
         .map_err(|e| {
             Diagnostic::failed(
                 "--threads",

@@ -5,7 +5,7 @@
 //! of all such places the one nearest to the seed is taken. A front sphere around which nothing fits any more leaves the queue.
 //!
 //! Deviations from the sources:
-//! - A radius that does not fit is kept in a small stock until it does, so that the radii placed are the radii drawn.
+//! - A radius that does not fit waits until it does, so that the radii placed are the radii drawn.
 //! - The front may begin at many seeds at once: each grows outwards, and the directions of growth, along which a front puts
 //!   more contacts, average out.
 //! - The queue is worked off in shells around the seeds and, within a shell, in blocks of space in eight colours:
@@ -32,8 +32,6 @@ pub struct FrontSettings<'a> {
     pub overlap: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// How many radii wait in a stock for a place that they fit.
-    pub stock: usize,
 }
 
 /// A packing while it grows.
@@ -67,7 +65,7 @@ const WALL_PREFERENCE: f64 = 0.5;
 /// What one block does in its turn.
 struct Turn {
     balls: Vec<FrontBall>,
-    waiting: Vec<f64>,
+    waiting: Option<f64>,
 }
 
 impl<'a> Front<'a> {
@@ -140,7 +138,7 @@ impl<'a> Front<'a> {
 
     /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`, local units.
     pub fn gap(&self, point: &Vector3, cut_off: f64) -> f64 {
-        let largest = self.settings.radius_range[1] / (1.0 + self.settings.overlap);
+        let largest = self.reduced(self.settings.radius_range[1]);
         let mut gap = cut_off;
         self.grid
             .near(point.x, point.y, point.z, cut_off + largest, |cell| {
@@ -153,7 +151,7 @@ impl<'a> Front<'a> {
 
     /// Whether a sphere of this (not reduced) radius with its centre here, known to be inside the solid, overlaps neither sphere nor wall.
     pub fn fits(&self, centre: &Vector3, radius: f64) -> bool {
-        let reduced = radius / (1.0 + self.settings.overlap);
+        let reduced = self.reduced(radius);
         self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12)
             && self.boundary.clears(centre, radius)
     }
@@ -197,15 +195,15 @@ impl<'a> Front<'a> {
 
     /// Places that take a sphere of the smallest radius next to the spheres `around` (indices of `balls`).
     pub fn voids(&self, around: &[u32]) -> Vec<Vector3> {
-        let smallest = [self.settings.radius_range[0]];
+        let smallest = self.settings.radius_range[0];
         around
             .par_iter()
             .with_min_len(256)
             .map_init(Workspace::default, |workspace, i| {
                 let ball = self.balls[*i as usize];
                 let here = Vector3::new(ball[0], ball[1], ball[2]);
-                self.place_from_stock(workspace, &ball, &[], &here, &smallest)
-                    .map(|(place, _)| place)
+                self.look_around(workspace, &ball, &[], smallest);
+                self.best_place(workspace, &ball, smallest, &here)
             })
             .flatten_iter()
             .collect()
@@ -213,12 +211,7 @@ impl<'a> Front<'a> {
 
     /// Adds a sphere of this (not reduced) radius where it is known to fit.
     pub fn place(&mut self, centre: &Vector3, radius: f64) {
-        let ball = [
-            centre.x,
-            centre.y,
-            centre.z,
-            radius / (1.0 + self.settings.overlap),
-        ];
+        let ball = [centre.x, centre.y, centre.z, self.reduced(radius)];
         self.add((ball, self.seeds.len().saturating_sub(1) as u32));
     }
 
@@ -227,12 +220,22 @@ impl<'a> Front<'a> {
         self.seeds.push(*seed);
     }
 
+    /// The part of a radius within which spheres do not overlap.
+    fn reduced(&self, radius: f64) -> f64 {
+        radius / (1.0 + self.settings.overlap)
+    }
+
     /// Whether a sphere of this (not reduced) radius lies inside the surface, given that its centre does not lie beyond it.
     fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
-        let at = self
+        !self.is_near_wall(&[centre.x, centre.y, centre.z, 0.0])
+            || self.boundary.clears(centre, radius)
+    }
+
+    /// Whether the cell that the ball's centre lies in is near the wall.
+    fn is_near_wall(&self, ball: &Ball) -> bool {
+        self.near_wall[self
             .grid
-            .index(self.grid.cell_of(centre.x, centre.y, centre.z));
-        !self.near_wall[at] || self.boundary.clears(centre, radius)
+            .index(self.grid.cell_of(ball[0], ball[1], ball[2]))]
     }
 
     /// Advances the front from the spheres `queue` (indices of `balls`), until nothing fits around any of them and their followers.
@@ -259,25 +262,22 @@ impl<'a> Front<'a> {
                 }
                 let stream = self.streams;
                 self.streams += blocks.len() as u64;
-                let tasks: Vec<(usize, Vec<u32>, Vec<f64>)> = blocks
+                let tasks: Vec<(usize, Vec<u32>, Option<f64>)> = blocks
                     .into_iter()
-                    .map(|(block, queue)| {
-                        let kept = self.waiting.len().saturating_sub(self.settings.stock);
-                        (block, queue, self.waiting.split_off(kept))
-                    })
+                    .map(|(block, queue)| (block, queue, self.waiting.pop()))
                     .collect();
                 let turns: Vec<Turn> = tasks
                     .into_par_iter()
                     .enumerate()
                     .map_init(
                         Workspace::default,
-                        |workspace, (task, (block, queue, stock))| {
+                        |workspace, (task, (block, queue, waiting))| {
                             self.advance_block(
                                 workspace,
                                 within,
                                 block,
                                 &queue,
-                                stock,
+                                waiting,
                                 stream + task as u64,
                             )
                         },
@@ -329,12 +329,13 @@ impl<'a> Front<'a> {
         within: f64,
         block: usize,
         queue: &[u32],
-        mut stock: Vec<f64>,
+        mut waiting: Option<f64>,
         stream: u64,
     ) -> Turn {
         let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
         random.set_stream(stream);
         let mut draw = || (self.settings.radius)(random.random::<f64>());
+        let largest = self.settings.radius_range[1];
         let mut placed: Vec<Ball> = Vec::new();
         let mut balls: Vec<FrontBall> = Vec::new();
         let mut queue: Vec<FrontBall> = queue
@@ -346,23 +347,17 @@ impl<'a> Front<'a> {
             let (initial, number) = queue[next];
             let seed = &self.seeds[number as usize];
             next += 1;
+            self.look_around(workspace, &initial, &placed, largest);
             loop {
-                while stock.len() < self.settings.stock {
-                    stock.push(draw());
-                }
-                stock.sort_unstable_by(f64::total_cmp);
-                let Some((place, taken)) =
-                    self.place_from_stock(workspace, &initial, &placed, seed, &stock)
-                else {
+                let radius = *waiting.get_or_insert_with(&mut draw);
+                let Some(place) = self.best_place(workspace, &initial, radius, seed) else {
                     break;
                 };
-                let radius = stock.remove(taken);
-                let ball = [
-                    place.x,
-                    place.y,
-                    place.z,
-                    radius / (1.0 + self.settings.overlap),
-                ];
+                waiting = None;
+                let ball = [place.x, place.y, place.z, self.reduced(radius)];
+                workspace
+                    .neighbours
+                    .gather(&initial, &[ball], self.reduced(largest));
                 placed.push(ball);
                 balls.push((ball, number));
                 if self.block_of(&ball).1 == block && distance(&ball, seed) < within {
@@ -370,37 +365,29 @@ impl<'a> Front<'a> {
                 }
             }
         }
-        Turn {
-            balls,
-            waiting: stock,
-        }
+        Turn { balls, waiting }
     }
 
-    /// The largest radius of the stock (ascending) that fits on the halo of `front`, and its best place.
-    fn place_from_stock(
+    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest` on the halo of `front` could touch.
+    fn look_around(
         &self,
         workspace: &mut Workspace,
         front: &Ball,
         placed: &[Ball],
-        seed: &Vector3,
-        stock: &[f64],
-    ) -> Option<(Vector3, usize)> {
-        let reduce = 1.0 / (1.0 + self.settings.overlap);
-        let largest = stock[stock.len() - 1] * reduce;
-        let reach = front[3] + 2.0 * largest + self.settings.radius_range[1] * reduce;
+        largest: f64,
+    ) {
+        let reduced = self.reduced(largest);
+        let reach = front[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
         let neighbours = &mut workspace.neighbours;
         neighbours.clear();
         self.grid.near(front[0], front[1], front[2], reach, |cell| {
-            neighbours.gather(front, cell, largest)
+            neighbours.gather(front, cell, reduced)
         });
-        neighbours.gather(front, placed, largest);
-        let centre = Vector3::new(front[0], front[1], front[2]);
-        let reach = front[3] + largest * (2.0 + self.settings.overlap);
-        let at = self
-            .grid
-            .index(self.grid.cell_of(front[0], front[1], front[2]));
+        neighbours.gather(front, placed, reduced);
         workspace.walls.clear();
-        if self.near_wall[at] {
+        if self.is_near_wall(front) {
+            let centre = centre_of(front);
+            let reach = front[3] + reduced + largest;
             self.boundary.walls(
                 self.boundary.triangles_near(&centre, reach),
                 &centre,
@@ -408,13 +395,6 @@ impl<'a> Front<'a> {
                 &mut workspace.walls,
             );
         }
-        let smallest_place = self.best_place(workspace, front, stock[0], seed)?;
-        for taken in (1..stock.len()).rev() {
-            if let Some(place) = self.best_place(workspace, front, stock[taken], seed) {
-                return Some((place, taken));
-            }
-        }
-        Some((smallest_place, 0))
     }
 
     /// The place nearest to the seed for a new sphere of (not reduced) `radius` on the halo of `front`.
@@ -430,14 +410,13 @@ impl<'a> Front<'a> {
             halo,
             walls,
         } = workspace;
-        halo.set(front, radius / (1.0 + self.settings.overlap), neighbours);
+        halo.set(front, self.reduced(radius), neighbours);
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
-        halo.corners(&from_seed, |halo, p| {
-            let centre = halo.position(p);
-            let takes = self.clears_wall(&centre, radius);
+        halo.corners(&from_seed, |centre| {
+            let takes = self.clears_wall(centre, radius);
             if takes {
-                best = Some(centre);
+                best = Some(*centre);
             }
             takes
         });

@@ -7,17 +7,12 @@
 
 use crate::Vector3;
 use crate::grid::Ball;
+use crate::rims::{LANES, Rims};
 
 /// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
-/// The caps are handled in groups of this many, without a branch inside.
-const LANES: usize = 4;
-/// A place that a cap covers by more than this in single precision is covered. The error of a place is below 3e-3, unless
-const SURELY_COVERED: f32 = 4e-3;
-/// the sine squared between the axes of the two caps is below this.
-const SURELY_SHARP: f32 = 0.05;
 /// What a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
 #[derive(Debug, Clone, Copy)]
 struct Cap {
@@ -35,11 +30,10 @@ pub struct Halo {
     pub centre: Vector3,
     /// Radius of the halo, local units.
     pub radius: f64,
-    /// The caps that no other one contains, largest first.
+    /// Largest first.
     caps: Vec<Cap>,
-    /// In single precision: the caps in groups of x, y, z, rims and sines squared, and one by one as x, y, z and rim.
-    quick_groups: Vec<[[f32; LANES]; 5]>,
-    quick: Vec<[f32; 4]>,
+    /// The same in single precision.
+    rims: Rims,
 }
 
 /// Spheres near one front sphere, with the distances that all radii of a new sphere share.
@@ -92,187 +86,41 @@ impl Halo {
                 });
             }
         }
-        // Largest first: they cover most, and may contain others.
+        // Largest first: they cover most.
         self.caps.sort_unstable_by(|a, b| a.rim.total_cmp(&b.rim));
-        self.drop_contained();
-        self.quick.clear();
-        self.quick_groups.clear();
-        for part in self.caps.chunks(LANES) {
-            let mut group = [[0.0; LANES]; 5];
-            for (k, cap) in part.iter().enumerate() {
-                let numbers = [
-                    cap.axis.x,
-                    cap.axis.y,
-                    cap.axis.z,
-                    cap.rim,
-                    cap.sine_squared,
-                ]
-                .map(|x| x as f32);
-                for (array, number) in group.iter_mut().zip(numbers) {
-                    array[k] = number;
-                }
-                self.quick
-                    .push([numbers[0], numbers[1], numbers[2], numbers[3]]);
-            }
-            self.quick_groups.push(group);
+        self.rims.clear();
+        for group in self.caps.chunks(LANES) {
+            self.rims.push(group.iter().map(|cap| (cap.axis, cap.rim)));
         }
-    }
-
-    /// Drops caps that lie within a larger one: their rims are covered, and what they cover is covered without them.
-    fn drop_contained(&mut self) {
-        let mut kept = 0;
-        for k in 0..self.caps.len() {
-            let cap = self.caps[k];
-            let contained = self.caps[..kept].iter().any(|larger| {
-                // Angle between the axes <= difference of the caps' angles.
-                let excess = larger.axis.dot(&cap.axis) - larger.rim * cap.rim;
-                excess > 0.0 && excess * excess >= larger.sine_squared * cap.sine_squared
-            });
-            if !contained {
-                self.caps[kept] = cap;
-                kept += 1;
-            }
-        }
-        self.caps.truncate(kept);
     }
 
     /// Whether no neighbour's cap covers the place.
-    #[inline]
     pub fn is_free(&self, p: &Vector3) -> bool {
-        !self
-            .caps
-            .iter()
-            .any(|cap| cap.axis.dot(p) > cap.rim + RIM_TOLERANCE)
+        is_free(&self.caps, p)
     }
 
-    /// Calls `found` with each point where two rims meet and no cap covers, as long as it is better than the best one so far:
+    /// Calls `found` with the position of each point where two rims meet and no cap covers, as long as it is better than the best one so far:
     /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
     ///
-    /// Nearly all points are covered. Those are found out in single precision, `LANES` pairs of caps at a time.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "several arrays side by side, lane by lane"
-    )]
-    pub fn corners(&self, wanted: &Vector3, mut found: impl FnMut(&Self, &Vector3) -> bool) {
+    /// Nearly all points are covered. Those are found out in single precision, see [`Rims`].
+    pub fn corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
         let mut least = f64::INFINITY;
         for j in 1..self.caps.len() {
-            for (group, caps) in self.quick_groups[..j.div_ceil(LANES)].iter().enumerate() {
-                let open = self.open_corners(j, caps);
-                for lane in 0..LANES.min(j - group * LANES) {
-                    if open[0][lane] | open[1][lane] {
-                        self.check_corners(
-                            &self.caps[j],
-                            &self.caps[group * LANES + lane],
-                            wanted,
-                            &mut least,
-                            &mut found,
-                        );
+            let caps = &self.caps;
+            self.rims.open_corners(j, |k| {
+                let Some(places) = corners_of(&caps[j], &caps[k]) else {
+                    return;
+                };
+                for p in places {
+                    let order = p.dot(wanted);
+                    if order < least
+                        && is_free(caps, &p)
+                        && found(&(self.centre + p * self.radius))
+                    {
+                        least = order;
                     }
                 }
-            }
-        }
-    }
-
-    /// For each cap of a group whether the two points where its rim meets that of cap `j` may be free.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "several arrays side by side, lane by lane"
-    )]
-    #[inline]
-    fn open_corners(
-        &self,
-        j: usize,
-        [x, y, z, rim, sine_squared]: &[[f32; LANES]; 5],
-    ) -> [[bool; LANES]; 2] {
-        let [a_x, a_y, a_z, a_rim] = self.quick[j];
-        let a_sine_squared = 1.0 - a_rim * a_rim;
-        let (mut meet, mut sharp) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-        // The corners: foot + off and foot - off.
-        let mut corner = [[[0.0_f32; LANES]; 3]; 2];
-        for k in 0..LANES {
-            let cosine = a_x * x[k] + a_y * y[k] + a_z * z[k];
-            let excess = cosine - a_rim * rim[k];
-            let inner = a_sine_squared * sine_squared[k] - excess * excess;
-            meet[k] = inner;
-            sharp[k] = 1.0 - cosine * cosine;
-            let inverse = 1.0 / if sharp[k] > 1e-6 { sharp[k] } else { 1e-6 };
-            let along_a = (a_rim - cosine * rim[k]) * inverse;
-            let along_b = (rim[k] - cosine * a_rim) * inverse;
-            let height = if inner > 0.0 { inner } else { 0.0 }.sqrt() * inverse;
-            let foot = [
-                a_x * along_a + x[k] * along_b,
-                a_y * along_a + y[k] * along_b,
-                a_z * along_a + z[k] * along_b,
-            ];
-            let off = [
-                (a_y * z[k] - a_z * y[k]) * height,
-                (a_z * x[k] - a_x * z[k]) * height,
-                (a_x * y[k] - a_y * x[k]) * height,
-            ];
-            for axis in 0..3 {
-                corner[0][axis][k] = foot[axis] + off[axis];
-                corner[1][axis][k] = foot[axis] - off[axis];
-            }
-        }
-        let mut cover = [[f32::NEG_INFINITY; LANES]; 2];
-        let mut open = [[false; LANES]; 2];
-        for k in 0..LANES {
-            // Rims that do not meet have no corners.
-            let none = if meet[k] < -1e-6 {
-                f32::INFINITY
-            } else {
-                f32::NEG_INFINITY
-            };
-            cover[0][k] = none;
-            cover[1][k] = none;
-        }
-        for some in self.quick.chunks(LANES) {
-            for [x, y, z, rim] in some {
-                for (cover, corner) in cover.iter_mut().zip(&corner) {
-                    for k in 0..LANES {
-                        let by = x * corner[0][k] + y * corner[1][k] + z * corner[2][k] - rim;
-                        cover[k] = if by > cover[k] { by } else { cover[k] };
-                    }
-                }
-            }
-            let mut covered = true;
-            for k in 0..LANES {
-                covered &= (cover[0][k] > SURELY_COVERED) & (cover[1][k] > SURELY_COVERED);
-            }
-            if covered {
-                break;
-            }
-        }
-        for side in 0..2 {
-            for k in 0..LANES {
-                let blunt = (sharp[k] < SURELY_SHARP) & (meet[k] >= -1e-6);
-                open[side][k] = (cover[side][k] <= SURELY_COVERED) | blunt;
-            }
-        }
-        open
-    }
-
-    /// The corners of two caps in double precision.
-    fn check_corners(
-        &self,
-        a: &Cap,
-        b: &Cap,
-        wanted: &Vector3,
-        least: &mut f64,
-        found: &mut impl FnMut(&Self, &Vector3) -> bool,
-    ) {
-        let cosine = a.axis.dot(&b.axis);
-        let excess = cosine - a.rim * b.rim;
-        let inner = a.sine_squared * b.sine_squared - excess * excess;
-        if inner < 0.0 || 1.0 - cosine * cosine < SMALLEST_SINE_SQUARED {
-            return;
-        }
-        for p in corners_of(a, b, cosine, inner) {
-            let p = p.normalize();
-            let order = p.dot(wanted);
-            if order < *least && self.is_free(&p) && found(self, &p) {
-                *least = order;
-            }
+            });
         }
     }
 
@@ -293,11 +141,7 @@ impl Halo {
                 sine_squared: 1.0 - rim * rim,
             },
         );
-        let cosine = a.axis.dot(towards);
-        let excess = cosine - a.rim * rim;
-        let inner = a.sine_squared * wall.sine_squared - excess * excess;
-        let sharp = inner >= 0.0 && 1.0 - cosine * cosine > SMALLEST_SINE_SQUARED;
-        sharp.then(|| corners_of(&a, &wall, cosine, inner).map(|p| p.normalize()))
+        corners_of(&a, &wall)
     }
 
     /// Number of neighbours whose rims count.
@@ -311,12 +155,23 @@ impl Halo {
     }
 }
 
-/// The two unit vectors where the rims of two caps meet: a foot in the plane of the axes, and as far off it to either side as `inner` says,
-/// sin^2 sin^2 - (cosine - cos cos)^2 >= 0.
-#[inline]
-fn corners_of(a: &Cap, b: &Cap, cosine: f64, inner: f64) -> [Vector3; 2] {
-    let inverse = 1.0 / (1.0 - cosine * cosine).max(SMALLEST_SINE_SQUARED);
-    let foot = (a.axis * (a.rim - cosine * b.rim) + b.axis * (b.rim - cosine * a.rim)) * inverse;
-    let off = a.axis.cross(&b.axis) * (inner.sqrt() * inverse);
-    [foot + off, foot - off]
+fn is_free(caps: &[Cap], p: &Vector3) -> bool {
+    !caps
+        .iter()
+        .any(|cap| cap.axis.dot(p) > cap.rim + RIM_TOLERANCE)
+}
+
+/// The two unit vectors where the rims of two caps meet at an angle, if they do: a foot in the plane of the axes, and as far off it to
+/// either side as sin^2 sin^2 - (cosine - cos cos)^2 >= 0 says.
+fn corners_of(a: &Cap, b: &Cap) -> Option<[Vector3; 2]> {
+    let cosine = a.axis.dot(&b.axis);
+    let excess = cosine - a.rim * b.rim;
+    let inner = a.sine_squared * b.sine_squared - excess * excess;
+    let sine_squared = 1.0 - cosine * cosine;
+    if inner < 0.0 || sine_squared < SMALLEST_SINE_SQUARED {
+        return None;
+    }
+    let foot = a.axis * (a.rim - cosine * b.rim) + b.axis * (b.rim - cosine * a.rim);
+    let off = a.axis.cross(&b.axis) * inner.sqrt();
+    Some([foot + off, foot - off].map(|p| p.normalize()))
 }

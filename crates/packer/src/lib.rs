@@ -14,6 +14,7 @@ pub mod inside;
 pub mod make;
 pub mod pack;
 pub mod quality;
+mod rims;
 pub mod seed;
 pub mod settle;
 pub mod sizes;

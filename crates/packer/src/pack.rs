@@ -113,7 +113,6 @@ pub fn pack(
         radius_range: range.map(|r| shrink * r),
         overlap: settings.overlap,
         seed: settings.seed,
-        stock: 1,
     };
     let extent = Vector3::from(surface.extent());
     let mut front = Front::new(front_settings, boundary, &extent);
@@ -162,7 +161,6 @@ pub fn pack(
         radius_range: range,
         overlap: settings.overlap,
         seed: settings.seed ^ 0x5eed,
-        stock: 1,
     };
     let mut front = Front::new(settings_full, boundary, &extent);
     front.adopt(&balls);
