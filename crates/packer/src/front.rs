@@ -358,6 +358,7 @@ impl<'a> Front<'a> {
                 workspace
                     .neighbours
                     .gather(&initial, &[ball], self.reduced(largest));
+                workspace.neighbours.sort();
                 placed.push(ball);
                 balls.push((ball, number));
                 if self.block_of(&ball).1 == block && distance(&ball, seed) < within {
@@ -384,6 +385,7 @@ impl<'a> Front<'a> {
             neighbours.gather(front, cell, reduced)
         });
         neighbours.gather(front, placed, reduced);
+        neighbours.sort();
         workspace.walls.clear();
         if self.is_near_wall(front) {
             let centre = centre_of(front);

@@ -8,6 +8,7 @@
 use crate::Vector3;
 use crate::grid::Ball;
 use crate::rims::{LANES, Rims};
+use pulp::Arch;
 
 /// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.
 const RIM_TOLERANCE: f64 = 1e-12;
@@ -30,26 +31,33 @@ pub struct Halo {
     pub centre: Vector3,
     /// Radius of the halo, local units.
     pub radius: f64,
-    /// Largest first.
+    /// Largest first, nearly: they cover most.
     caps: Vec<Cap>,
     /// The same in single precision.
     rims: Rims,
 }
 
-/// Spheres near one front sphere, with the distances that all radii of a new sphere share.
+/// A sphere near one front sphere, with what all radii of a new sphere share.
+#[derive(Debug, Clone, Copy)]
+struct Neighbour {
+    axis: Vector3,
+    distance: f64,
+    radius: f64,
+}
+
+/// Spheres near one front sphere.
 #[derive(Debug, Default)]
 pub struct Neighbours {
-    axis: Vec<Vector3>,
-    distance: Vec<f64>,
-    radius: Vec<f64>,
+    all: Vec<Neighbour>,
+    /// Their order by distance from surface to surface: that distance in the upper half, the index in the lower one.
+    order: Vec<u64>,
 }
 
 impl Neighbours {
     /// Forgets all.
     pub fn clear(&mut self) {
-        self.axis.clear();
-        self.distance.clear();
-        self.radius.clear();
+        self.all.clear();
+        self.order.clear();
     }
 
     /// Adds those of `balls` that a new sphere of reduced radius `largest` on the halo of `ball` could touch.
@@ -60,11 +68,22 @@ impl Neighbours {
             let reach = ball[3] + other[3] + 2.0 * largest;
             if squared < reach * reach && squared > 0.0 {
                 let distance = squared.sqrt();
-                self.axis.push(d / distance);
-                self.distance.push(distance);
-                self.radius.push(other[3]);
+                // Positive numbers are ordered as their bits are.
+                let apart = (distance - other[3]).max(0.0) as f32;
+                self.order
+                    .push(u64::from(apart.to_bits()) << 32 | self.all.len() as u64);
+                self.all.push(Neighbour {
+                    axis: d / distance,
+                    distance,
+                    radius: other[3],
+                });
             }
         }
+    }
+
+    /// Brings the nearest to the front: their caps are the largest.
+    pub fn sort(&mut self) {
+        self.order.sort_unstable();
     }
 }
 
@@ -74,20 +93,23 @@ impl Halo {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
         self.caps.clear();
-        for k in 0..neighbours.axis.len() {
-            let (distance, touching) = (neighbours.distance[k], neighbours.radius[k] + new);
+        for entry in &neighbours.order {
+            let Neighbour {
+                axis,
+                distance,
+                radius,
+            } = neighbours.all[(entry & 0xffff_ffff) as usize];
+            let touching = radius + new;
             if distance < self.radius + touching {
                 let rim = (self.radius * self.radius + distance * distance - touching * touching)
                     / (2.0 * self.radius * distance);
                 self.caps.push(Cap {
-                    axis: neighbours.axis[k],
+                    axis,
                     rim,
                     sine_squared: 1.0 - rim * rim,
                 });
             }
         }
-        // Largest first: they cover most.
-        self.caps.sort_unstable_by(|a, b| a.rim.total_cmp(&b.rim));
         self.rims.clear();
         for group in self.caps.chunks(LANES) {
             self.rims.push(group.iter().map(|cap| (cap.axis, cap.rim)));
@@ -103,7 +125,15 @@ impl Halo {
     /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
     ///
     /// Nearly all points are covered. Those are found out in single precision, see [`Rims`].
-    pub fn corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
+    pub fn corners(&mut self, wanted: &Vector3, found: impl FnMut(&Vector3) -> bool) {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || self.visit_corners(wanted, found),
+        );
+    }
+
+    #[inline(always)]
+    fn visit_corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
         let mut least = f64::INFINITY;
         for j in 1..self.caps.len() {
             let caps = &self.caps;
