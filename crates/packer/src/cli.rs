@@ -15,7 +15,7 @@ use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Share by which the front's radii are smaller before settling, unless given: see the table in README.md.
-pub const DEFAULT_SETTLE: f64 = 0.033;
+pub const DEFAULT_SETTLE: f64 = 0.037;
 const LARGEST_SETTLE: f64 = 0.2;
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.

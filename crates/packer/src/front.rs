@@ -370,13 +370,7 @@ impl<'a> Front<'a> {
     }
 
     /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest` on the halo of `front` could touch.
-    fn look_around(
-        &self,
-        workspace: &mut Workspace,
-        front: &Ball,
-        placed: &[Ball],
-        largest: f64,
-    ) {
+    fn look_around(&self, workspace: &mut Workspace, front: &Ball, placed: &[Ball], largest: f64) {
         let reduced = self.reduced(largest);
         let reach = front[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
         let neighbours = &mut workspace.neighbours;

@@ -143,9 +143,7 @@ impl Halo {
                 };
                 for p in places {
                     let order = p.dot(wanted);
-                    if order < least
-                        && is_free(caps, &p)
-                        && found(&(self.centre + p * self.radius))
+                    if order < least && is_free(caps, &p) && found(&(self.centre + p * self.radius))
                     {
                         least = order;
                     }
