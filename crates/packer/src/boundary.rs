@@ -36,19 +36,37 @@ struct Plane {
     along_v: Vector3,
 }
 
+/// Triangles whose height is a smaller share of their longest edge have no plane: its normal would be off by more than 1e-10.
+const THINNEST: f64 = 1e-6;
+
 impl Plane {
     fn new(corners: [[f64; 3]; 3]) -> Self {
         let [a, b, c] = corners.map(Vector3::from);
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.cross(&edge_v);
-        let squared = normal.norm_squared();
-        // A triangle without area has no inner part that a point could be above: NaN fails every comparison.
+        let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
+        // A thin triangle does not tell its normal well, and has hardly an inner part that a point could be above: NaN fails every comparison.
+        let squared = if normal.norm() < THINNEST * longest * longest {
+            f64::NAN
+        } else {
+            normal.norm_squared()
+        };
         Self {
             corner: a,
             normal: normal / squared.sqrt(),
             along_u: edge_v.cross(&normal) / squared,
             along_v: normal.cross(&edge_u) / squared,
         }
+    }
+
+    /// How far a point is from the plane, positive on the side of the normal, if it is above or below the triangle.
+    fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
+        let from_corner = point - self.corner;
+        let (u, v) = (
+            from_corner.dot(&self.along_u),
+            from_corner.dot(&self.along_v),
+        );
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
     }
 }
 
@@ -72,7 +90,7 @@ impl Boundary {
             union: None,
             planes: Vec::new(),
         };
-        if surface.repairs.self_intersections > 0 {
+        if surface.repairs.self_intersections > 0 || surface.overlap_volume_m3 != 0.0 {
             let pieces = outer_pieces(surface, &boundary);
             let triangles = (0..pieces.len() as u32)
                 .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
@@ -95,20 +113,46 @@ impl Boundary {
 
     /// The nearest point of the surface, if it is closer than `cut_off` (local units).
     pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
-        let from = to_parry(point);
-        let (projection, _) = self
-            .wall()
-            .project_local_point_and_get_location_with_max_dist(from, false, cut_off)?;
-        let point = from_parry(&projection.point);
-        Some(Nearest {
-            point,
-            distance: (projection.point - from).length(),
-        })
+        let (_, (_, near)) = self.wall().bvh().find_best(
+            cut_off,
+            |node, _| distance_to_box(node, point),
+            |triangle, closest| self.nearest_below(triangle, point, closest),
+        )?;
+        Some(near)
     }
 
     /// Whether the surface leaves a ball of this radius (local units) free.
     pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
-        self.nearest(centre, radius).is_none()
+        // The first triangle within the radius decides: no box is worth a look after it.
+        let distance = |node: &BvhNode, closest: f64| {
+            if closest < radius {
+                f64::MAX
+            } else {
+                distance_to_box(node, centre)
+            }
+        };
+        self.wall()
+            .bvh()
+            .find_best(radius, distance, |triangle, closest| {
+                self.nearest_below(triangle, centre, closest)
+            })
+            .is_none()
+    }
+
+    /// The nearest point of a triangle of the wall with its distance, unless its plane is farther away than `closest`.
+    fn nearest_below(
+        &self,
+        triangle: u32,
+        point: &Vector3,
+        closest: f64,
+    ) -> Option<(f64, Nearest)> {
+        let plane = &self.planes[triangle as usize];
+        // The plane of a thin triangle is NaN, and not farther away than anything.
+        if (point - plane.corner).dot(&plane.normal).abs() >= closest {
+            return None;
+        }
+        let near = self.nearest_on(triangle, point);
+        Some((near.distance, near))
     }
 
     /// The triangles of the wall whose boxes come within `reach` (local units) of `point`.
@@ -116,6 +160,14 @@ impl Boundary {
         let (centre, half) = (to_parry(point), Vector::splat(reach));
         let query = BvhNode::leaf(Aabb::new(centre - half, centre + half), 0);
         self.wall()
+            .bvh()
+            .leaves(move |node| node.intersects(&query))
+    }
+
+    /// The facets of the surface whose boxes meet that of `facet`, itself among them.
+    pub fn facets_near_facet(&self, facet: u32) -> impl Iterator<Item = u32> + '_ {
+        let query = BvhNode::leaf(self.facets.triangle(facet).local_aabb(), 0);
+        self.facets
             .bvh()
             .leaves(move |node| node.intersects(&query))
     }
@@ -192,23 +244,12 @@ impl Boundary {
 
     /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
-        let plane = self.planes.get(triangle as usize);
-        if let Some(Plane {
-            corner,
-            normal,
-            along_u,
-            along_v,
-        }) = plane
-        {
-            let from_corner = point - corner;
-            let (u, v) = (from_corner.dot(along_u), from_corner.dot(along_v));
-            if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
-                let height = from_corner.dot(normal);
-                return Nearest {
-                    point: point - normal * height,
-                    distance: height.abs(),
-                };
-            }
+        let plane = &self.planes[triangle as usize];
+        if let Some(height) = plane.height_over_triangle(point) {
+            return Nearest {
+                point: point - plane.normal * height,
+                distance: height.abs(),
+            };
         }
         let from = to_parry(point);
         let (projection, _) = self
@@ -221,6 +262,32 @@ impl Boundary {
             distance: (projection.point - from).length(),
         }
     }
+
+    /// Whether a point (local units) lies inside the solid, judged by the normal of the nearest triangle: much faster than a ray.
+    /// `triangles` must hold the nearest one and all that are as near.
+    ///
+    /// `None` where this decides nothing, and [`is_inside`](crate::inside::is_inside) does: the nearest place is an edge or a
+    /// corner, or several triangles within 1e-9 of the nearest contradict each other (as where two parts touch).
+    pub fn is_behind_nearest(
+        &self,
+        triangles: impl Iterator<Item = u32>,
+        point: &Vector3,
+    ) -> Option<bool> {
+        const AS_NEAR: f64 = 1e-9;
+        let mut near: Vec<(f64, Option<bool>)> = triangles
+            .map(|triangle| {
+                let height = self.planes[triangle as usize].height_over_triangle(point);
+                match height {
+                    Some(height) => (height.abs(), Some(height < 0.0)),
+                    None => (self.nearest_on(triangle, point).distance, None),
+                }
+            })
+            .collect();
+        let nearest = near.iter().map(|n| n.0).fold(f64::INFINITY, f64::min);
+        near.retain(|n| n.0 <= nearest + AS_NEAR);
+        let (_, first) = *near.first()?;
+        near.iter().all(|n| n.1 == first).then_some(first)?
+    }
 }
 
 fn on_ray<'a>(
@@ -231,6 +298,15 @@ fn on_ray<'a>(
     let ray = Ray::new(to_parry(origin), to_parry(direction));
     mesh.bvh()
         .leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
+}
+
+/// Distance from a point to the box of a node.
+fn distance_to_box(node: &BvhNode, point: &Vector3) -> f64 {
+    let from = to_parry(point);
+    (node.mins() - from)
+        .max(from - node.maxs())
+        .max(Vector::ZERO)
+        .length()
 }
 
 fn to_parry(v: &Vector3) -> Vector {

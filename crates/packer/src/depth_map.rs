@@ -2,7 +2,7 @@
 
 use crate::Vector3;
 use crate::boundary::Boundary;
-use crate::inside::contains;
+use crate::inside::is_inside;
 use dem_io::Surface;
 use rayon::prelude::*;
 
@@ -23,7 +23,6 @@ enum Cell {
 
 /// Knows for the cells of a grid whether they are inside.
 pub struct DepthMap<'a> {
-    surface: &'a Surface,
     boundary: &'a Boundary,
     cut_off: f64,
     edge: f64,
@@ -52,7 +51,7 @@ impl<'a> DepthMap<'a> {
                     .map_or(f64::INFINITY, |near| near.distance);
                 if distance <= half_diagonal {
                     Cell::Crossed
-                } else if !contains(boundary, surface, &centre) {
+                } else if !is_inside(boundary, &centre) {
                     Cell::Outside
                 } else if distance > cut_off + half_diagonal {
                     Cell::Deep
@@ -62,7 +61,6 @@ impl<'a> DepthMap<'a> {
             })
             .collect();
         Self {
-            surface,
             boundary,
             cut_off,
             edge,
@@ -89,7 +87,7 @@ impl<'a> DepthMap<'a> {
             Cell::Deep => f64::INFINITY,
             Cell::Inside => distance(),
             Cell::Outside => f64::NEG_INFINITY,
-            Cell::Crossed if contains(self.boundary, self.surface, &point) => distance(),
+            Cell::Crossed if is_inside(self.boundary, &point) => distance(),
             Cell::Crossed => -distance(),
         }
     }

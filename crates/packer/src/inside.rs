@@ -6,7 +6,6 @@
 
 use crate::Vector3;
 use crate::boundary::Boundary;
-use dem_io::Surface;
 
 /// Directions in no special position to any axis or to each other.
 const DIRECTIONS: [[f64; 3]; 7] = [
@@ -68,18 +67,18 @@ fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 
 /// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
 /// A point on the surface itself is not inside.
 pub fn is_inside(boundary: &Boundary, point: &Vector3) -> bool {
+    winding(boundary, point).is_some_and(|winding| winding > 0)
+}
+
+/// How often the surface winds around a point (local units): 1 inside one shell, 0 outside. `None` when it cannot be told,
+/// as on the surface itself.
+pub fn winding(boundary: &Boundary, point: &Vector3) -> Option<i32> {
     DIRECTIONS
         .iter()
         .find_map(|d| crossings(boundary, point, &Vector3::from(*d)))
-        .is_some_and(|winding| winding > 0)
 }
 
-/// As [`is_inside`]; the boundary is that of `_surface`.
-pub fn contains(boundary: &Boundary, _surface: &Surface, point: &Vector3) -> bool {
-    is_inside(boundary, point)
-}
-
-/// Signed crossings of a ray: 1 inside one shell, 0 outside, -1 never; `None` when a facet was grazed.
+/// Signed crossings of a ray; `None` when a facet was grazed.
 fn crossings(boundary: &Boundary, origin: &Vector3, direction: &Vector3) -> Option<i32> {
     let mut winding = 0;
     for facet in boundary.facets_on_ray(origin, direction) {

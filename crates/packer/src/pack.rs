@@ -3,7 +3,7 @@
 use crate::boundary::Boundary;
 use crate::front::{Front, FrontSettings};
 use crate::grid::Ball;
-use crate::inside::contains;
+use crate::inside::is_inside;
 use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
 use crate::settle::settle;
 use crate::sizes::Sizes;
@@ -221,7 +221,7 @@ fn seed_point(
         return Ok(deepest.centre);
     };
     let local = Vector3::from([0, 1, 2].map(|k| (given[k] - surface.origin_m[k]) / surface.unit_m));
-    if contains(boundary, surface, &local) {
+    if is_inside(boundary, &local) {
         return Ok(local);
     }
     let inside = to_metres(surface, &deepest.centre)
@@ -251,7 +251,7 @@ fn front_seeds(
         seeds.extend(
             others
                 .into_iter()
-                .filter(|p| (p - seed).norm() > 2.0 * diameter && contains(boundary, surface, p)),
+                .filter(|p| (p - seed).norm() > 2.0 * diameter && is_inside(boundary, p)),
         );
     }
     seeds

@@ -2,7 +2,7 @@
 
 use crate::Vector3;
 use crate::boundary::Boundary;
-use crate::inside::{contains, first_hit};
+use crate::inside::{first_hit, is_inside};
 use dem_io::Surface;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -55,7 +55,7 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
     points.dedup_by_key(|p| cell(p));
     let mut inner: Vec<Inscribed> = points
         .into_par_iter()
-        .filter(|p| contains(boundary, surface, p))
+        .filter(|p| is_inside(boundary, p))
         .filter_map(|centre| {
             boundary.nearest(&centre, f64::MAX).map(|near| Inscribed {
                 centre,
@@ -101,21 +101,111 @@ pub fn climb(
         radius: clearance(start),
     };
     let mut step = first_step;
-    let diagonal = 1.0 / 3.0_f64.sqrt();
     while step > last_step {
         let before = best;
-        for at in 0..27 {
-            if at == 13 {
-                continue;
-            }
-            let direction = Vector3::new(
-                (at % 3) as f64 - 1.0,
-                (at / 3 % 3) as f64 - 1.0,
-                (at / 9) as f64 - 1.0,
-            ) * diagonal;
+        for direction in directions() {
             let centre = before.centre + direction * step;
             let radius = clearance(&centre);
             if radius > best.radius {
+                best = Inscribed { centre, radius };
+            }
+        }
+        if best == before {
+            step *= 0.5;
+        }
+    }
+    best
+}
+
+/// To the neighbours of a point in a cubic lattice, scaled so that those at the corners are 1 away.
+fn directions() -> impl Iterator<Item = Vector3> {
+    let diagonal = 1.0 / 3.0_f64.sqrt();
+    (0..27).filter(|at| *at != 13).map(move |at| {
+        Vector3::new(
+            (at % 3) as f64 - 1.0,
+            (at / 3 % 3) as f64 - 1.0,
+            (at / 9) as f64 - 1.0,
+        ) * diagonal
+    })
+}
+
+/// The triangles of the wall that may be nearest to a point within `reach` of `base`.
+///
+/// A distance changes by no more than the way between two points, so that those farther away than the nearest one by twice
+/// the reach are none.
+struct NearestAround {
+    base: Vector3,
+    reach: f64,
+    /// Distance from `base` and number; nearest first.
+    triangles: Vec<(f64, u32)>,
+}
+
+impl NearestAround {
+    fn new(boundary: &Boundary, ball: &Inscribed, reach: f64) -> Self {
+        let limit = ball.radius + 2.0 * reach;
+        Self::among(
+            boundary.triangles_near(&ball.centre, limit),
+            boundary,
+            ball,
+            reach,
+        )
+    }
+
+    fn among(
+        triangles: impl Iterator<Item = u32>,
+        boundary: &Boundary,
+        ball: &Inscribed,
+        reach: f64,
+    ) -> Self {
+        let mut triangles: Vec<(f64, u32)> = triangles
+            .map(|t| (boundary.nearest_on(t, &ball.centre).distance, t))
+            .filter(|(distance, _)| *distance <= ball.radius + 2.0 * reach)
+            .collect();
+        triangles.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Self {
+            base: ball.centre,
+            reach,
+            triangles,
+        }
+    }
+
+    /// The same around another ball, or nearer to this one.
+    fn moved(&self, boundary: &Boundary, ball: &Inscribed, reach: f64) -> Self {
+        if (ball.centre - self.base).norm() + reach > self.reach {
+            return Self::new(boundary, ball, reach);
+        }
+        let triangles = self.triangles.iter().map(|(_, t)| *t);
+        Self::among(triangles, boundary, ball, reach)
+    }
+
+    /// Distance from `point` to the wall, if it is more than `least`.
+    fn distance_above(&self, boundary: &Boundary, point: &Vector3, least: f64) -> Option<f64> {
+        let moved = (point - self.base).norm();
+        let mut nearest = f64::INFINITY;
+        for (from_base, triangle) in &self.triangles {
+            if from_base - moved >= nearest {
+                break;
+            }
+            nearest = nearest.min(boundary.nearest_on(*triangle, point).distance);
+            if nearest <= least {
+                return None;
+            }
+        }
+        Some(nearest)
+    }
+}
+
+/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the wall, so that the climb stays inside.
+fn climb_from_wall(boundary: &Boundary, start: &Inscribed) -> Inscribed {
+    let mut best = *start;
+    let mut step = 0.5 * start.radius;
+    let mut near = NearestAround::new(boundary, &best, step);
+    while step > 1e-8 * start.radius {
+        let before = best;
+        near = near.moved(boundary, &before, step);
+        for direction in directions() {
+            let centre = before.centre + direction * step;
+            if let Some(radius) = near.distance_above(boundary, &centre, best.radius) {
                 best = Inscribed { centre, radius };
             }
         }
@@ -133,12 +223,6 @@ pub fn deepest_point(
     surface: &Surface,
     inner: &[Inscribed],
 ) -> Option<Inscribed> {
-    // The steps are never longer than the distance to the wall, so that the climb stays inside.
-    let clearance = |p: &Vector3| {
-        boundary
-            .nearest(p, f64::MAX)
-            .map_or(0.0, |near| near.distance)
-    };
     let deep = inner
         .iter()
         .take_while(|ball| ball.radius >= 0.9 * inner[0].radius);
@@ -149,19 +233,14 @@ pub fn deepest_point(
             .norm()
             .total_cmp(&(b.centre - middle).norm())
     });
-    let found: Vec<Inscribed> = deep
-        .iter()
-        .take(4)
-        .chain(inner.first().iter())
-        .map(|ball| {
-            climb(
-                &ball.centre,
-                0.5 * ball.radius,
-                1e-8 * ball.radius,
-                &clearance,
-            )
-        })
-        .collect();
+    let mut found: Vec<Inscribed> = Vec::new();
+    for start in deep.into_iter().take(4).chain(inner.first()) {
+        // From beside a place that is known the climb would end there again.
+        let known = |ball: &Inscribed| (ball.centre - start.centre).norm() < 0.5 * ball.radius;
+        if !found.iter().any(known) {
+            found.push(climb_from_wall(boundary, start));
+        }
+    }
     let deepest = found.iter().map(|ball| ball.radius).fold(0.0, f64::max);
     found
         .into_iter()

@@ -5,7 +5,8 @@ use crate::{Diagnostic, Result};
 
 impl Body {
     /// Whether this is a body: particles with finite centres and positive radii, bonds with positive radii and lengths
-    /// between two different particles that exist, the smaller index first, no pair bonded twice, arrays of equal length.
+    /// between two different particles that exist, the smaller index first, no pair bonded twice, arrays of equal length, no NUL
+    /// character in what is known of it.
     ///
     /// Takes linear time; at most 8 bytes per particle and 4 per bond of memory, none if the bonds are sorted.
     ///
@@ -118,6 +119,15 @@ fn check_positive(value: f64, what: &str) -> Result<()> {
 
 fn check_about(body: &Body) -> Result<()> {
     let about = &body.about;
+    for (what, text) in [("program", &about.program), ("source", &about.source)] {
+        if text.as_ref().is_some_and(|text| text.contains('\0')) {
+            return Err(Diagnostic::input(
+                "",
+                format!("the name of the {what} contains a NUL character"),
+                "remove it: no file can hold it",
+            ));
+        }
+    }
     let numbers = [
         (
             "particle density",
@@ -274,6 +284,10 @@ mod tests {
         assert_eq!(
             said(|b| b.about.overlap = Some(-0.1)),
             "the overlap is -0.1, but must be zero or positive and finite; correct it or leave it out"
+        );
+        assert_eq!(
+            said(|b| b.about.source = Some("a\0b".to_owned())),
+            "the name of the source contains a NUL character; remove it: no file can hold it"
         );
     }
 

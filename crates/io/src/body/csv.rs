@@ -46,7 +46,7 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
 /// is as thick as the smaller of its particles, without `initial_length_m` it is as long as they are apart.
 ///
 /// # Errors
-/// A column is missing, a line makes no sense, or not a body by [`Body::check`]. The place begins with "particles" or "bonds"
+/// A column is missing, a line makes no sense or has no end (the file is cut off), or not a body by [`Body::check`]. The place begins with "particles" or "bonds"
 /// where it is known.
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();

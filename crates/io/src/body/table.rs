@@ -23,7 +23,7 @@ impl<'a> Lines<'a> {
     /// The next line without the white space around it, and its number, counted from 1.
     ///
     /// # Errors
-    /// It cannot be read, or is no text.
+    /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line break, too.
     pub(super) fn next(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
         let read = self.input.read_until(b'\n', &mut self.bytes);
@@ -33,6 +33,16 @@ impl<'a> Lines<'a> {
             return Ok(None);
         }
         self.number += 1;
+        if !self.bytes.ends_with(b"\n") {
+            return Err(on_line(
+                self.number,
+                Diagnostic::input(
+                    "",
+                    "the file ends within this line",
+                    "it may be cut off: make it again, or end its last line with a line break if nothing is missing",
+                ),
+            ));
+        }
         // Spreadsheets put this mark at the beginning of a text.
         let start = if self.number == 1 && self.bytes.starts_with(b"\xEF\xBB\xBF") {
             3

@@ -39,7 +39,7 @@ const OVERLAP: &str = "overlap";
 const BONDING_RADIUS: &str = "bonding_radius";
 const SEED: &str = "seed";
 
-/// Writes a body as .vtp. It must keep the rules of [`Body::check`]; a NUL character in a text of [`About`] ends that text.
+/// Writes a body as .vtp. It must keep the rules of [`Body::check`].
 ///
 /// # Errors
 /// Those of `out`.

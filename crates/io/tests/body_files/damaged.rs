@@ -1,5 +1,6 @@
 //! Files that were cut off, bent or made up.
 
+use dem_io::Body;
 use dem_io::body::{csv, lammps, txt, vtp};
 use proptest::prelude::*;
 
@@ -61,10 +62,46 @@ fn other_files_cut_off_anywhere_never_break_the_reader() {
             every_reader(&bytes[..end]);
         }
     }
-    // The counts at its head show where a LAMMPS file is cut; within its last number nothing can.
+    // The counts at its head show where a LAMMPS file is cut; within its last number the missing line break does.
     let bytes = lammps_bytes();
-    for end in 0..bytes.len() - 3 {
+    for end in 0..bytes.len() {
         assert!(lammps::read(&mut &bytes[..end]).is_err(), "{end}");
+    }
+}
+
+type Write = fn(&Body, &mut dyn std::io::Write) -> std::io::Result<()>;
+type Read = fn(&mut dyn std::io::BufRead, &mut dyn std::io::BufRead) -> dem_io::Result<Body>;
+
+/// Tables do not say how long they are. A cut shows within a line, and where a bond names a particle that is gone.
+#[test]
+fn tables_cut_off_are_refused_unless_whole_bonds_are_missing() {
+    let kinds: [(Write, Write, Read); 2] = [
+        (csv::write_particles, csv::write_bonds, csv::read),
+        (txt::write_particles, txt::write_bonds, txt::read),
+    ];
+    for (write_particles, write_bonds, read) in kinds {
+        let (mut particles, mut bonds) = (Vec::new(), Vec::new());
+        write_particles(&triangle(), &mut particles).unwrap();
+        write_bonds(&triangle(), &mut bonds).unwrap();
+        assert!(read(&mut particles.as_slice(), &mut bonds.as_slice()).is_ok());
+        for end in 0..particles.len() {
+            let error = read(&mut &particles[..end], &mut bonds.as_slice()).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{end}: {error}");
+        }
+        for end in (1..bonds.len()).filter(|end| bonds[end - 1] != b'\n') {
+            let error = read(&mut particles.as_slice(), &mut &bonds[..end]).unwrap_err();
+            let place = format!(
+                "bonds: line {}",
+                bonds[..end].split(|b| *b == b'\n').count()
+            );
+            assert_eq!(
+                error.to_string(),
+                format!(
+                    "{place}: the file ends within this line; it may be cut off: make it again, or end its last line \
+                     with a line break if nothing is missing"
+                )
+            );
+        }
     }
 }
 

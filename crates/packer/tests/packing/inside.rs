@@ -9,7 +9,7 @@ use super::solids::{
 use dem_io::Surface;
 use dem_pack::Vector3;
 use dem_pack::boundary::Boundary;
-use dem_pack::inside::{contains, first_hit};
+use dem_pack::inside::{self, first_hit};
 
 /// A point of the file (mm) in local units.
 fn local(surface: &Surface, p: Point) -> Vector3 {
@@ -17,7 +17,7 @@ fn local(surface: &Surface, p: Point) -> Vector3 {
 }
 
 fn is_inside((surface, boundary): &(Surface, Boundary), p: Point) -> bool {
-    contains(boundary, surface, &local(surface, p))
+    inside::is_inside(boundary, &local(surface, p))
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn agrees_with_the_winding_number_everywhere_around_a_torus() {
             );
             let wanted = winding_number(&facets, &p) > 0;
             assert_eq!(
-                contains(&boundary, &surface, &Vector3::from(p)),
+                inside::is_inside(&boundary, &Vector3::from(p)),
                 wanted,
                 "{p:?}"
             );
@@ -204,4 +204,72 @@ fn a_ray_meets_the_wall_where_it_stands() {
             "{p:?} {direction:?}: {hit} {wall}"
         );
     }
+}
+
+#[test]
+fn near_the_wall_the_nearest_triangle_tells_the_side() {
+    let mut random = random_numbers(5);
+    let crossing = |p: Point| [p[0] + 3.0, p[1] - 2.0, p[2] + 1.0];
+    let other = rounded(cuboid([3.0, 8.0, 2.0]));
+    let crossed = other.into_iter().map(|corners| corners.map(crossing));
+    let touching = cuboid([2.0, 2.0, 2.0]).into_iter();
+    let touching = touching.map(|corners| corners.map(|p| [p[0] + 10.0, p[1] + 1.0, p[2] + 1.0]));
+    for facets in [
+        torus(20.0, 5.0, 60, 24),
+        icosphere(2, &|d| 5.0 + 3.0 * (4.0 * d[0]).sin()),
+        cuboid([10.0, 4.0, 4.0])
+            .into_iter()
+            .chain(crossed)
+            .collect(),
+        cuboid([10.0, 4.0, 4.0])
+            .into_iter()
+            .chain(touching)
+            .collect(),
+    ] {
+        let (surface, boundary) = surface_of(&facets);
+        let (mut decided, mut tried) = (0, 0);
+        for corners in local_facets(&surface) {
+            for _ in 0..2000 / facets.len() + 4 {
+                let weights = point_between(&mut random, [0.0; 3], [1.0; 3]);
+                let sum: f64 = weights.iter().sum();
+                let on = |k: usize| {
+                    (0..3)
+                        .map(|c| weights[c] / sum * corners[c][k])
+                        .sum::<f64>()
+                };
+                let off = 10.0_f64.powf(point_between(&mut random, [-9.0; 3], [-2.0; 3])[0]);
+                let way = point_between(&mut random, [-off; 3], [off; 3]);
+                let p = Vector3::new(on(0) + way[0], on(1) + way[1], on(2) + way[2]);
+                let near = boundary.triangles_near(&p, 2.0 * off + 1e-6);
+                tried += 1;
+                if let Some(behind) = boundary.is_behind_nearest(near, &p) {
+                    assert_eq!(behind, inside::is_inside(&boundary, &p), "{p:?}");
+                    decided += 1;
+                }
+            }
+        }
+        assert!(4 * decided > 3 * tried, "{decided} of {tried}");
+    }
+}
+
+#[test]
+fn at_edges_and_where_parts_touch_the_nearest_triangle_does_not_tell() {
+    let mut facets = cuboid([4.0, 4.0, 4.0]);
+    let beside = cuboid([2.0, 2.0, 2.0]).into_iter();
+    facets.extend(beside.map(|corners| corners.map(|p| [p[0] + 4.0, p[1] + 1.0, p[2] + 1.0])));
+    let (surface, boundary) = surface_of(&facets);
+    let behind = |p: Point| {
+        let p = local(&surface, p);
+        boundary.is_behind_nearest(boundary.triangles_near(&p, 0.1), &p)
+    };
+    assert_eq!(behind([3.9, 0.4, 0.5]), Some(true));
+    assert_eq!(behind([4.1, 0.4, 0.5]), Some(false));
+    assert_eq!(behind([4.1, -0.1, 2.0]), None);
+    for x in [3.9, 4.1] {
+        assert_eq!(behind([x, 1.9, 2.2]), None);
+    }
+    assert_eq!(
+        boundary.is_behind_nearest(std::iter::empty(), &Vector3::zeros()),
+        None
+    );
 }

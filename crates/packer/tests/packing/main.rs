@@ -11,3 +11,4 @@ mod pack;
 mod seed;
 mod settle;
 mod solids;
+mod union;

@@ -6,7 +6,7 @@ use super::solids::{between, icosphere, local_facets, point_between, random_numb
 use dem_pack::Vector3;
 use dem_pack::boundary::Boundary;
 use dem_pack::grid::Ball;
-use dem_pack::inside::contains;
+use dem_pack::inside::is_inside;
 use dem_pack::settle::{Settled, settle};
 use std::f64::consts::PI;
 
@@ -35,10 +35,7 @@ fn cloud(
             let d = (centre - Vector3::new(b[0], b[1], b[2])).norm();
             d >= apart * (reduced + b[3])
         });
-        if free
-            && contains(&boundary, &surface, &centre)
-            && boundary.clears(&centre, apart * radius)
-        {
+        if free && is_inside(&boundary, &centre) && boundary.clears(&centre, apart * radius) {
             balls.push([place[0], place[1], place[2], reduced]);
             filled += 4.0 / 3.0 * PI * reduced.powi(3);
         }

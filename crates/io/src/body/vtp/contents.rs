@@ -6,7 +6,7 @@ use super::{
     BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
 };
-use crate::body::{About, Body, Parts};
+use crate::body::{Body, Parts};
 use crate::{Diagnostic, Result};
 
 /// What has been read of a body so far.
@@ -15,13 +15,10 @@ pub(super) struct Contents {
     counts: Option<Counts>,
     /// Names of the point data, for the message that the radii are missing.
     point_data: Vec<String>,
-    positions: Vec<[f64; 3]>,
     radii: Option<Vec<f64>>,
-    bonds: Vec<[u32; 2]>,
     lines_ended: u64,
-    bond_radii: Option<Vec<f64>>,
-    bond_lengths: Option<Vec<f64>>,
-    about: About,
+    /// All but the radii.
+    parts: Parts,
 }
 
 impl Contents {
@@ -68,10 +65,10 @@ impl Contents {
                 floats(array, values, [0, counts.points, 0]).map(|all| self.radii = Some(all))
             }
             Role::BondRadii => {
-                line_values(array, values, counts).map(|all| self.bond_radii = Some(all))
+                line_values(array, values, counts).map(|all| self.parts.bond_radii = Some(all))
             }
             Role::BondLengths => {
-                line_values(array, values, counts).map(|all| self.bond_lengths = Some(all))
+                line_values(array, values, counts).map(|all| self.parts.bond_lengths = Some(all))
             }
             Role::Field(_) | Role::Other => Ok(()),
         }
@@ -79,7 +76,7 @@ impl Contents {
 
     fn fill_positions(&mut self, array: &Array, values: Values<'_>, points: u64) -> Result<()> {
         let (mut point, mut axis) = ([0.0; 3], 0);
-        let positions = &mut self.positions;
+        let positions = &mut self.parts.positions;
         values.for_each(array.scalar()?, |number| {
             point[axis] = float(number);
             axis += 1;
@@ -98,7 +95,7 @@ impl Contents {
 
     fn fill_bonds(&mut self, array: &Array, values: Values<'_>, lines: u64) -> Result<()> {
         let mut first = None;
-        let bonds = &mut self.bonds;
+        let bonds = &mut self.parts.bonds;
         values.for_each(array.scalar()?, |number| {
             let particle = particle(number)?;
             match first.take() {
@@ -139,7 +136,7 @@ impl Contents {
             Ok(())
         })?;
         let first = numbers.first().copied();
-        let about = &mut self.about;
+        let about = &mut self.parts.about;
         match name {
             VERSION => check_version(first)?,
             LENGTH_UNIT => check_unit(&text(&numbers)?)?,
@@ -159,8 +156,12 @@ impl Contents {
     /// The body, if everything that it needs was there.
     pub(super) fn into_body(self) -> Result<Body> {
         let counts = self.counts.unwrap_or_default();
-        check_count(self.positions.len() as u64, counts.points.into(), "points")?;
-        check_count(self.bonds.len() as u64, counts.lines.into(), "lines")?;
+        check_count(
+            self.parts.positions.len() as u64,
+            counts.points.into(),
+            "points",
+        )?;
+        check_count(self.parts.bonds.len() as u64, counts.lines.into(), "lines")?;
         check_count(self.lines_ended, counts.lines.into(), "offsets of lines")?;
         let Some(radii) = self.radii else {
             let known = match self.point_data.as_slice() {
@@ -173,21 +174,9 @@ impl Contents {
                 format!("name the point data that hold them '{RADIUS}'"),
             ));
         };
-        let Self {
-            positions,
-            bonds,
-            bond_radii,
-            bond_lengths,
-            about,
-            ..
-        } = self;
         Body::from_parts(Parts {
-            positions,
             radii,
-            bonds,
-            bond_radii,
-            bond_lengths,
-            about,
+            ..self.parts
         })
     }
 }
