@@ -68,7 +68,7 @@ fn numbers_out_of_range() {
     for value in ["0.5", "0.061", "-0.1", "nan"] {
         assert_refused(
             &["-d", "2mm", "--settle", value],
-            &["--settle", value, "at most 0.06"],
+            &["--settle", &value.replace("nan", "NaN"), "at most 0.06"],
         );
     }
     for value in ["0", "-1", "3", "nan"] {

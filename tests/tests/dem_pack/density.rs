@@ -88,7 +88,7 @@ fn the_density_is_printed() {
         .lines()
         .find(|line| line.starts_with("time"))
         .unwrap()
-        .split([' ', ','])
+        .split([' ', ',', ';'])
         .filter_map(|word| word.parse().ok())
         .collect();
     let stages: f64 = numbers[1..6].iter().sum();
