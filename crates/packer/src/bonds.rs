@@ -8,13 +8,15 @@ use dem_io::{Diagnostic, Result};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 
-/// Whether the straight line between two points (local units) crosses the surface.
-pub type CrossesSurface<'a> = &'a (dyn Fn([f64; 3], [f64; 3]) -> bool + Sync);
+/// Whether the straight line between the centres of two spheres, given by their indices, crosses the surface.
+pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
 /// Beyond this bonding radius a bond would pass through other spheres.
 pub const LARGEST_BONDING_RADIUS: f64 = 2.0;
 /// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres, 4.87).
 pub const WELL_BONDED: f64 = 5.0;
+/// Spheres whose neighbours are counted to advise a bonding radius: enough for 1 % of the number of bonds.
+const SPHERES_TO_ADVISE: usize = 5000;
 /// Spheres that one task searches around: fixed, so that the order of results is the same for any number of threads.
 const CHUNK: usize = 4096;
 
@@ -97,11 +99,45 @@ pub fn bonding_radius_for(
 }
 
 /// A bonding radius to advise when a packing has too few bonds: gives [`WELL_BONDED`] bonds per particle, rounded up to
-/// two decimals. None where no bonding radius does.
+/// two decimals. None where no bonding radius does. Of many spheres, the neighbours of some are counted.
 pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
-    bonding_radius_for(spheres, WELL_BONDED, crosses_surface)
-        .ok()
-        .map(|radius| (radius * 100.0).ceil() / 100.0)
+    let radii = &spheres.radii;
+    let stride = radii.len().div_ceil(SPHERES_TO_ADVISE).max(1);
+    let largest = radii.iter().copied().fold(0.0, f64::max);
+    let tree = tree_of(spheres).ok()?;
+    let around: Vec<u32> = (0..radii.len() as u32).step_by(stride).collect();
+    // Every bond has two ends.
+    let ends = ((2.0 * WELL_BONDED * around.len() as f64).round() as usize).max(1);
+    let mut limit = 1.25_f64;
+    loop {
+        let ratios_of = |a: &u32| {
+            let radius_a = radii[*a as usize];
+            let mut ratios = Vec::new();
+            let reach = limit * (radius_a + largest);
+            let neighbours = tree
+                .query(&spheres.positions[*a as usize])
+                .within::<SquaredEuclidean<f64>>(reach * reach)
+                .unsorted();
+            neighbours.visit(|neighbour| {
+                let (b, distance) = (neighbour.item, neighbour.distance.sqrt());
+                let ratio = distance / (radius_a + radii[b as usize]);
+                if b != *a && ratio <= limit && is_joined(spheres, *a, b, distance, crosses_surface)
+                {
+                    ratios.push(ratio);
+                }
+            });
+            ratios
+        };
+        let mut ratios: Vec<f64> = around.par_iter().flat_map_iter(ratios_of).collect();
+        if ratios.len() >= ends {
+            let (_, last, _) = ratios.select_nth_unstable_by(ends - 1, f64::total_cmp);
+            return Some((*last * 100.0).ceil() / 100.0);
+        }
+        if limit >= LARGEST_BONDING_RADIUS {
+            return None;
+        }
+        limit = (limit * 1.2).min(LARGEST_BONDING_RADIUS);
+    }
 }
 
 /// Distances of the centres of bonded spheres: the initial lengths of the bonds, local units. One per bond.
@@ -139,9 +175,7 @@ fn is_joined(
     distance: f64,
     crosses_surface: CrossesSurface,
 ) -> bool {
-    let (a, b) = (a as usize, b as usize);
-    distance <= spheres.radii[a] + spheres.radii[b]
-        || !crosses_surface(spheres.positions[a], spheres.positions[b])
+    distance <= spheres.radii[a as usize] + spheres.radii[b as usize] || !crosses_surface(a, b)
 }
 
 /// `keep(a, b, distance)` of every pair with distance <= ratio (R_a + R_b), a the larger sphere of the two: once each,
@@ -158,14 +192,7 @@ fn search<T: Send>(
     if radii.is_empty() {
         return Ok(Vec::new());
     }
-    let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&spheres.positions)
-        .map_err(|e| {
-            Diagnostic::failed(
-                "",
-                format!("no search tree over {} spheres: {e}", radii.len()),
-                "",
-            )
-        })?;
+    let tree = tree_of(spheres)?;
     // In the order of the tree's leaves, so that what one sphere reads is at hand for the next.
     let order: Vec<u32> = tree.iter().map(|(item, _)| item).collect();
     let search_around = |chunk: &[u32]| {
@@ -192,6 +219,16 @@ fn search<T: Send>(
         found
     };
     Ok(order.par_chunks(CHUNK).map(search_around).collect())
+}
+
+fn tree_of(spheres: &Spheres) -> Result<ImmutableKdTree<f64, 3>> {
+    ImmutableKdTree::new_from_slice(&spheres.positions).map_err(|e| {
+        Diagnostic::failed(
+            "",
+            format!("no search tree over {} spheres: {e}", spheres.radii.len()),
+            "",
+        )
+    })
 }
 
 /// The pairs sorted: counted and dealt out by their first index, each sphere's few then sorted by the second.

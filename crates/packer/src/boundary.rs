@@ -113,12 +113,33 @@ impl Boundary {
 
     /// The nearest point of the surface, if it is closer than `cut_off` (local units).
     pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
-        let (_, (_, near)) = self.wall().bvh().find_best(
+        self.nearest_triangle(point, cut_off).map(|(_, near)| near)
+    }
+
+    /// As [`Boundary::nearest`], with the triangle of the wall that the nearest point lies on.
+    pub fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
+        let (triangle, (_, near)) = self.wall().bvh().find_best(
             cut_off,
             |node, _| distance_to_box(node, point),
             |triangle, closest| self.nearest_below(triangle, point, closest),
         )?;
-        Some(near)
+        Some((triangle, near))
+    }
+
+    /// Whether a point is behind the triangle of the wall that is nearest to it, on the inner side: then it is inside. None
+    /// where that is not sure: the nearest point is at an edge, or the point on the wall itself.
+    pub fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
+        const EDGE: f64 = 1e-6;
+        let plane = self.planes.get(nearest_triangle as usize)?;
+        let from_corner = point - plane.corner;
+        let (u, v) = (
+            from_corner.dot(&plane.along_u),
+            from_corner.dot(&plane.along_v),
+        );
+        let height = from_corner.dot(&plane.normal);
+        let sure =
+            u > EDGE && v > EDGE && u + v < 1.0 - EDGE && height.abs() > EDGE * from_corner.norm();
+        sure.then_some(height < 0.0)
     }
 
     /// Whether the surface leaves a ball of this radius (local units) free.

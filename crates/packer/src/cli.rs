@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// Share by which the front's radii are smaller before settling, unless given: see the table in README.md.
 pub const DEFAULT_SETTLE: f64 = 0.037;
-const LARGEST_SETTLE: f64 = 0.2;
+/// With more, spheres that grow to full size jam in large numbers.
+const LARGEST_SETTLE: f64 = 0.06;
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
 #[derive(Debug, Parser)]
@@ -133,7 +134,7 @@ struct PackArguments {
         help_heading = "Spheres"
     )]
     seed_point: Option<String>,
-    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front
+    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.06
     #[arg(long, default_value_t = DEFAULT_SETTLE, allow_negative_numbers = true, value_name = "SHARE", help_heading = "Spheres")]
     settle: f64,
 
@@ -163,7 +164,7 @@ struct PackArguments {
     /// Print the report as JSON on standard output (the body then needs --output)
     #[arg(long, requires = "output", help_heading = "Running")]
     json: bool,
-    /// Say nothing on standard error unless something is wrong
+    /// Say nothing unless something is wrong: no progress, no report; --json is printed all the same
     #[arg(short, long, help_heading = "Running")]
     quiet: bool,
 }
@@ -212,6 +213,11 @@ fn pack_and_write(
     output: &Path,
 ) -> Result<()> {
     let surface = read_surface(stl, &arguments.reading)?;
+    check_unit_of_diameter(
+        arguments.diameter.as_deref(),
+        &settings.packing.sizes,
+        &surface,
+    )?;
     let person = if arguments.quiet {
         None
     } else {
@@ -270,13 +276,16 @@ impl PackArguments {
             LARGEST_OVERLAP,
             "0.1 to 0.5 is usual",
         )?;
-        check_range(
-            "--settle",
-            self.settle,
-            0.0,
-            LARGEST_SETTLE,
-            "0.02 to 0.04 is usual, 0 is the bare front",
-        )?;
+        if !(0.0..=LARGEST_SETTLE).contains(&self.settle) {
+            return Err(Diagnostic::input(
+                "--settle",
+                format!(
+                    "{} is not at least 0 and at most {LARGEST_SETTLE}: spheres that grow by more jam",
+                    self.settle
+                ),
+                "0.02 to 0.04 is usual, 0 is the bare front",
+            ));
+        }
         check_range(
             "--bond-radius-factor",
             self.bond_radius_factor,
@@ -333,6 +342,28 @@ fn check_range(option: &str, value: f64, least: f64, below: f64, remedy: &str) -
         option,
         format!("{value} is not {limit} and below {}", significant(below, 3)),
         remedy,
+    ))
+}
+
+/// A diameter without a unit that is larger than the shape was hardly meant as metres.
+fn check_unit_of_diameter(text: Option<&str>, sizes: &Sizes, surface: &Surface) -> Result<()> {
+    let text = text.unwrap_or_default();
+    let numbers = text.rsplit(':').next().unwrap_or(text);
+    let has_unit = numbers
+        .chars()
+        .any(|c| c.is_alphabetic() && !matches!(c, 'e' | 'E'));
+    let longest = surface.extent().iter().copied().fold(0.0, f64::max) * surface.unit_m;
+    if has_unit || sizes.min_m() <= longest {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("--diameter '{text}'"),
+        format!(
+            "no sphere fits: {} is larger than the shape, which is {} long",
+            show_length(sizes.min_m()),
+            show_length(longest)
+        ),
+        "a number without a unit is metres: write one, such as 2mm..3mm",
     ))
 }
 
@@ -417,11 +448,17 @@ fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
         std::fs::read(path).map(|bytes| (path.display().to_string(), bytes))
     }
     .map_err(|e| {
-        Diagnostic::input(
-            path.display().to_string(),
-            format!("cannot be read: {e}"),
-            "check its name and folder",
-        )
+        let (problem, remedy) = if path.is_dir() {
+            ("this is a folder".to_owned(), "name a file in it")
+        } else if e.kind() == std::io::ErrorKind::NotFound {
+            (
+                "there is no such file".to_owned(),
+                "check its name and folder",
+            )
+        } else {
+            (format!("cannot be read: {e}"), "")
+        };
+        Diagnostic::input(path.display().to_string(), problem, remedy)
     })?;
     surface_from_stl(
         &bytes,
@@ -506,16 +543,17 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
     if let Some(search) = &made.density_search {
         text += &format!(
-            "density     wanted {} kg/m3, found {} kg/m3 at overlap {} after {} packings\n",
+            "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}\n",
             significant(search.wanted_kg_m3, 5),
             significant(search.found_kg_m3, 5),
+            100.0 * search.relative_error,
             significant(search.overlap, 4),
             search.packings
         );
     }
     let history = &made.history;
     text += &format!(
-        "front       {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
+        "made by          a front from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
         history.fronts,
         history.settling_steps,
         history.taken_out,
@@ -523,7 +561,7 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
         history.voids_left
     );
     text += &format!(
-        "time        {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
+        "time             {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
         history.front_seconds,
         history.settle_seconds,
         history.fill_seconds,
@@ -532,8 +570,15 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
         significant(made.quality.particles as f64 / seconds, 3)
     );
     for warning in &surface.warnings {
-        text += &format!("note        {warning}\n");
+        text += &format!("note             {warning}\n");
     }
+    text += &match made.quality.warnings.len() {
+        0 => "verdict          sound: nothing to mind\n".to_owned(),
+        1 => "verdict          look at the warning above before the body is used\n".to_owned(),
+        many => {
+            format!("verdict          look at the {many} warnings above before the body is used\n")
+        }
+    };
     text
 }
 

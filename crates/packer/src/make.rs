@@ -1,17 +1,20 @@
 //! The whole job: surface and settings -> body and report.
 
-use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+use crate::Vector3;
+use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance, find_bonds};
 use crate::boundary::Boundary;
 use crate::density::{DensitySearch, pack_to_density};
 use crate::depth_map::DepthMap;
 use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
-use crate::{Spheres, Vector3};
 use dem_io::body::About;
 use dem_io::{Body, Result, Surface};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
+
+/// Spheres whose distance to the wall one task measures.
+const SPHERES_PER_TASK: usize = 256;
 
 /// What body is wanted.
 #[derive(Debug, Clone)]
@@ -37,7 +40,7 @@ pub struct Seconds {
     pub packing: f64,
     /// Finding the bonds.
     pub bonds: f64,
-    /// Checking and judging.
+    /// Distances to the wall, checking and judging.
     pub report: f64,
 }
 
@@ -46,7 +49,7 @@ pub struct Seconds {
 pub struct Made {
     /// How good it is.
     pub quality: Report,
-    /// How it came about.
+    /// How it came about. Its seconds are those of all packings of a density search.
     pub history: PackHistory,
     /// The bonding radius that was used.
     pub bonding_radius: f64,
@@ -91,9 +94,26 @@ pub fn make_body(
     seconds.packing = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
-    progress("bonds", 0.0)?;
+    progress("report", 0.0)?;
     let spheres = &packing.spheres;
-    let crosses = |a: [f64; 3], b: [f64; 3]| crosses_surface(&boundary, a, b);
+    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
+    let map = DepthMap::new(surface, &boundary, depth_needed(spheres), 4.0 * mean_radius);
+    let wall_distance: Vec<f64> = spheres
+        .positions
+        .par_iter()
+        .with_min_len(SPHERES_PER_TASK)
+        .map(|p| map.depth(*p))
+        .collect();
+    seconds.report = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    progress("bonds", 0.0)?;
+    let crosses = |a: u32, b: u32| {
+        let (p, q) = (spheres.positions[a as usize], spheres.positions[b as usize]);
+        // Balls that clear the surface and cover the line between their centres.
+        let clear = wall_distance[a as usize] + wall_distance[b as usize];
+        clear <= centre_distance(spheres, a, b) && crosses_surface(&boundary, p, q)
+    };
     let bonding_radius = match settings.bonds_per_particle {
         Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
         None => settings.bonding_radius,
@@ -103,16 +123,26 @@ pub fn make_body(
 
     let started = Instant::now();
     progress("report", 0.0)?;
-    let quality = judge(
-        surface,
-        &boundary,
-        settings,
-        packing_settings.overlap,
+    let mut quality = assess(&quality::Packing {
         spheres,
-        &bonds,
-        &crosses,
-    )?;
-    seconds.report = started.elapsed().as_secs_f64();
+        overlap: packing_settings.overlap,
+        bonds: &bonds,
+        bonding_radius,
+        sizes: &settings.packing.sizes,
+        unit_m: surface.unit_m,
+        shape_volume: surface.volume_m3() / surface.unit_m.powi(3),
+        extent: surface.extent(),
+        particle_density_kg_m3: settings.particle_density_kg_m3,
+        wall_distance: &wall_distance,
+        distance_inside: &|p| map.depth(p),
+        distance_bounds: &|p| map.bounds(p),
+        crosses_surface: &crosses,
+        gap_limit: DEFAULT_GAP_LIMIT,
+    })?;
+    quality
+        .warnings
+        .extend(density_search.as_ref().and_then(DensitySearch::warning));
+    seconds.report += started.elapsed().as_secs_f64();
 
     let body = Body {
         bond_radii: bond_radii(spheres, &bonds, settings.bond_radius_factor)
@@ -150,39 +180,6 @@ pub fn make_body(
         seconds,
     };
     Ok((body, made))
-}
-
-fn judge(
-    surface: &Surface,
-    boundary: &Boundary,
-    settings: &MakeSettings,
-    overlap: f64,
-    spheres: &Spheres,
-    bonds: &[[u32; 2]],
-    crosses: crate::bonds::CrossesSurface,
-) -> Result<Report> {
-    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
-    let map = DepthMap::new(surface, boundary, depth_needed(spheres), 4.0 * mean_radius);
-    let distance_inside = |p: [f64; 3]| map.depth(p);
-    let wall_distance: Vec<f64> = spheres
-        .positions
-        .par_iter()
-        .map(|p| map.depth(*p))
-        .collect();
-    assess(&quality::Packing {
-        spheres,
-        overlap,
-        bonds,
-        sizes: &settings.packing.sizes,
-        unit_m: surface.unit_m,
-        shape_volume: surface.volume_m3() / surface.unit_m.powi(3),
-        extent: surface.extent(),
-        particle_density_kg_m3: settings.particle_density_kg_m3,
-        wall_distance: &wall_distance,
-        distance_inside: &distance_inside,
-        crosses_surface: crosses,
-        gap_limit: DEFAULT_GAP_LIMIT,
-    })
 }
 
 /// Whether the straight line between two points inside the solid (local units) meets the surface.

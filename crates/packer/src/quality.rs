@@ -46,6 +46,9 @@ pub struct Packing<'a> {
     pub overlap: f64,
     /// Bonded pairs, the smaller index first, each once.
     pub bonds: &'a [[u32; 2]],
+    /// The bonds are all pairs up to this times the sum of their radii, but for those with surface between them; 0 if the
+    /// bonds were chosen otherwise.
+    pub bonding_radius: f64,
     /// The sizes that were asked for.
     pub sizes: &'a Sizes,
     /// One local unit in metres.
@@ -58,10 +61,13 @@ pub struct Packing<'a> {
     pub particle_density_kg_m3: Option<f64>,
     /// Distance of each centre to the surface, exact where finite; the others are measured. One per sphere.
     pub wall_distance: &'a [f64],
-    /// Distance of a point to the surface, positive inside the solid, negative outside. May be infinite farther than
-    /// [`depth_needed`] on either side. The only slow part: called a few hundred thousand times.
+    /// Distance of a point to the surface, positive inside the solid; may be infinite farther than [`depth_needed`].
+    /// Outside it is negative or zero, and at most as far below zero as the surface is away. The only slow part: called a
+    /// few hundred thousand times.
     pub distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
-    /// Whether the straight line between two points crosses the surface; asked only to advise a bonding radius.
+    /// Least and largest value that `distance_inside` can have at a point, if that is known for less than the distance costs.
+    pub distance_bounds: &'a (dyn Fn([f64; 3]) -> [f64; 2] + Sync),
+    /// Whether surface lies between two spheres; asked only to advise a bonding radius.
     pub crosses_surface: CrossesSurface<'a>,
     /// Largest gap of a contact, as a share of the smaller radius: [`DEFAULT_GAP_LIMIT`].
     pub gap_limit: f64,
@@ -85,6 +91,9 @@ pub struct Report {
     pub particles: usize,
     /// Number of bonds.
     pub bonds: usize,
+    /// They are all pairs up to this times the sum of their radii, but for those with surface between them; 0 if they were
+    /// chosen otherwise.
+    pub bonding_radius: f64,
     /// Mean diameter by number, m.
     pub mean_diameter_m: f64,
     /// Overlap of the packing.
@@ -169,6 +178,7 @@ pub fn assess(packing: &Packing) -> Result<Report> {
     let mut report = Report {
         particles: count,
         bonds: packing.bonds.len(),
+        bonding_radius: packing.bonding_radius,
         mean_diameter_m: mean_diameter * unit,
         overlap: packing.overlap,
         shape_volume_m3: packing.shape_volume * unit.powi(3),

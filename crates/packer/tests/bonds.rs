@@ -9,7 +9,7 @@ use dem_pack::bonds::{
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-fn open(_: [f64; 3], _: [f64; 3]) -> bool {
+fn open(_: u32, _: u32) -> bool {
     false
 }
 
@@ -116,8 +116,9 @@ fn two_fingers_stay_two() {
         }
     }
     let asked = AtomicUsize::new(0);
-    let wall = |p: [f64; 3], q: [f64; 3]| {
+    let wall = |a: u32, b: u32| {
         asked.fetch_add(1, Ordering::Relaxed);
+        let [p, q] = [a, b].map(|i| spheres.positions[i as usize]);
         (p[0] - 1.15) * (q[0] - 1.15) < 0.0
     };
     assert_eq!(find_bonds(&spheres, 1.2, &open).unwrap().len(), 2 * 19 + 20);

@@ -46,7 +46,15 @@ fn diameters() {
     assert_refused(&["-d", "lognormal:2mm,0.1mm,8mm..9mm"], &["8 mm", "9 mm"]);
     assert_refused(&["-d", "sieve:no-such-file.csv"], &["no-such-file.csv"]);
     // Metres, by mistake.
-    assert_refused(&["-d", "2"], &["no sphere fits", "2 m"]);
+    assert_refused(&["-d", "2"], &["no sphere fits", "2 m", "2mm..3mm"]);
+    assert_refused(
+        &["-d", "3..5"],
+        &["'3..5'", "3 m", "20 mm", "without a unit is metres"],
+    );
+    assert_refused(
+        &["-d", "normal:3,0.1"],
+        &["normal:3", "without a unit is metres"],
+    );
 }
 
 #[test]
@@ -57,8 +65,11 @@ fn numbers_out_of_range() {
             &["--overlap", "below 1"],
         );
     }
-    for value in ["0.5", "-0.1", "nan"] {
-        assert_refused(&["-d", "2mm", "--settle", value], &["--settle"]);
+    for value in ["0.5", "0.061", "-0.1", "nan"] {
+        assert_refused(
+            &["-d", "2mm", "--settle", value],
+            &["--settle", &value.replace("nan", "NaN"), "at most 0.06"],
+        );
     }
     for value in ["0", "-1", "3", "nan"] {
         assert_refused(
@@ -203,13 +214,16 @@ fn files_that_are_not_there() {
         &["convert", "none.vtp", "body.csv"],
     ] {
         let said = refusal(&run_here(&bench, arguments), &arguments.join(" "));
-        assert!(said.contains("none."), "{said}");
+        assert!(
+            said.contains("none.") && said.contains("there is no such file"),
+            "{said}"
+        );
     }
     let folder = refusal(
         &run_here(&bench, &[".", "-d", "2mm", "-o", "body.vtp"]),
         &".",
     );
-    assert!(folder.contains("cannot be read"), "{folder}");
+    assert!(folder.contains("this is a folder"), "{folder}");
     assert!(bench.files().is_empty());
 }
 

@@ -83,11 +83,18 @@ fn without_arguments_the_usage_is_shown() {
 }
 
 #[test]
-fn quiet_says_nothing() {
+fn quiet_says_nothing_but_json() {
     let bench = Bench::new();
     let output = bench.run(&shape("02"), &["-d", "2mm", "--quiet", "-o", "body.vtp"]);
     assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
     assert_eq!(bench.files(), ["body.vtp"]);
+    let output = bench.run(
+        &shape("02"),
+        &["-d", "2mm", "--quiet", "--json", "-o", "body.vtp"],
+    );
+    assert!(output.status.success() && output.stderr.is_empty());
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["quality"]["particles"].as_u64().unwrap() > 100);
     let output = bench.run(&shape("02"), &["-d", "30mm", "--quiet", "-o", "other.vtp"]);
     assert!(
         !output.stderr.is_empty(),
@@ -106,7 +113,7 @@ fn the_summary_goes_where_the_body_does_not() {
     let other = String::from_utf8(through_pipe.stderr).unwrap();
     for name in [
         "particles",
-        "density",
+        "packing density",
         "interior",
         "sizes by number",
         "sizes by mass",
@@ -115,7 +122,9 @@ fn the_summary_goes_where_the_body_does_not() {
         "exactness",
         "pieces",
         "fabric",
+        "made by",
         "time",
+        "verdict",
     ] {
         for text in [&text, &other] {
             assert!(
@@ -124,6 +133,22 @@ fn the_summary_goes_where_the_body_does_not() {
             );
         }
     }
+    for text in [&text, &other] {
+        let mut names: Vec<&str> = text
+            .lines()
+            .skip(1)
+            .filter_map(|line| line.split("  ").next())
+            .filter(|name| !name.starts_with("warning: ") && *name != "note")
+            .collect();
+        let lines = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), lines, "two lines of one name: {text}");
+        let warned = text.contains("warning: ");
+        let verdict = text.lines().last().unwrap();
+        assert_eq!(verdict.contains("sound"), !warned, "{text}");
+    }
+    assert!(text.contains(" up to bonding radius 1.1, "), "{text}");
     assert!(
         !other.contains('\u{1b}') && !other.contains('\r'),
         "a progress bar without a terminal"

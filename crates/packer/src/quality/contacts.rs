@@ -35,7 +35,15 @@ pub(super) fn count(packing: &Packing, depths: &[f64]) -> Result<Contacts> {
     let mut contacts = 0_usize;
     let mut largest_overlap = 0.0_f64;
     // The smaller radius is at most half the sum, so no contact is farther than this.
-    for [a, b] in close_pairs(spheres, shrink * (1.0 + 0.5 * packing.gap_limit))? {
+    let reach = shrink * (1.0 + 0.5 * packing.gap_limit);
+    let searched;
+    let pairs = if packing.bonding_radius >= reach {
+        packing.bonds
+    } else {
+        searched = close_pairs(spheres, reach)?;
+        &searched
+    };
+    for &[a, b] in pairs {
         let (r, s) = (radii[a as usize] * shrink, radii[b as usize] * shrink);
         let gap = (centre_distance(spheres, a, b) - (r + s)) / r.min(s);
         largest_overlap = largest_overlap.max(-gap);

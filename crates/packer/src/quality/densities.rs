@@ -5,14 +5,15 @@
 //! Everything is counted in integers, so that the order of counting does not matter.
 
 use super::Packing;
-use super::points::{Cells, over_pairs};
+use super::depth::Question;
+use super::points::{Box3, Cells, over_pairs};
 use serde::{Deserialize, Serialize};
 
-/// Points in the solid for the whole and the layers: a standard error of 0.001 for the whole.
-const POINTS_IN_SOLID: f64 = 200_000.0;
-/// Points in the interior, for a standard error of about 0.001, as long as no more than so many in the solid are needed.
-const POINTS_IN_INTERIOR: f64 = 250_000.0;
-const MOST_POINTS_IN_SOLID: f64 = 1_000_000.0;
+/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each sphere are evenly spread
+/// through it, so that fewer are needed in all.
+const POINTS_PER_SPHERE: f64 = 100.0;
+const FEWEST_POINTS_IN_REGION: f64 = 100_000.0;
+const MOST_POINTS_IN_REGION: f64 = 250_000.0;
 const LAYERS: usize = 20;
 const LAYERS_PER_DIAMETER: f64 = 4.0;
 const SLABS: usize = 10;
@@ -99,11 +100,25 @@ impl Tally {
 }
 
 /// Counts for the whole and the layers from the wall.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 struct Whole {
     union: Tally,
-    interior: Tally,
+    /// Points in the interior.
+    interior: u64,
+    /// Holds all cells that reach into the interior.
+    interior_box: Box3,
     layers: [Tally; LAYERS],
+}
+
+impl Default for Whole {
+    fn default() -> Self {
+        Self {
+            union: Tally::default(),
+            interior: 0,
+            interior_box: Box3::EMPTY,
+            layers: Default::default(),
+        }
+    }
 }
 
 /// Counts for the interior.
@@ -118,7 +133,6 @@ struct Interior {
 pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64) -> Sampled {
     let layer = mean_diameter / LAYERS_PER_DIAMETER;
     let whole = whole(packing, interior_depth, layer);
-    let interior_share = whole.interior.points as f64 / (whole.union.points as f64).max(1.0);
     let longest = (0..3).fold(0, |best, k| {
         if packing.extent[k] > packing.extent[best] {
             k
@@ -127,7 +141,7 @@ pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64)
         }
     });
     let slab = packing.extent[longest] / SLABS as f64;
-    let interior = interior(packing, interior_depth, interior_share, longest, slab);
+    let interior = interior(packing, interior_depth, &whole, longest, slab);
 
     let unit = packing.unit_m;
     let profile = |tallies: &[Tally], thickness: f64| {
@@ -151,16 +165,36 @@ pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64)
     }
 }
 
+fn points_for(spheres: f64) -> f64 {
+    (POINTS_PER_SPHERE * spheres).clamp(FEWEST_POINTS_IN_REGION, MOST_POINTS_IN_REGION)
+}
+
 fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
-    let cells = Cells::new(packing, POINTS_IN_SOLID);
-    let cap = interior_depth.max(layer * LAYERS as f64) * 1.01;
-    let parts = over_pairs(packing, &cells, [0.0, cap], |counts: &mut Whole, pair| {
+    let within = Box3 {
+        low: [0.0; 3],
+        high: packing.extent,
+    };
+    let spheres = packing.spheres.radii.len() as f64;
+    let cells = Cells::new(&within, packing.shape_volume, points_for(spheres));
+    let diagonal = cells.step.iter().map(|s| s * s).sum::<f64>().sqrt();
+    let question = Question {
+        floor: 0.0,
+        cap: interior_depth.max(layer * LAYERS as f64) * 1.01,
+        layer,
+        limit: interior_depth,
+    };
+    let parts = over_pairs(packing, &cells, question, |counts: &mut Whole, pair| {
         // A covered point is inside, whatever rounding says at the wall.
         let solid = [0, 1].map(|i| pair.in_union[i] || pair.depths[i] > 0.0);
         counts.union.add(solid, pair.in_union);
-        counts
-            .interior
-            .add(pair.depths.map(|d| d > interior_depth), pair.in_generating);
+        counts.interior += pair.depths.iter().filter(|d| **d > interior_depth).count() as u64;
+        // From a point to another of its cell, the depth changes by no more than the way.
+        if pair.depths[0].min(pair.depths[1]) + diagonal > interior_depth {
+            counts.interior_box.add(&Box3 {
+                low: pair.corner,
+                high: [0, 1, 2].map(|k| pair.corner[k] + cells.step[k]),
+            });
+        }
         let layers = [0, 1].map(|i| {
             if solid[i] {
                 (pair.depths[i] / layer) as usize
@@ -172,7 +206,8 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
     });
     parts.iter().fold(Whole::default(), |mut sum, part| {
         sum.union.merge(&part.union);
-        sum.interior.merge(&part.interior);
+        sum.interior += part.interior;
+        sum.interior_box.add(&part.interior_box);
         sum.layers
             .iter_mut()
             .zip(&part.layers)
@@ -181,33 +216,37 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
     })
 }
 
-/// `share` of the solid is interior, about; slabs of thickness `slab` along the axis `longest`.
-fn interior(packing: &Packing, depth: f64, share: f64, longest: usize, slab: f64) -> Interior {
-    if share == 0.0 {
+/// Slabs of thickness `slab` along the axis `longest`.
+fn interior(packing: &Packing, depth: f64, whole: &Whole, longest: usize, slab: f64) -> Interior {
+    if whole.interior == 0 {
         return Interior::default();
     }
+    let share = whole.interior as f64 / whole.union.points as f64;
+    let spheres = packing.spheres.radii.len() as f64;
     let cells = Cells::new(
-        packing,
-        (POINTS_IN_INTERIOR / share).clamp(POINTS_IN_SOLID, MOST_POINTS_IN_SOLID),
+        &whole.interior_box,
+        share * packing.shape_volume,
+        points_for(share * spheres),
     );
-    let parts = over_pairs(
-        packing,
-        &cells,
-        [depth, depth * (1.0 + 1e-12)],
-        |counts: &mut Interior, pair| {
-            let inside = pair.depths.map(|d| d > depth);
-            counts.union.add(inside, pair.in_union);
-            counts.generating.add(inside, pair.in_generating);
-            let slabs = [0, 1].map(|i| {
-                if inside[i] {
-                    ((pair.points[i][longest] / slab) as usize).min(SLABS - 1)
-                } else {
-                    SLABS
-                }
-            });
-            add_to_each(&mut counts.slabs, slabs, pair.in_generating);
-        },
-    );
+    let question = Question {
+        floor: depth,
+        cap: depth * (1.0 + 1e-12),
+        layer: f64::INFINITY,
+        limit: depth,
+    };
+    let parts = over_pairs(packing, &cells, question, |counts: &mut Interior, pair| {
+        let inside = pair.depths.map(|d| d > depth);
+        counts.union.add(inside, pair.in_union);
+        counts.generating.add(inside, pair.in_generating);
+        let slabs = [0, 1].map(|i| {
+            if inside[i] {
+                ((pair.points[i][longest] / slab) as usize).min(SLABS - 1)
+            } else {
+                SLABS
+            }
+        });
+        add_to_each(&mut counts.slabs, slabs, pair.in_generating);
+    });
     parts.iter().fold(Interior::default(), |mut sum, part| {
         sum.union.merge(&part.union);
         sum.generating.merge(&part.generating);

@@ -11,45 +11,71 @@ const SPHERES_PER_CELL: f64 = 4.0;
 /// Answers depths at points one after the other, best in an order in which neighbours follow each other: the distance
 /// changes by no more than the way from the last point that was measured, which often settles the matter.
 pub(super) struct Probe<'a> {
-    distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
-    /// Shallower is all the same.
-    floor: f64,
-    /// Deeper is all the same.
-    cap: f64,
+    packing: &'a Packing<'a>,
+    question: Question,
     last: Option<([f64; 3], f64)>,
 }
 
+/// What is asked of a depth.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Question {
+    /// Shallower is all the same.
+    pub(super) floor: f64,
+    /// Deeper is all the same.
+    pub(super) cap: f64,
+    /// In which layer of this thickness it is; 0 to know it exactly.
+    pub(super) layer: f64,
+    /// Whether it is more than this.
+    pub(super) limit: f64,
+}
+
+impl Question {
+    /// Whether two depths are the same answer.
+    fn same(&self, a: f64, b: f64) -> bool {
+        (a <= self.floor && b <= self.floor)
+            || (a >= self.cap && b >= self.cap)
+            || (self.layer > 0.0
+                && a > self.floor
+                && b < self.cap
+                && (a / self.layer).floor() == (b / self.layer).floor()
+                && (a > self.limit) == (b > self.limit))
+    }
+}
+
 impl<'a> Probe<'a> {
-    pub(super) fn new(packing: &Packing<'a>, floor: f64, cap: f64) -> Self {
+    pub(super) fn new(packing: &'a Packing<'a>, question: Question) -> Self {
         Self {
-            distance_inside: packing.distance_inside,
-            floor,
-            cap,
+            packing,
+            question,
             last: None,
         }
     }
 
-    /// Depth of a point below the surface: exact between floor and cap, the cap if deeper, zero if not above the floor.
+    /// Depth of a point below the surface, or more if that answers the question alike; the cap if deeper, zero if not above
+    /// the floor.
     pub(super) fn depth(&mut self, point: [f64; 3]) -> f64 {
+        let Question { floor, cap, .. } = self.question;
         if let Some((measured, distance)) = self.last {
             let way = (0..3)
                 .map(|k| (point[k] - measured[k]).powi(2))
                 .sum::<f64>()
                 .sqrt();
-            if distance - way >= self.cap {
-                return self.cap;
+            if distance - way >= cap {
+                return cap;
             }
-            if distance + way <= self.floor {
+            if distance + way <= floor {
                 return 0.0;
             }
         }
-        let distance = (self.distance_inside)(point);
-        self.last = Some((point, distance));
-        if distance <= self.floor {
-            0.0
+        let [least, most] = (self.packing.distance_bounds)(point);
+        let depth = if self.question.same(least, most) {
+            most
         } else {
-            distance.min(self.cap)
-        }
+            let distance = (self.packing.distance_inside)(point);
+            self.last = Some((point, distance));
+            distance
+        };
+        if depth <= floor { 0.0 } else { depth.min(cap) }
     }
 }
 
@@ -76,7 +102,13 @@ pub(super) fn of_centres(packing: &Packing, cap: f64) -> Vec<f64> {
     let measured: Vec<Vec<f64>> = unknown
         .par_chunks(CHUNK)
         .map(|spheres| {
-            let mut probe = Probe::new(packing, 0.0, cap);
+            let exactly = Question {
+                floor: 0.0,
+                cap,
+                layer: 0.0,
+                limit: 0.0,
+            };
+            let mut probe = Probe::new(packing, exactly);
             spheres
                 .iter()
                 .map(|i| probe.depth(packing.spheres.positions[*i as usize]))

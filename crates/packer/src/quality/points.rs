@@ -1,20 +1,22 @@
-//! Random points in the box of a shape, what covers them and how deep they lie.
+//! Random points in a box, what covers them and how deep they lie.
 //!
-//! The bounding box is cut into equal cells with two random points each (stratified sampling, the same points for the
+//! The box is cut into equal cells with two random points each (stratified sampling, the same points for the
 //! same box).
 
 use super::Packing;
-use super::depth::Probe;
+use super::depth::{Probe, Question};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// For shapes that fill little of their box.
+/// For regions that fill little of their box.
 const MOST_CELLS: f64 = 4e6;
 const SPHERES_PER_TASK: usize = 1024;
 const ROWS_PER_TASK: usize = 16;
 
 /// What is known of the two points of a cell.
 pub(super) struct Pair {
+    /// The smallest corner of the cell, local units.
+    pub(super) corner: [f64; 3],
     /// Where they are, local units.
     pub(super) points: [[f64; 3]; 2],
     /// How deep they lie, as far as the probe was asked to tell.
@@ -25,47 +27,86 @@ pub(super) struct Pair {
     pub(super) in_generating: [bool; 2],
 }
 
-/// Cells of the bounding box, x fastest.
+/// An axis-parallel box from one corner to another, local units.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Box3 {
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+}
+
+impl Box3 {
+    /// Holds nothing, until it is enlarged.
+    pub(super) const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    /// Enlarges it to hold another.
+    pub(super) fn add(&mut self, other: &Self) {
+        for k in 0..3 {
+            self.low[k] = self.low[k].min(other.low[k]);
+            self.high[k] = self.high[k].max(other.high[k]);
+        }
+    }
+
+    /// Lengths of its edges.
+    pub(super) fn size(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.high[k] - self.low[k])
+    }
+}
+
+/// Cells of a box, x fastest.
 pub(super) struct Cells {
+    low: [f64; 3],
     count: [usize; 3],
-    step: [f64; 3],
+    /// Edges of a cell, local units.
+    pub(super) step: [f64; 3],
 }
 
 impl Cells {
-    /// So many cells that about `points` random points fall into the solid.
-    pub(super) fn new(packing: &Packing, points: f64) -> Self {
-        let extent = packing.extent;
-        let box_volume: f64 = extent.iter().product();
-        let wanted = (0.5 * points * box_volume / packing.shape_volume).clamp(1.0, MOST_CELLS);
+    /// So many cells that about `points` random points fall into a region of `volume` within the box.
+    pub(super) fn new(within: &Box3, volume: f64, points: f64) -> Self {
+        let size = within.size();
+        let box_volume: f64 = size.iter().product();
+        let wanted = (0.5 * points * box_volume / volume).clamp(1.0, MOST_CELLS);
         let edge = (box_volume / wanted).cbrt();
-        let count = extent.map(|e| ((e / edge).round() as usize).max(1));
-        let step = [0, 1, 2].map(|k| extent[k] / count[k] as f64);
-        Self { count, step }
+        let count = size.map(|e| ((e / edge).round() as usize).max(1));
+        let step = [0, 1, 2].map(|k| size[k] / count[k] as f64);
+        Self {
+            low: within.low,
+            count,
+            step,
+        }
     }
 
     fn index(&self, x: usize, y: usize, z: usize) -> usize {
         x + self.count[0] * (y + self.count[1] * z)
     }
 
+    /// The smallest corner of a cell.
+    fn corner(&self, cell: [usize; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.low[k] + cell[k] as f64 * self.step[k])
+    }
+
     /// The two random points of a cell.
     fn points(&self, cell: [usize; 3]) -> [[f64; 3]; 2] {
         let index = self.index(cell[0], cell[1], cell[2]) as u64;
+        let corner = self.corner(cell);
         let mut points = [[0.0; 3]; 2];
         for k in 0..3 {
             let random = mixed(3 * index + k as u64);
             let shares = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
             for (point, share) in points.iter_mut().zip(shares) {
-                point[k] = (cell[k] as f64 + (share + 0.5) / 4_294_967_296.0) * self.step[k];
+                point[k] = corner[k] + (share + 0.5) / 4_294_967_296.0 * self.step[k];
             }
         }
         points
     }
 
     /// The cells along `axis` that `[from, to]` reaches.
-    fn range(&self, axis: usize, from: f64, to: f64) -> std::ops::RangeInclusive<usize> {
-        let last = self.count[axis] - 1;
-        let cell = |x: f64| ((x / self.step[axis]).max(0.0) as usize).min(last);
-        cell(from)..=cell(to)
+    fn range(&self, axis: usize, from: f64, to: f64) -> std::ops::Range<usize> {
+        let cell = |x: f64| ((x - self.low[axis]) / self.step[axis]).floor();
+        cell(from).max(0.0) as usize..((cell(to) + 1.0).max(0.0) as usize).min(self.count[axis])
     }
 }
 
@@ -120,12 +161,12 @@ fn cover(packing: &Packing, cells: &Cells) -> Vec<AtomicU8> {
     covered
 }
 
-/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths are told exactly
-/// between `floor` and `cap` only, see [`Probe`].
+/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths answer
+/// the question, see [`Probe`].
 pub(super) fn over_pairs<T: Default + Send>(
     packing: &Packing,
     cells: &Cells,
-    [floor, cap]: [f64; 2],
+    question: Question,
     add: impl Fn(&mut T, &Pair) + Sync,
 ) -> Vec<T> {
     let covered = cover(packing, cells);
@@ -133,13 +174,14 @@ pub(super) fn over_pairs<T: Default + Send>(
     rows.par_chunks(ROWS_PER_TASK)
         .map(|rows| {
             let mut part = T::default();
-            let mut probe = Probe::new(packing, floor, cap);
+            let mut probe = Probe::new(packing, question);
             for row in rows {
                 let (y, z) = (row % cells.count[1], row / cells.count[1]);
                 for x in 0..cells.count[0] {
                     let bits = covered[cells.index(x, y, z)].load(Relaxed);
                     let points = cells.points([x, y, z]);
                     let pair = Pair {
+                        corner: cells.corner([x, y, z]),
                         points,
                         depths: points.map(|point| probe.depth(point)),
                         in_union: UNION.map(|bit| bits & bit != 0),

@@ -24,9 +24,9 @@ pub(super) fn of(report: &Report) -> String {
         ));
     }
     lines.push((
-        "density",
+        "packing density",
         format!(
-            "{} of the shape, {:.4} in r_gen",
+            "{} of the shape is inside spheres, {:.4} in r_gen",
             share(&report.union_density),
             report.generating_density
         ),
@@ -78,8 +78,16 @@ pub(super) fn of(report: &Report) -> String {
     lines.push((
         "bonds",
         format!(
-            "{}, {} per particle, coordination {}",
+            "{}{}, {} per particle, coordination {}",
             report.bonds,
+            if report.bonding_radius > 0.0 {
+                format!(
+                    " up to bonding radius {}",
+                    significant(report.bonding_radius, 5)
+                )
+            } else {
+                String::new()
+            },
             significant(report.bonds_per_particle, 4),
             significant(report.mean_coordination, 4)
         ),
@@ -97,8 +105,9 @@ pub(super) fn of(report: &Report) -> String {
     lines.push((
         "exactness",
         format!(
-            "overlap in r_gen {:.1e}, outside the wall {:.1e} of a radius",
-            contacts.largest_overlap, contacts.largest_protrusion
+            "overlap in r_gen {}, outside the wall {}",
+            of_a_radius(contacts.largest_overlap),
+            of_a_radius(contacts.largest_protrusion)
         ),
     ));
     let pieces = &report.pieces;
@@ -112,13 +121,14 @@ pub(super) fn of(report: &Report) -> String {
             pieces.without_bond
         ),
     ));
-    for (name, of) in [
-        ("fabric", &report.fabric),
-        ("fabric inside", &report.interior_fabric),
-    ] {
-        if let Some(of) = of {
-            lines.push((name, fabric(of)));
-        }
+    // Near a wall the layers show, which is no preferred direction of the material.
+    match (&report.interior_fabric, &report.fabric) {
+        (Some(interior), _) => lines.push(("fabric inside", fabric(interior))),
+        (None, Some(all)) => lines.push((
+            "fabric",
+            format!("{}; layers along the wall show", fabric(all)),
+        )),
+        (None, None) => {}
     }
     if let Some(thinnest) = &report.thinnest {
         let about = if thinnest.at_least {
@@ -165,11 +175,19 @@ fn fit(fit: &Fit) -> String {
 fn fabric(fabric: &Fabric) -> String {
     let [a, b, c] = fabric.eigenvalues;
     format!(
-        "{a:.4} {b:.4} {c:.4}, {:.1} sigma of {:.4}, {} of isotropic ones are as far off",
+        "{a:.4} {b:.4} {c:.4}, {:.1} sigma of {:.4} off 1/3; random directions are as far off in {} of cases",
         fabric.largest_deviation_in_sigma,
         fabric.sigma,
         percent(fabric.chance)
     )
+}
+
+fn of_a_radius(share: f64) -> String {
+    if share > 0.0 {
+        format!("{share:.1e} of a radius")
+    } else {
+        "none".to_owned()
+    }
 }
 
 fn percent(chance: f64) -> String {

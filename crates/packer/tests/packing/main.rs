@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod depth_map;
 mod exact;
 mod facets;
 mod front;

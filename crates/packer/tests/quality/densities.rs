@@ -208,3 +208,25 @@ fn the_stated_error_is_the_error() {
     // Chi-squared of 40 degrees: 40 +- 9; between its 0.05 % and 99.95 %.
     assert!((16.0..77.0).contains(&squares), "{squares}");
 }
+
+#[test]
+fn outside_costs_nothing_of_the_solid() {
+    // A ball of radius 8 in its box, filled without overlap. Outside, perhaps nothing is known but that it is outside.
+    let inside = |p: [f64; 3]| 8.0 - p.iter().map(|x| (x - 8.0).powi(2)).sum::<f64>().sqrt();
+    let mut spheres = cubic([16; 3], 0.5);
+    spheres.positions.retain(|p| inside(*p) >= 0.5);
+    spheres.radii.truncate(spheres.positions.len());
+    // Volumes of a sphere and of the ball: pi/6 and 4/3 pi 8^3.
+    let wanted = spheres.radii.len() as f64 / 4096.0;
+    for outside in [0.0, 1.0] {
+        let report = Case::new(spheres.clone(), [16.0; 3]).report_in(&|p| {
+            let depth = inside(p);
+            if depth < 0.0 { outside * depth } else { depth }
+        });
+        assert!(
+            (report.union_density.value - wanted).abs() < 4.0 * report.union_density.error,
+            "{:?} {wanted}",
+            report.union_density
+        );
+    }
+}

@@ -79,12 +79,13 @@ impl Case {
         wall_distance: &[f64],
         distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync),
     ) -> Report {
-        let open = |_: [f64; 3], _: [f64; 3]| false;
+        let open = |_: u32, _: u32| false;
         let bonds = find_bonds(&self.spheres, self.bonding_radius, &open).unwrap();
         assess(&Packing {
             spheres: &self.spheres,
             overlap: self.overlap,
             bonds: &bonds,
+            bonding_radius: self.bonding_radius,
             sizes: &Sizes::parse(&self.sizes, By::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: self.extent.iter().product(),
@@ -92,6 +93,7 @@ impl Case {
             particle_density_kg_m3: self.particle_density,
             wall_distance,
             distance_inside,
+            distance_bounds: &|_| [f64::NEG_INFINITY, f64::INFINITY],
             crosses_surface: &open,
             gap_limit: DEFAULT_GAP_LIMIT,
         })

@@ -64,11 +64,12 @@ fn chance_of_a_fabric_is_a_chance() {
         }
         let bonds: Vec<[u32; 2]> = (0..300).map(|i| [2 * i, 2 * i + 1]).collect();
         let no_wall = |_: [f64; 3]| -1.0;
-        let open = |_: [f64; 3], _: [f64; 3]| false;
+        let open = |_: u32, _: u32| false;
         let report = assess(&Packing {
             spheres: &spheres,
             overlap: 0.0,
             bonds: &bonds,
+            bonding_radius: 0.0,
             sizes: &Sizes::parse("1m", By::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: 1e9,
@@ -76,6 +77,7 @@ fn chance_of_a_fabric_is_a_chance() {
             particle_density_kg_m3: None,
             wall_distance: &vec![1.0; 600],
             distance_inside: &no_wall,
+            distance_bounds: &|_| [f64::NEG_INFINITY, f64::INFINITY],
             crosses_surface: &open,
             gap_limit: DEFAULT_GAP_LIMIT,
         })
