@@ -20,9 +20,9 @@ use criterion::{
 use dem_io::Body;
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
-use dem_pack::cli::DEFAULT_SETTLE;
 use dem_pack::make::{Made, MakeSettings, make_body};
 use dem_pack::pack::PackSettings;
+use dem_pack::settle::default_share;
 use dem_pack::sizes::{By, Sizes};
 use rayon::ThreadPool;
 
@@ -63,23 +63,16 @@ fn stages(criterion: &mut Criterion) {
             group
                 .warm_up_time(Duration::from_nanos(1))
                 .measurement_time(Duration::from_nanos(1));
-            by_own_clock(&mut group, &surface, &pool, diameter, 0.0, &BARE_FRONT);
-            by_own_clock(
-                &mut group,
-                &surface,
-                &pool,
-                diameter,
-                DEFAULT_SETTLE,
-                &SETTLED,
-            );
+            by_own_clock(&mut group, &surface, &pool, &bare(diameter), &BARE_FRONT);
+            by_own_clock(&mut group, &surface, &pool, &settled(diameter), &SETTLED);
             group.finish();
             if all == 1 {
                 break;
             }
         }
     }
-    let (body, _) = make_body(&surface, &settings(SIZES[1].0, 0.0), &|_, _| Ok(()))
-        .expect("the sample can be packed");
+    let (body, _) =
+        make_body(&surface, &bare(SIZES[1].0), &|_, _| Ok(())).expect("the sample can be packed");
     body_files(criterion, &body);
 }
 
@@ -99,14 +92,12 @@ fn by_own_clock(
     group: &mut BenchmarkGroup<WallTime>,
     surface: &Surface,
     pool: &ThreadPool,
-    diameter: &str,
-    settle: f64,
+    settings: &MakeSettings,
     stages: &[Stage],
 ) {
     let bodies: LazyCell<Vec<Made>, _> = LazyCell::new(|| {
-        let settings = settings(diameter, settle);
         let make = || {
-            make_body(surface, &settings, &|_, _| Ok(()))
+            make_body(surface, settings, &|_, _| Ok(()))
                 .expect("the sample can be packed")
                 .1
         };
@@ -144,13 +135,19 @@ fn body_files(criterion: &mut Criterion, body: &Body) {
     group.finish();
 }
 
-fn settings(diameter: &str, settle: f64) -> MakeSettings {
+fn settled(diameter: &str) -> MakeSettings {
+    let mut settings = bare(diameter);
+    settings.packing.settle = default_share(settings.packing.sizes.spread());
+    settings
+}
+
+fn bare(diameter: &str) -> MakeSettings {
     MakeSettings {
         packing: PackSettings {
             sizes: Sizes::parse(diameter, By::Number).expect("sizes"),
             overlap: 0.0,
             seed: 1,
-            settle,
+            settle: 0.0,
             seed_point_m: None,
         },
         bonding_radius: 1.1,

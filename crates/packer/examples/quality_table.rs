@@ -17,11 +17,12 @@ use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_io::{Diagnostic, Result};
 use dem_pack::make::{Made, MakeSettings, make_body};
 use dem_pack::pack::PackSettings;
+use dem_pack::settle::default_share;
 use dem_pack::sizes::{By, Sizes};
 
 /// The shares of the first table.
 const SETTLE: [f64; 10] = [
-    0.0, 0.01, 0.02, 0.025, 0.03, 0.032, 0.033, 0.034, 0.036, 0.04,
+    0.0, 0.01, 0.02, 0.025, 0.03, 0.033, 0.036, 0.037, 0.039, 0.042,
 ];
 /// Each line of the first table is the mean over these seeds.
 const SEEDS: [u64; 3] = [1, 2, 3];
@@ -118,7 +119,8 @@ fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
     let diameter = format!("{}mm..{}mm", 1.2 * factor, 1.5 * factor);
     let started = Instant::now();
     let made = on_threads(threads, || {
-        let settings = settings(&diameter, dem_pack::cli::DEFAULT_SETTLE, 1)?;
+        let mut settings = settings(&diameter, 0.0, 1)?;
+        settings.packing.settle = default_share(settings.packing.sizes.spread());
         let (body, made) = make_body(&surface, &settings, &|_, _| Ok(()))?;
         vtp::write(&body, &mut std::io::sink())
             .map_err(|e| Diagnostic::failed("", e.to_string(), ""))?;

@@ -3,6 +3,7 @@
 use crate::density::LARGEST_OVERLAP;
 use crate::make::{Made, MakeSettings, make_body};
 use crate::pack::PackSettings;
+use crate::settle::default_share;
 use crate::sizes::{By, Sizes};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
@@ -14,8 +15,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Share by which the front's radii are smaller before settling, unless given: see the table in README.md.
-pub const DEFAULT_SETTLE: f64 = 0.037;
 /// With more, spheres that grow to full size jam in large numbers.
 const LARGEST_SETTLE: f64 = 0.06;
 
@@ -134,9 +133,15 @@ struct PackArguments {
         help_heading = "Spheres"
     )]
     seed_point: Option<String>,
-    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.06
-    #[arg(long, default_value_t = DEFAULT_SETTLE, allow_negative_numbers = true, value_name = "SHARE", help_heading = "Spheres")]
-    settle: f64,
+    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.06.
+    /// If not given, 0.03 (sizes that differ much) to 0.043 (one size)
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        value_name = "SHARE",
+        help_heading = "Spheres"
+    )]
+    settle: Option<f64>,
 
     /// Bond pairs nearer than this times the sum of their radii
     #[arg(
@@ -276,12 +281,12 @@ impl PackArguments {
             LARGEST_OVERLAP,
             "0.1 to 0.5 is usual",
         )?;
-        if !(0.0..=LARGEST_SETTLE).contains(&self.settle) {
+        let settle = (self.settle).unwrap_or_else(|| default_share(sizes.spread()));
+        if !(0.0..=LARGEST_SETTLE).contains(&settle) {
             return Err(Diagnostic::input(
                 "--settle",
                 format!(
-                    "{} is not at least 0 and at most {LARGEST_SETTLE}: spheres that grow by more jam",
-                    self.settle
+                    "{settle} is not at least 0 and at most {LARGEST_SETTLE}: spheres that grow by more jam",
                 ),
                 "0.02 to 0.04 is usual, 0 is the bare front",
             ));
@@ -317,7 +322,7 @@ impl PackArguments {
                 sizes,
                 overlap: self.overlap,
                 seed: self.seed,
-                settle: self.settle,
+                settle,
                 seed_point_m: self.seed_point.as_deref().map(parse_point).transpose()?,
             },
             bonding_radius: self.bonding_radius,
@@ -553,7 +558,8 @@ fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     }
     let history = &made.history;
     text += &format!(
-        "made by          a front from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
+        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
+        significant(history.settle, 3),
         history.fronts,
         history.settling_steps,
         history.taken_out,

@@ -36,6 +36,8 @@ pub struct PackHistory {
     pub seed_point_m: [f64; 3],
     /// Diameter of the largest ball that fits into the shape, m.
     pub largest_inscribed_diameter_m: f64,
+    /// The radii of the front were smaller by this share.
+    pub settle: f64,
     /// Fronts started: one for each part that the ones before could not reach.
     pub fronts: usize,
     /// Steps of the settling minimiser.
@@ -85,7 +87,10 @@ pub fn pack(
     settings: &PackSettings,
     progress: Progress,
 ) -> Result<Packing> {
-    let mut history = PackHistory::default();
+    let mut history = PackHistory {
+        settle: settings.settle,
+        ..PackHistory::default()
+    };
     let started = Instant::now();
     let unit = surface.unit_m;
     let inner = inner_points(boundary, surface);

@@ -83,6 +83,16 @@ impl Sizes {
         self.number.mean
     }
 
+    /// Standard deviation over mean of the diameters, by number; to about 1e-3.
+    pub fn spread(&self) -> f64 {
+        const PARTS: u32 = 1000;
+        let squares: f64 = (0..PARTS)
+            .map(|k| self.quantile_by_number((f64::from(k) + 0.5) / f64::from(PARTS)))
+            .map(|d| (d / self.mean_m() - 1.0).powi(2))
+            .sum();
+        (squares / f64::from(PARTS)).sqrt()
+    }
+
     /// Mean volume of a particle, by number, m3.
     pub fn mean_volume_m3(&self) -> f64 {
         self.mean_volume_m3

@@ -52,8 +52,8 @@ fn touching_three(a: &Ball, b: &Ball, c: &Ball, new: f64) -> Vec<Vector3> {
 /// The best corner by the halo's own search.
 fn best_corner(halo: &mut Halo, wanted: &Vector3) -> Option<Vector3> {
     let mut best = None;
-    halo.corners(wanted, |halo, p| {
-        best = Some(halo.position(p));
+    halo.corners(wanted, |place| {
+        best = Some(*place);
         true
     });
     best
@@ -128,8 +128,7 @@ fn every_corner_that_is_offered_is_free() {
         neighbours.gather(&balls[0], &balls, new);
         halo.set(&balls[0], new, &neighbours);
         // Refusing each, all corners are offered one after the other.
-        halo.corners(&Vector3::x(), |halo, p| {
-            let q = halo.position(p);
+        halo.corners(&Vector3::x(), |q| {
             let mut positions: Vec<[f64; 3]> = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
             let mut radii: Vec<f64> = balls.iter().map(|b| b[3]).collect();
             positions.push([q.x, q.y, q.z]);

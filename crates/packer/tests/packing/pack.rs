@@ -4,6 +4,7 @@ use super::exact::assert_exact;
 use super::facets::{Facets, cuboid};
 use super::solids::{between, local_facets, random_numbers, random_solid, surface_of, turned};
 use dem_pack::pack::{PackSettings, Packing, pack};
+use dem_pack::settle::default_share;
 use dem_pack::sizes::{By, Sizes};
 use rand::RngExt;
 
@@ -49,12 +50,15 @@ fn exact_on(kind: usize) {
         } else {
             between(&mut random, 0.0, 0.6)
         };
-        for settle in [0.0, dem_pack::cli::DEFAULT_SETTLE] {
-            let mut settings = settings(&diameter, overlap, settle);
+        for settled in [false, true] {
+            let mut settings = settings(&diameter, overlap, 0.0);
+            if settled {
+                settings.settle = default_share(settings.sizes.spread());
+            }
             settings.seed = random.random();
             let what = format!(
-                "{name} {case}, {diameter}, overlap {overlap}, settle {settle}, seed {}",
-                settings.seed
+                "{name} {case}, {diameter}, overlap {overlap}, settle {}, seed {}",
+                settings.settle, settings.seed
             );
             let (facets, packing) = pack_with(&solid, &settings);
             let spheres = &packing.spheres;

@@ -71,11 +71,6 @@ fn assert_clouds_settle(apart: f64) {
         assert!(settled.steps > 0, "{name}");
         let after = sizes_of(&balls);
         assert_eq!(after.len(), before.len() - settled.taken_out, "{name}");
-        if apart < 0.5 {
-            // Centres almost on the wall may be pushed through it: such spheres are taken out, and few they are.
-            assert!(settled.taken_out * 100 <= before.len(), "{name}");
-            continue;
-        }
         assert_eq!(settled.taken_out, 0, "{name}");
         assert!(
             after
