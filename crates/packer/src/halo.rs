@@ -124,7 +124,7 @@ impl Halo {
     /// Calls `found` with the position of each point where two rims meet and no cap covers, as long as it is better than the best one so far:
     /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
     ///
-    /// Nearly all points are covered. Those are found out in single precision, see [`Rims`].
+    /// Nearly all points are covered. Those are found out in single precision, see rims.rs.
     pub fn corners(&mut self, wanted: &Vector3, found: impl FnMut(&Vector3) -> bool) {
         Arch::new().dispatch(
             #[inline(always)]

@@ -114,10 +114,6 @@ impl Rims {
 impl Rim {
     /// The point of this rim in direction p of the plane across its axis is covered by a cap with axis (along, u, v) where
     /// p . (u, v) sine > t, t = cosine of that cap - along * cosine of this one.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "several arrays side by side, lane by lane"
-    )]
     #[inline(always)]
     fn arcs(&self, [x, y, z, cosine]: &[Lanes; 4]) -> Arcs {
         let dot = |a: &[f32; 3], k: usize| a[0] * x[k] + a[1] * y[k] + a[2] * z[k];

@@ -1,0 +1,94 @@
+//! What is printed for a person, and for a script.
+
+use crate::make::Made;
+use dem_io::Surface;
+use dem_io::units::{show_length, significant};
+use std::path::Path;
+
+/// What is known of a surface, for `--json`.
+pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
+    serde_json::json!({
+        "source": surface.source,
+        "triangles": surface.triangles.len(),
+        "vertices": surface.vertices.len(),
+        "volume_m3": surface.volume_m3(),
+        "box_min_m": surface.origin_m,
+        "box_size_m": surface.extent().map(|e| e * surface.unit_m),
+        "shells": surface.shells,
+        "repairs": surface.repairs,
+        "warnings": surface.warnings,
+    })
+}
+
+/// The same for a person.
+pub(super) fn surface_text(surface: &Surface) -> String {
+    let size = surface
+        .extent()
+        .map(|e| show_length(e * surface.unit_m))
+        .join(" x ");
+    let corner = surface.origin_m.map(show_length).join(", ");
+    let cavities = surface.shells.iter().filter(|s| s.is_cavity).count();
+    let mut text = format!(
+        "{}\n  surface     {} triangles, {} corners, closed\n  size        {size}, from ({corner})\n  volume      {} mm3\n  parts       {}, cavities {cavities}\n",
+        surface.source,
+        surface.triangles.len(),
+        surface.vertices.len(),
+        significant(surface.volume_m3() * 1e9, 6),
+        surface.shells.len() - cavities,
+    );
+    for warning in &surface.warnings {
+        text += &format!("  note        {warning}\n");
+    }
+    text
+}
+
+/// What a person wants to know: how good the body is, what to mind, where the time went.
+pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
+    let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
+    let name = if output == Path::new("-") {
+        "standard output".to_owned()
+    } else {
+        output.display().to_string()
+    };
+    let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
+    if let Some(search) = &made.density_search {
+        text += &format!(
+            "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}\n",
+            significant(search.wanted_kg_m3, 5),
+            significant(search.found_kg_m3, 5),
+            100.0 * search.relative_error,
+            significant(search.overlap, 4),
+            search.packings
+        );
+    }
+    let history = &made.history;
+    text += &format!(
+        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
+        significant(history.settle, 3),
+        history.fronts,
+        history.settling_steps,
+        history.taken_out,
+        history.void_fillers,
+        history.voids_left
+    );
+    text += &format!(
+        "time             {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
+        history.front_seconds,
+        history.settle_seconds,
+        history.fill_seconds,
+        made.seconds.bonds,
+        made.seconds.report,
+        significant(made.quality.particles as f64 / seconds, 3)
+    );
+    for warning in &surface.warnings {
+        text += &format!("note             {warning}\n");
+    }
+    text += &match made.quality.warnings.len() {
+        0 => "verdict          sound: nothing to mind\n".to_owned(),
+        1 => "verdict          look at the warning above before the body is used\n".to_owned(),
+        many => {
+            format!("verdict          look at the {many} warnings above before the body is used\n")
+        }
+    };
+    text
+}

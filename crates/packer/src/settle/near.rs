@@ -1,0 +1,172 @@
+//! What each sphere could come to touch: other spheres and triangles of the wall, listed from a grid of cells and from the tree of the facets.
+
+use crate::Vector3;
+use crate::boundary::Boundary;
+use crate::grid::Ball;
+use rayon::prelude::*;
+
+/// Spheres handled by one task.
+const CHUNK: usize = 1024;
+
+/// What each sphere could come to touch before the lists are made again: other spheres, triangles of the wall.
+#[derive(Default)]
+pub(super) struct Near {
+    pub(super) spheres: Lists,
+    pub(super) walls: Lists,
+}
+
+impl Near {
+    /// Lists, for each of `balls`, the spheres less than `skin` (local units) away from it and the triangles less than half that away from its
+    /// radius times `enlarge`: nothing else can touch it before one sphere has moved by half the skin.
+    pub(super) fn list(boundary: &Boundary, balls: &[Ball], enlarge: f64, skin: f64) -> Self {
+        let largest = balls.iter().map(|b| b[3]).fold(0.0, f64::max);
+        // Cells of half the largest reach: nearer to a ball in shape than 3 x 3 x 3 cells of all of it.
+        let cells = Cells::new(balls, largest + 0.5 * skin);
+        let spheres = lists_of(balls, |i, ball, list| {
+            let reach = ball[3] + largest + skin;
+            cells.near(ball, reach, |others, numbers| {
+                for (other, j) in others.iter().zip(numbers) {
+                    let reach = ball[3] + other[3] + skin;
+                    if squared_distance(ball, other) < reach * reach && *j as usize != i {
+                        list.push(*j);
+                    }
+                }
+            });
+        });
+        let walls = lists_of(balls, |_, ball, list| {
+            let centre = Vector3::new(ball[0], ball[1], ball[2]);
+            let reach = ball[3] * enlarge + 0.5 * skin;
+            list.extend(
+                boundary
+                    .triangles_near(&centre, reach)
+                    .filter(|t| boundary.nearest_on(*t, &centre).distance < reach),
+            );
+        });
+        Self { spheres, walls }
+    }
+}
+
+/// A list of numbers for each sphere, one after the other.
+#[derive(Default)]
+pub(super) struct Lists {
+    all: Vec<u32>,
+    /// Where each begins, and the last ends. Spheres + 1.
+    first: Vec<u32>,
+}
+
+impl Lists {
+    pub(super) fn of(&self, sphere: usize) -> &[u32] {
+        &self.all[self.first[sphere] as usize..self.first[sphere + 1] as usize]
+    }
+}
+
+/// For each sphere the list that `fill` makes.
+fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -> Lists {
+    let parts: Vec<(Vec<u32>, Vec<u32>)> = balls
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, part)| {
+            let (mut list, mut ends) = (
+                Vec::with_capacity(part.len() * 10),
+                Vec::with_capacity(part.len()),
+            );
+            for (k, ball) in part.iter().enumerate() {
+                fill(chunk * CHUNK + k, ball, &mut list);
+                ends.push(list.len() as u32);
+            }
+            (list, ends)
+        })
+        .collect();
+    let mut all = Vec::with_capacity(parts.iter().map(|(list, _)| list.len()).sum());
+    let mut first = Vec::with_capacity(balls.len() + 1);
+    first.push(0);
+    for (list, ends) in parts {
+        let before = all.len() as u32;
+        all.extend(list);
+        first.extend(ends.into_iter().map(|e| e + before));
+    }
+    Lists { all, first }
+}
+
+pub(super) fn squared_distance(a: &Ball, b: &Ball) -> f64 {
+    (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)
+}
+
+fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for ball in balls {
+        for k in 0..3 {
+            low[k] = low[k].min(ball[k]);
+            high[k] = high[k].max(ball[k]);
+        }
+    }
+    (low, high)
+}
+
+/// Spheres sorted by cell (counting sort), for one search.
+struct Cells {
+    low: [f64; 3],
+    cell: f64,
+    counts: [usize; 3],
+    first: Vec<u32>,
+    balls: Vec<Ball>,
+    numbers: Vec<u32>,
+}
+
+impl Cells {
+    fn new(balls: &[Ball], cell: f64) -> Self {
+        let (low, high) = bounds(balls);
+        let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
+        let mut cells = Self {
+            low,
+            cell,
+            counts,
+            first: vec![0; counts.iter().product::<usize>() + 1],
+            balls: vec![[0.0; 4]; balls.len()],
+            numbers: vec![0; balls.len()],
+        };
+        let at: Vec<u32> = balls
+            .iter()
+            .map(|b| cells.index(cells.cell_of(b)) as u32)
+            .collect();
+        for a in &at {
+            cells.first[*a as usize + 1] += 1;
+        }
+        for k in 1..cells.first.len() {
+            cells.first[k] += cells.first[k - 1];
+        }
+        let mut next = cells.first.clone();
+        for (i, a) in at.iter().enumerate() {
+            let slot = &mut next[*a as usize];
+            cells.balls[*slot as usize] = balls[i];
+            cells.numbers[*slot as usize] = i as u32;
+            *slot += 1;
+        }
+        cells
+    }
+
+    fn cell_of(&self, ball: &Ball) -> [usize; 3] {
+        [0, 1, 2].map(|k| {
+            (((ball[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1)
+        })
+    }
+
+    fn index(&self, cell: [usize; 3]) -> usize {
+        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
+    }
+
+    /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of `ball`, and their numbers.
+    fn near(&self, ball: &Ball, reach: f64, mut visit: impl FnMut(&[Ball], &[u32])) {
+        let low = self.cell_of(&ball.map(|x| x - reach));
+        let high = self.cell_of(&ball.map(|x| x + reach));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = self.index([0, y, z]);
+                let of_row =
+                    self.first[row + low[0]] as usize..self.first[row + high[0] + 1] as usize;
+                visit(&self.balls[of_row.clone()], &self.numbers[of_row]);
+            }
+        }
+    }
+}
