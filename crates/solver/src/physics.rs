@@ -1,0 +1,3 @@
+//! Physics as functions of plain numbers: nothing here knows of storage, threads, files or scenes.
+
+pub mod bond;

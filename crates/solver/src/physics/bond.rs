@@ -1,0 +1,4 @@
+//! Elastic bonds between two spheres.
+
+pub mod stiffness;
+pub mod total;
