@@ -22,7 +22,6 @@ use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_pack::make::{Made, MakeSettings, make_body};
 use dem_pack::pack::PackSettings;
-use dem_pack::settle::default_share;
 use dem_pack::sizes::{By, Sizes};
 use rayon::ThreadPool;
 
@@ -137,7 +136,7 @@ fn body_files(criterion: &mut Criterion, body: &Body) {
 
 fn settled(diameter: &str) -> MakeSettings {
     let mut settings = bare(diameter);
-    settings.packing.settle = default_share(settings.packing.sizes.spread());
+    settings.packing.settle = None;
     settings
 }
 
@@ -147,7 +146,7 @@ fn bare(diameter: &str) -> MakeSettings {
             sizes: Sizes::parse(diameter, By::Number).expect("sizes"),
             overlap: 0.0,
             seed: 1,
-            settle: 0.0,
+            settle: Some(0.0),
             seed_point_m: None,
         },
         bonding_radius: 1.1,

@@ -221,7 +221,7 @@ impl Boundary {
     }
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
-    /// a face hidden behind a nearer one (the same plane, the far side of an edge) left out. `triangles` limits the search; at most 8 are found.
+    /// a face hidden behind a nearer one (the same plane, the far side of an edge) left out. `triangles` limits the search; the 8 nearest are found.
     pub fn walls(
         &self,
         triangles: impl Iterator<Item = u32>,
@@ -244,7 +244,7 @@ impl Boundary {
                 .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
             {
                 Some(k) if near.distance < found[k].distance => found[k] = near,
-                None if found.len() < MOST => found.push(near),
+                None => found.push(near),
                 _ => {}
             }
         }
@@ -260,7 +260,7 @@ impl Boundary {
                 kept += 1;
             }
         }
-        found.truncate(kept);
+        found.truncate(kept.min(MOST));
     }
 
     /// The nearest point of one triangle of the wall.

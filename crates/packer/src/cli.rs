@@ -3,10 +3,10 @@
 mod report;
 
 use self::report::{summary_text, surface_summary, surface_text};
+use crate::bonds::LARGEST_BONDING_RADIUS;
 use crate::density::LARGEST_OVERLAP;
 use crate::make::{MakeSettings, make_body};
 use crate::pack::PackSettings;
-use crate::settle::default_share;
 use crate::sizes::{By, Sizes};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
@@ -76,7 +76,12 @@ struct Reading {
     #[arg(long, default_value = "mm", help_heading = "Shape")]
     unit: String,
     /// Factor on all lengths of the shape
-    #[arg(long, default_value_t = 1.0, help_heading = "Shape")]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        help_heading = "Shape"
+    )]
     scale: f64,
     /// Close small holes of the surface instead of refusing them
     #[arg(long, help_heading = "Shape")]
@@ -101,7 +106,13 @@ struct PackArguments {
     reading: Reading,
 
     /// Sphere diameters: 2.5mm | 2mm..3mm | normal:MEAN,STD,MIN..MAX | lognormal:MEAN,STD,MIN..MAX | weibull:SCALE,SHAPE,MIN..MAX | sieve:FILE.csv
-    #[arg(short, long, required = true, help_heading = "Spheres")]
+    #[arg(
+        short,
+        long,
+        required = true,
+        allow_hyphen_values = true,
+        help_heading = "Spheres"
+    )]
     diameter: Option<String>,
     /// What the distribution of diameters counts
     #[arg(long, value_enum, default_value = "number", help_heading = "Spheres")]
@@ -115,12 +126,13 @@ struct PackArguments {
     )]
     overlap: f64,
     /// Density of the particles' material (kg/m3 unless given)
-    #[arg(long, help_heading = "Spheres")]
+    #[arg(long, allow_hyphen_values = true, help_heading = "Spheres")]
     particle_density: Option<String>,
     /// Find the overlap that gives this mass of particles / volume of the shape (kg/m3 unless given)
     #[arg(
         long,
         requires = "particle_density",
+        allow_hyphen_values = true,
         conflicts_with = "overlap",
         help_heading = "Spheres"
     )]
@@ -137,7 +149,7 @@ struct PackArguments {
     )]
     seed_point: Option<String>,
     /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.06.
-    /// If not given, 0.03 (sizes that differ much) to 0.043 (one size)
+    /// If not given, 0.02 to 0.044: less for sizes that differ much and for thin shapes
     #[arg(
         long,
         allow_negative_numbers = true,
@@ -155,7 +167,12 @@ struct PackArguments {
     )]
     bonding_radius: f64,
     /// Find the bonding radius that gives this many bonds / particles
-    #[arg(long, conflicts_with = "bonding_radius", help_heading = "Bonds")]
+    #[arg(
+        long,
+        conflicts_with = "bonding_radius",
+        allow_negative_numbers = true,
+        help_heading = "Bonds"
+    )]
     bonds_per_particle: Option<f64>,
     /// Bond radius / radius of the smaller particle
     #[arg(
@@ -209,6 +226,13 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
     };
     let output = arguments.output.as_deref().unwrap_or(Path::new("-"));
     check_output(output)?;
+    if arguments.json && output == Path::new("-") {
+        return Err(Diagnostic::input(
+            "--json",
+            "standard output cannot take both the report and the body",
+            "give --output FILE",
+        ));
+    }
     let settings = arguments.checked()?;
     // The whole job runs in the pool: a parallel loop that is begun outside it puts the beginner to sleep and wakes it again.
     thread_pool(arguments.threads)?.install(|| pack_and_write(stl, arguments, &settings, output))
@@ -284,8 +308,9 @@ impl PackArguments {
             LARGEST_OVERLAP,
             "0.1 to 0.5 is usual",
         )?;
-        let settle = (self.settle).unwrap_or_else(|| default_share(sizes.spread()));
-        if !(0.0..=LARGEST_SETTLE).contains(&settle) {
+        if let Some(settle) = self.settle
+            && !(0.0..=LARGEST_SETTLE).contains(&settle)
+        {
             return Err(Diagnostic::input(
                 "--settle",
                 format!(
@@ -305,9 +330,18 @@ impl PackArguments {
             "--bonding-radius",
             self.bonding_radius,
             f64::MIN_POSITIVE,
-            2.0 + f64::EPSILON * 2.0,
+            LARGEST_BONDING_RADIUS * (1.0 + f64::EPSILON),
             "1.0 to 1.2 is usual",
         )?;
+        if let Some(wanted) = self.bonds_per_particle
+            && !(wanted > 0.0 && wanted.is_finite())
+        {
+            return Err(Diagnostic::input(
+                "--bonds-per-particle",
+                format!("{wanted} is not a positive number"),
+                "4 to 6 is usual",
+            ));
+        }
         let density = |option: &str, text: &Option<String>| {
             let Some(text) = text else { return Ok(None) };
             let value = density_kg_m3(text).map_err(|e| e.within(option))?;
@@ -325,7 +359,7 @@ impl PackArguments {
                 sizes,
                 overlap: self.overlap,
                 seed: self.seed,
-                settle,
+                settle: self.settle,
                 seed_point_m: self.seed_point.as_deref().map(parse_point).transpose()?,
             },
             bonding_radius: self.bonding_radius,

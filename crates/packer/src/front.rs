@@ -30,6 +30,10 @@ pub struct FrontSettings<'a> {
     pub radius_range: [f64; 2],
     /// Reduced radius = radius / (1 + overlap).
     pub overlap: f64,
+    /// A sphere keeps its radius times this clear of the wall: more than 1 if it is to grow later.
+    pub wall_factor: f64,
+    /// Cells of the grid at most: for shapes that fill little of their box.
+    pub most_cells: usize,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -73,7 +77,12 @@ impl<'a> Front<'a> {
     pub fn new(settings: FrontSettings<'a>, boundary: &'a Boundary, extent: &Vector3) -> Self {
         let largest = settings.radius_range[1];
         let reduced = largest / (1.0 + settings.overlap);
-        let grid = Grid::new(&Vector3::zeros(), extent, 4.0 * reduced, 50_000_000);
+        let grid = Grid::new(
+            &Vector3::zeros(),
+            extent,
+            4.0 * reduced,
+            settings.most_cells,
+        );
         let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.cell;
         let [nx, ny, nz] = grid.counts;
         let near_wall = (0..nx * ny * nz)
@@ -83,7 +92,10 @@ impl<'a> Front<'a> {
                 cell.iter()
                     .zip(grid.counts)
                     .any(|(c, n)| *c == 0 || *c + 1 == n)
-                    || !boundary.clears(&grid.centre(cell), half_diagonal + largest)
+                    || !boundary.clears(
+                        &grid.centre(cell),
+                        half_diagonal + largest * settings.wall_factor,
+                    )
             })
             .collect();
         Self {
@@ -153,7 +165,7 @@ impl<'a> Front<'a> {
     pub fn fits(&self, centre: &Vector3, radius: f64) -> bool {
         let reduced = self.reduced(radius);
         self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12)
-            && self.boundary.clears(centre, radius)
+            && self.boundary.clears(centre, self.from_wall(radius))
     }
 
     /// Radius (not reduced) of the largest sphere around `point` that overlaps no other, at most `cut_off`, local units.
@@ -228,7 +240,12 @@ impl<'a> Front<'a> {
     /// Whether a sphere of this (not reduced) radius lies inside the surface, given that its centre does not lie beyond it.
     fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
         !self.is_near_wall(&[centre.x, centre.y, centre.z, 0.0])
-            || self.boundary.clears(centre, radius)
+            || self.boundary.clears(centre, self.from_wall(radius))
+    }
+
+    /// How far from the wall the centre of a sphere of this (not reduced) radius must be.
+    fn from_wall(&self, radius: f64) -> f64 {
+        radius * self.settings.wall_factor
     }
 
     /// Whether the cell that the ball's centre lies in is near the wall.
@@ -383,7 +400,7 @@ impl<'a> Front<'a> {
         workspace.walls.clear();
         if self.is_near_wall(front) {
             let centre = centre_of(front);
-            let reach = front[3] + reduced + largest;
+            let reach = front[3] + reduced + self.from_wall(largest);
             self.boundary.walls(
                 self.boundary.triangles_near(&centre, reach),
                 &centre,
@@ -421,7 +438,9 @@ impl<'a> Front<'a> {
         for wall in walls.iter() {
             let towards = (wall.point - halo.centre) / wall.distance;
             for j in 0..halo.neighbours() {
-                let Some(places) = halo.wall_corners(j, &towards, wall.distance - radius) else {
+                let Some(places) =
+                    halo.wall_corners(j, &towards, wall.distance - self.from_wall(radius))
+                else {
                     continue;
                 };
                 for p in places {
@@ -442,6 +461,7 @@ impl<'a> Front<'a> {
     /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
     /// if it is free. The wall is taken for a plane at its nearest point, again and again.
     fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
+        let radius = self.from_wall(radius);
         let wanted = radius * (1.0 + 1e-12);
         let mut p = *p;
         for _ in 0..8 {

@@ -8,6 +8,7 @@ use crate::depth_map::DepthMap;
 use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use dem_io::body::About;
+use dem_io::units::significant;
 use dem_io::{Body, Result, Surface};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -32,6 +33,9 @@ pub struct MakeSettings {
     /// Choose the overlap so that mass of the particles / volume of the shape is this, kg/m3.
     pub solid_density_kg_m3: Option<f64>,
 }
+
+/// More spheres than this share taken out are worth a warning.
+const MANY_TAKEN_OUT: f64 = 0.005;
 
 /// Times of the stages, s.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -138,10 +142,17 @@ pub fn make_body(
         distance_bounds: &|p| map.bounds(p),
         crosses_surface: &crosses,
         gap_limit: DEFAULT_GAP_LIMIT,
+        parts: if surface.repairs.self_intersections > 0 {
+            1
+        } else {
+            surface.shells.iter().filter(|s| !s.is_cavity).count()
+        },
     })?;
     quality
         .warnings
         .extend(density_search.as_ref().and_then(DensitySearch::warning));
+    let jammed = jam_warning(&packing.history, spheres.radii.len());
+    quality.warnings.extend(jammed);
     seconds.report += started.elapsed().as_secs_f64();
 
     let body = Body {
@@ -180,6 +191,19 @@ pub fn make_body(
         seconds,
     };
     Ok((body, made))
+}
+
+/// What a person should know if many spheres jammed.
+fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
+    let share = history.taken_out as f64 / particles.max(1) as f64;
+    (share > MANY_TAKEN_OUT).then(|| {
+        format!(
+            "{} spheres ({} %) jammed while settling and were taken out: --settle {} leaves them more room",
+            history.taken_out,
+            significant(100.0 * share, 2),
+            significant(0.8 * history.settle, 2)
+        )
+    })
 }
 
 /// Whether the straight line between two points inside the solid (local units) meets the surface.

@@ -5,11 +5,12 @@ use crate::front::{Front, FrontSettings};
 use crate::grid::Ball;
 use crate::inside::is_inside;
 use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
-use crate::settle::settle;
+use crate::settle::{default_share, settle};
 use crate::sizes::Sizes;
 use crate::{Spheres, Vector3};
-use dem_io::units::show_length;
+use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result, Surface};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 use std::time::Instant;
@@ -23,8 +24,8 @@ pub struct PackSettings {
     pub overlap: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// The front runs at radii smaller by this share; then they grow to full size. 0: the bare front.
-    pub settle: f64,
+    /// The front runs at radii smaller by this share; then they grow to full size. 0: the bare front. None: as [`default_share`] says.
+    pub settle: Option<f64>,
     /// Where the front begins, in metres; the deepest point if not given. Length 3.
     pub seed_point_m: Option<[f64; 3]>,
 }
@@ -71,6 +72,11 @@ pub struct Packing {
 /// far enough that few fronts meet, since where they meet there is less.
 const SEED_SPACING: f64 = 8.0;
 
+/// Spheres at most: some 30 GB.
+const MOST_SPHERES: f64 = 1e8;
+/// Cells of the front's grid beyond one per sphere.
+const MORE_CELLS: usize = 1_000_000;
+
 /// Spheres around which voids are searched at a time.
 const VOID_SEARCH_GROUP: usize = 2000;
 
@@ -87,10 +93,7 @@ pub fn pack(
     settings: &PackSettings,
     progress: Progress,
 ) -> Result<Packing> {
-    let mut history = PackHistory {
-        settle: settings.settle,
-        ..PackHistory::default()
-    };
+    let mut history = PackHistory::default();
     let started = Instant::now();
     let unit = surface.unit_m;
     let inner = inner_points(boundary, surface);
@@ -107,16 +110,39 @@ pub fn pack(
         &settings.sizes,
         history.largest_inscribed_diameter_m,
     )?;
+    let share = settings.settle.unwrap_or_else(|| {
+        let sizes = &settings.sizes;
+        default_share(
+            sizes.spread(),
+            sizes.mean_m() / history.largest_inscribed_diameter_m,
+        )
+    });
+    history.settle = share;
     let seed = seed_point(surface, boundary, settings, &deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
-    let shrink = 1.0 - settings.settle;
+    let shrink = 1.0 - share;
     let small = |u: f64| shrink * 0.5 * settings.sizes.quantile_by_number(u) / unit;
     let range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
+    let expected = 0.58 * surface.volume_m3()
+        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
+            .max(f64::MIN_POSITIVE);
+    if expected > MOST_SPHERES {
+        return Err(Diagnostic::input(
+            surface.source.clone(),
+            format!(
+                "about {} spheres would fill it, at most {MOST_SPHERES:e} can be handled",
+                significant(expected, 2)
+            ),
+            "ask for larger diameters, or check the units of --diameter and --unit",
+        ));
+    }
     let front_settings = FrontSettings {
         radius: &small,
         radius_range: range.map(|r| shrink * r),
         overlap: settings.overlap,
+        wall_factor: (1.0 - 1e-12) / shrink,
+        most_cells: MORE_CELLS + expected as usize,
         seed: settings.seed,
     };
     let extent = Vector3::from(surface.extent());
@@ -126,11 +152,9 @@ pub fn pack(
         boundary,
         settings,
         &seed,
+        share > 0.0,
         2.0 * front.settings.radius_range[1] / (1.0 + settings.overlap),
     );
-    let expected = 0.58 * surface.volume_m3()
-        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
-            .max(f64::MIN_POSITIVE);
     run_fronts(
         &mut front,
         boundary,
@@ -145,7 +169,7 @@ pub fn pack(
     sort_along_curve(&mut balls, range[1]);
     history.front_seconds = started.elapsed().as_secs_f64();
 
-    if settings.settle > 0.0 {
+    if share > 0.0 {
         let started = Instant::now();
         for ball in &mut balls {
             ball[3] /= shrink;
@@ -165,6 +189,8 @@ pub fn pack(
         radius: &full,
         radius_range: range,
         overlap: settings.overlap,
+        wall_factor: 1.0,
+        most_cells: MORE_CELLS + balls.len(),
         seed: settings.seed ^ 0x5eed,
     };
     let mut front = Front::new(settings_full, boundary, &extent);
@@ -248,14 +274,15 @@ fn front_seeds(
     boundary: &Boundary,
     settings: &PackSettings,
     seed: &Vector3,
+    settles: bool,
     diameter: f64,
 ) -> Vec<Vector3> {
     let mut seeds = vec![*seed];
-    if settings.settle > 0.0 {
+    if settles {
         let others = spread_points(&surface.extent(), SEED_SPACING * diameter, settings.seed);
-        seeds.extend(
+        seeds.par_extend(
             others
-                .into_iter()
+                .into_par_iter()
                 .filter(|p| (p - seed).norm() > 2.0 * diameter && is_inside(boundary, p)),
         );
     }
@@ -273,7 +300,7 @@ fn run_fronts(
 ) -> Result<()> {
     let mut queue = Vec::new();
     for seed in seeds {
-        let first = place_first_spheres(front, seed);
+        let first = place_first_spheres(front, boundary, seed);
         history.fronts += usize::from(!first.is_empty());
         queue.extend(first);
     }
@@ -289,12 +316,14 @@ fn run_fronts(
         let reach = 4.0 * front.settings.radius_range[1];
         let clearance = |p: &Vector3| {
             let to_spheres = front.reach_to_spheres(p, reach);
-            let wall = boundary.nearest(p, to_spheres);
-            wall.map_or(to_spheres, |near| near.distance)
+            let wall = boundary.nearest(p, to_spheres * front.settings.wall_factor);
+            wall.map_or(to_spheres, |near| {
+                near.distance / front.settings.wall_factor
+            })
         };
         let room = climb(&place.centre, 0.5 * smallest, 1e-6 * smallest, &clearance);
         if room.radius >= smallest {
-            let first: Vec<u32> = place_first_spheres(front, &room.centre).collect();
+            let first: Vec<u32> = place_first_spheres(front, boundary, &room.centre).collect();
             history.fronts += usize::from(!first.is_empty());
             front.advance(&first, progress)?;
         }
@@ -303,11 +332,11 @@ fn run_fronts(
 }
 
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
-fn place_first_spheres(front: &mut Front, seed: &Vector3) -> Range<u32> {
+fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -> Range<u32> {
     let radii = front.next_radii();
     let reduced = radii.map(|r| r / (1.0 + front.settings.overlap));
     let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
-        front.fits(centre, radius)
+        front.fits(centre, radius) && is_inside(boundary, centre)
     });
     front.waiting.extend_from_slice(&radii[placed.len()..]);
     front.begin(seed);

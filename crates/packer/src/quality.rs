@@ -21,8 +21,9 @@ pub use pieces::Pieces;
 use serde::{Deserialize, Serialize};
 pub use thickness::Thinnest;
 
-/// Contacts are counted up to a gap of this share of the smaller radius: settled packings touch to about 1e-4.
-pub const DEFAULT_GAP_LIMIT: f64 = 1e-3;
+/// Contacts are counted up to a gap of this share of the smaller radius: settled spheres keep moving a little until none overlaps, and
+/// so stay apart by a few thousandths, seldom more than this.
+pub const DEFAULT_GAP_LIMIT: f64 = 0.02;
 /// The interior begins so many largest diameters from the wall.
 pub const INTERIOR_DEPTH_IN_LARGEST_DIAMETERS: f64 = 2.0;
 /// Below so many particles across, a body shows its particles more than its material.
@@ -71,6 +72,8 @@ pub struct Packing<'a> {
     pub crosses_surface: CrossesSurface<'a>,
     /// Largest gap of a contact, as a share of the smaller radius: [`DEFAULT_GAP_LIMIT`].
     pub gap_limit: f64,
+    /// Separate parts of the shape: a body in as many pieces is whole.
+    pub parts: usize,
 }
 
 /// Distances to the wall matter up to here, local units; farther is all the same.
@@ -210,22 +213,22 @@ pub fn assess(packing: &Packing) -> Result<Report> {
     } else {
         None
     };
-    report.warnings = warnings(&report, advised);
+    report.warnings = warnings(&report, advised, packing.parts);
     Ok(report)
 }
 
-fn warnings(report: &Report, advised_bonding_radius: Option<f64>) -> Vec<String> {
+fn warnings(report: &Report, advised_bonding_radius: Option<f64>, parts: usize) -> Vec<String> {
     let mut warnings = Vec::new();
     let contacts = &report.contacts;
     if contacts.largest_overlap > EXACT {
         warnings.push(format!(
-            "spheres overlap in r_gen by up to {} of a radius: the packing is not finished; settle longer",
+            "spheres overlap in r_gen by up to {} of a radius: the packing is not finished: please report the command",
             significant(contacts.largest_overlap, 2)
         ));
     }
     if contacts.largest_protrusion > EXACT {
         warnings.push(format!(
-            "spheres stand out of the surface by up to {} of a radius: settle longer",
+            "spheres stand out of the surface by up to {} of a radius: please report the command",
             significant(contacts.largest_protrusion, 2)
         ));
     }
@@ -243,7 +246,7 @@ fn warnings(report: &Report, advised_bonding_radius: Option<f64>) -> Vec<String>
         ));
     }
     let pieces = &report.pieces;
-    if pieces.count > 1 {
+    if pieces.count > parts.max(1) {
         warnings.push(format!(
             "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bonding-radius or smaller \
              particles join them",
@@ -276,7 +279,7 @@ fn warnings(report: &Report, advised_bonding_radius: Option<f64>) -> Vec<String>
     if let Some(fabric) = report.interior_fabric.as_ref().filter(|f| f.chance < RARE) {
         warnings.push(format!(
             "bonds prefer a direction in the interior (eigenvalue {} off by {} sigma, chance {}): cracks will too; another \
-             --seed or more settling helps",
+             --seed or a larger --settle helps",
             significant(fabric.eigenvalues[0], 3),
             significant(fabric.largest_deviation_in_sigma, 2),
             significant(fabric.chance, 1)

@@ -25,6 +25,9 @@ const MARGIN: f64 = 5e-5;
 
 /// Neighbours are listed this far beyond contact, in mean radii.
 const SKIN: f64 = 0.8;
+/// At its true size no sphere may stand out of the wall by more than this part of its radius when settling ends. Two spheres overlap by less
+/// than the surplus of one of them then, so not at all at their true sizes.
+const STANDS_OUT: f64 = 1e-10;
 /// Share of the velocity that damping takes in step n: `DAMPING` / n, between the two limits.
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
@@ -51,10 +54,12 @@ const FAR: f64 = 1e6;
 /// Neighbours handled at once.
 const LANES: usize = 4;
 
-/// The share by which the radii of a front are smaller before settling, unless given: about a tenth below the share from which on spheres jam,
-/// which was found to fall from 0.048 for one size to 0.036 for a wide range of sizes. `spread` is the standard deviation of the sizes over their mean.
-pub fn default_share(spread: f64) -> f64 {
-    (0.043 - 0.05 * spread).max(0.03)
+/// The share by which the radii of a front are smaller before settling, unless given: about a tenth below the share from which on spheres jam.
+/// That share was found to be less for sizes that differ much, which fill better from the start, and in thin shapes, where the wall takes the
+/// room to move. `spread` is the standard deviation of the sizes over their mean, `across` the mean size over the diameter of the largest ball
+/// inside the shape.
+pub fn default_share(spread: f64, across: f64) -> f64 {
+    (0.044 - 0.05 * spread - 0.05 * (across - 0.08).max(0.0)).max(0.02)
 }
 
 /// How a settling run ended.
@@ -85,7 +90,7 @@ struct State<'a> {
 }
 
 /// Moves `balls` (centre, reduced radius at full size) until none overlaps another or the wall. Where they are jammed, a few are taken out:
-/// of the pairs that overlap most the one with the higher index, which favours no size.
+/// of the pairs that overlap most the one with the higher index, which favours no size, and spheres that overlap the wall as much.
 ///
 /// `progress` is told the share of the work done.
 ///
@@ -189,7 +194,12 @@ impl<'a> State<'a> {
                     (ball[3] + other[3] - squared_distance(ball, other).sqrt())
                         / ball[3].min(other[3])
                 };
-                (earlier.map(overlap).fold(0.0, f64::max), i)
+                let spheres = earlier.map(overlap).fold(0.0, f64::max);
+                let centre = Vector3::new(ball[0], ball[1], ball[2]);
+                let radius = ball[3] * self.enlarge;
+                let wall = self.boundary.nearest(&centre, radius);
+                let wall = wall.map_or(0.0, |near| wall_overlap(radius, near.distance));
+                (spheres.max(wall), i)
             })
             .filter(|(overlap, _)| *overlap > MARGIN)
             .collect();
@@ -282,6 +292,17 @@ impl<'a> State<'a> {
     }
 }
 
+/// By how much a sphere of this radius, `MARGIN` larger than true, stands out of a wall at this distance from its centre, as a share of the radius.
+/// Not at all if it fits at its true size: a sphere between two walls may have no room for the surplus.
+fn wall_overlap(radius: f64, distance: f64) -> f64 {
+    let stands_out = radius / (1.0 + MARGIN) * (1.0 - STANDS_OUT) > distance;
+    if stands_out {
+        1.0 - distance / radius
+    } else {
+        0.0
+    }
+}
+
 /// The forces on the spheres from number `first` on, one for each of `force`: a call that is compiled for AVX2 as well.
 struct ForcesOn<'a> {
     force: &'a mut [[f64; 4]],
@@ -346,7 +367,7 @@ impl NullaryFnOnce for ForcesOn<'_> {
                     for axis in 0..3 {
                         total[axis] += push * (ball[axis] - wall.point[axis]);
                     }
-                    worst = worst.max(overlap / radius);
+                    worst = worst.max(wall_overlap(radius, side * wall.distance));
                 }
             }
             *f = [total[0], total[1], total[2], 0.0];

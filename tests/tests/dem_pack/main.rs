@@ -9,6 +9,7 @@ mod density;
 mod determinism;
 mod files;
 mod interrupted;
+mod quality;
 mod refused_shapes;
 mod shapes;
 mod sizes;

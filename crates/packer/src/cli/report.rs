@@ -63,7 +63,7 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
     }
     let history = &made.history;
     text += &format!(
-        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
+        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, about {} voids left for the smallest\n",
         significant(history.settle, 3),
         history.fronts,
         history.settling_steps,

@@ -5,6 +5,8 @@ use crate::boundary::Boundary;
 use crate::grid::Ball;
 use rayon::prelude::*;
 
+/// Cells of a search at most, for each sphere.
+const MOST_CELLS_PER_SPHERE: f64 = 8.0;
 /// Spheres handled by one task.
 const CHUNK: usize = 1024;
 
@@ -117,6 +119,10 @@ struct Cells {
 impl Cells {
     fn new(balls: &[Ball], cell: f64) -> Self {
         let (low, high) = bounds(balls);
+        // Balls that fill little of their box would have too many cells: fewer, larger ones hold them as well.
+        let most = MOST_CELLS_PER_SPHERE * (balls.len() as f64 + 1.0);
+        let volume: f64 = (0..3).map(|k| (high[k] - low[k]).max(cell)).product();
+        let cell = cell.max((volume / most).cbrt());
         let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
         let mut cells = Self {
             low,

@@ -12,7 +12,7 @@ fn bare_front(facets: &Facets, diameter: &str, overlap: f64) -> (Facets, Packing
         sizes: Sizes::parse(diameter, By::Number).unwrap(),
         overlap,
         seed: 3,
-        settle: 0.0,
+        settle: Some(0.0),
         seed_point_m: None,
     };
     let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();

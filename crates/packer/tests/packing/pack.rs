@@ -4,7 +4,6 @@ use super::exact::assert_exact;
 use super::facets::{Facets, cuboid};
 use super::solids::{between, local_facets, random_numbers, random_solid, surface_of, turned};
 use dem_pack::pack::{PackSettings, Packing, pack};
-use dem_pack::settle::default_share;
 use dem_pack::sizes::{By, Sizes};
 use rand::RngExt;
 
@@ -14,7 +13,7 @@ fn pack_with(facets: &Facets, settings: &PackSettings) -> (Facets, Packing) {
     (local_facets(&surface), packing)
 }
 
-fn settings(diameter: &str, overlap: f64, settle: f64) -> PackSettings {
+fn settings(diameter: &str, overlap: f64, settle: Option<f64>) -> PackSettings {
     PackSettings {
         sizes: Sizes::parse(diameter, By::Number).unwrap(),
         overlap,
@@ -51,14 +50,11 @@ fn exact_on(kind: usize) {
             between(&mut random, 0.0, 0.6)
         };
         for settled in [false, true] {
-            let mut settings = settings(&diameter, overlap, 0.0);
-            if settled {
-                settings.settle = default_share(settings.sizes.spread());
-            }
+            let mut settings = settings(&diameter, overlap, (!settled).then_some(0.0));
             settings.seed = random.random();
             let what = format!(
-                "{name} {case}, {diameter}, overlap {overlap}, settle {}, seed {}",
-                settings.settle, settings.seed
+                "{name} {case}, {diameter}, overlap {overlap}, settled {settled}, seed {}",
+                settings.seed
             );
             let (facets, packing) = pack_with(&solid, &settings);
             let spheres = &packing.spheres;
@@ -126,7 +122,10 @@ fn exact_in_tori() {
 
 #[test]
 fn a_sphere_that_just_fits_is_placed() {
-    let (facets, packing) = pack_with(&cuboid([8.0, 8.0, 8.0]), &settings("7.99mm", 0.0, 0.0));
+    let (facets, packing) = pack_with(
+        &cuboid([8.0, 8.0, 8.0]),
+        &settings("7.99mm", 0.0, Some(0.0)),
+    );
     assert_eq!(packing.spheres.radii.len(), 1);
     assert_exact(
         "one sphere",
@@ -137,7 +136,10 @@ fn a_sphere_that_just_fits_is_placed() {
         0.0,
     );
     // A row of four in a channel as wide as they are.
-    let (facets, packing) = pack_with(&cuboid([32.0, 8.0, 8.0]), &settings("7.999mm", 0.0, 0.0));
+    let (facets, packing) = pack_with(
+        &cuboid([32.0, 8.0, 8.0]),
+        &settings("7.999mm", 0.0, Some(0.0)),
+    );
     assert!(
         packing.spheres.radii.len() >= 3,
         "{}",
@@ -153,13 +155,56 @@ fn a_sphere_that_just_fits_is_placed() {
     );
 }
 
+/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the rounding of the last step.
+#[test]
+fn exact_in_a_plate_one_sphere_thick() {
+    for seed in 1..=10 {
+        let settings = PackSettings {
+            seed,
+            ..settings("3mm", 0.0, None)
+        };
+        let (facets, packing) = pack_with(&cuboid([30.0, 30.0, 3.0]), &settings);
+        let spheres = &packing.spheres;
+        assert!(spheres.radii.len() > 60, "{}", spheres.radii.len());
+        assert_exact(
+            "plate",
+            &facets,
+            &spheres.positions,
+            &spheres.radii,
+            0.0,
+            0.0,
+        );
+    }
+}
+
+/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than any sphere can.
+#[test]
+fn exact_from_a_seed_almost_on_the_wall() {
+    for settle in [Some(0.0), None] {
+        for seed_point_m in [
+            [0.05e-3, 9.3e-3, 9e-3],
+            [19.99e-3, 5e-3, 0.01e-3],
+            [1e-6; 3],
+        ] {
+            let settings = PackSettings {
+                seed_point_m: Some(seed_point_m),
+                ..settings("2mm..3mm", 0.0, settle)
+            };
+            let (facets, packing) = pack_with(&cuboid([20.0, 10.0, 10.0]), &settings);
+            let spheres = &packing.spheres;
+            assert!(spheres.radii.len() > 80, "{}", spheres.radii.len());
+            assert_exact("bar", &facets, &spheres.positions, &spheres.radii, 0.0, 0.0);
+        }
+    }
+}
+
 #[test]
 fn the_front_begins_at_the_point_given() {
     let (surface, boundary) = surface_of(&cuboid([20.0, 10.0, 10.0]));
     let given = [3e-3, 4e-3, 5e-3];
     let settings = PackSettings {
         seed_point_m: Some(given),
-        ..settings("1mm..1.5mm", 0.2, 0.0)
+        ..settings("1mm..1.5mm", 0.2, Some(0.0))
     };
     let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
     for (found, wanted) in packing.history.seed_point_m.iter().zip(given) {
@@ -198,7 +243,7 @@ fn a_stop_asked_for_by_progress_stops_it() {
         let stopped = pack(
             &surface,
             &boundary,
-            &settings("1mm..1.5mm", 0.2, 0.034),
+            &settings("1mm..1.5mm", 0.2, Some(0.034)),
             &stop,
         );
         assert_eq!(stopped.unwrap_err().problem, "stopped", "{stage}");

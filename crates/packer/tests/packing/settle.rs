@@ -109,6 +109,24 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     );
 }
 
+/// Spheres thicker than the plate touch no other: the wall alone jams them.
+#[test]
+fn spheres_that_only_the_wall_jams_are_taken_out() {
+    let (surface, boundary) = surface_of(&cuboid([10.0, 8.0, 2.0]));
+    let local = |mm: f64| mm * 1e-3 / surface.unit_m;
+    let mut balls: Vec<Ball> = [(1.5, 1.1), (3.5, 0.9), (5.5, 1.1), (7.5, 0.9), (8.9, 0.5)]
+        .map(|(x, radius)| [local(x), local(4.0), local(1.0), local(radius)])
+        .to_vec();
+    let settled = settle(&boundary, &mut balls, 0.0, &|_| Ok(())).unwrap();
+    assert_eq!(settled.taken_out, 2);
+    let left: Vec<f64> = sizes_of(&balls)
+        .iter()
+        .map(|r| (r / local(1.0) * 1e9).round())
+        .collect();
+    assert_eq!(left, [5e8, 9e8, 9e8]);
+    assert_settled("plate", &local_facets(&surface), &balls, 0.0);
+}
+
 #[test]
 fn what_does_not_overlap_stays_where_it_is() {
     let (_, boundary) = surface_of(&cuboid([10.0, 8.0, 7.0]));

@@ -96,6 +96,7 @@ impl Case {
             distance_bounds: &|_| [f64::NEG_INFINITY, f64::INFINITY],
             crosses_surface: &open,
             gap_limit: DEFAULT_GAP_LIMIT,
+            parts: 1,
         })
         .unwrap()
     }

@@ -80,6 +80,7 @@ fn chance_of_a_fabric_is_a_chance() {
             distance_bounds: &|_| [f64::NEG_INFINITY, f64::INFINITY],
             crosses_surface: &open,
             gap_limit: DEFAULT_GAP_LIMIT,
+            parts: 1,
         })
         .unwrap();
         let fabric = report.fabric.unwrap();

@@ -28,7 +28,10 @@ fn one_long_bond_is_as_the_independent_implementation_has_it() {
         (BondModel::EulerBernoulli, 47123889.8038469),
         (BondModel::Timoshenko, 46124525.09348799),
         (BondModel::ElasticSolid, 2416609733.53061),
-        (BondModel::ShearCoefficient { alpha: 0.9 }, 2174948760.1775494),
+        (
+            BondModel::ShearCoefficient { alpha: 0.9 },
+            2174948760.1775494,
+        ),
     ];
     for (model, shear) in shear {
         let k = stiffness(model, &shape, STEEL_PA, NU);
@@ -86,7 +89,10 @@ fn cantilevers_of_ten_bonds_bend_as_the_reference_values_say() {
         (BondModel::EulerBernoulli, 0.008488263631567749),
         (BondModel::Timoshenko, 0.00853424172623874),
         (BondModel::ElasticSolid, 0.008508423257692722),
-        (BondModel::ShearCoefficient { alpha: 0.9 }, 0.008513021067159822),
+        (
+            BondModel::ShearCoefficient { alpha: 0.9 },
+            0.008513021067159822,
+        ),
     ];
     for (model, tip) in tips {
         let found = tip_of_cantilever(model, 10);

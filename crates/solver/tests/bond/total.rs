@@ -33,12 +33,14 @@ fn bond() -> impl Strategy<Value = (Stiffness, Vector3<f64>, [End; 2])> {
                 radius_m: 0.2,
                 end_radii_m: [radius_a, 0.4],
             };
-            let ends = [(Vector3::zeros(), move_a, turn_a), (direction, move_b, turn_b)].map(
-                |(at, moved, turn)| End {
-                    position_m: at + moved,
-                    turned: UnitQuaternion::from_scaled_axis(turn),
-                },
-            );
+            let ends = [
+                (Vector3::zeros(), move_a, turn_a),
+                (direction, move_b, turn_b),
+            ]
+            .map(|(at, moved, turn)| End {
+                position_m: at + moved,
+                turned: UnitQuaternion::from_scaled_axis(turn),
+            });
             (stiffness(MODELS[model], &shape, 1e3, 0.3), direction, ends)
         },
     )

@@ -53,11 +53,7 @@ pub struct BondForces {
 }
 
 /// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
-pub fn bond_forces(
-    stiffness: &Stiffness,
-    direction: &Vector3<f64>,
-    ends: &[End; 2],
-) -> BondForces {
+pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
     let [a, b] = ends;
     let [lever_a, lever_b] = stiffness.levers_m;
     let apart = b.position_m - a.position_m;
@@ -72,7 +68,11 @@ pub fn bond_forces(
 
     let relative = b.turned.quaternion() * a.turned.quaternion().conjugate();
     // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.
-    let relative = if relative.w < 0.0 { -relative } else { relative };
+    let relative = if relative.w < 0.0 {
+        -relative
+    } else {
+        relative
+    };
     let (cosine, half_phi) = (relative.w, relative.imag());
     let phi = 2.0 * half_phi;
     let sum = direction_a + direction_b;
