@@ -165,7 +165,7 @@ impl<'a> Front<'a> {
     pub fn fits(&self, centre: &Vector3, radius: f64) -> bool {
         let reduced = self.reduced(radius);
         self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12)
-            && self.boundary.clears(centre, self.from_wall(radius))
+            && self.boundary.clears(centre, self.wall_clearance(radius))
     }
 
     /// Radius (not reduced) of the largest sphere around `point` that overlaps no other, at most `cut_off`, local units.
@@ -240,11 +240,11 @@ impl<'a> Front<'a> {
     /// Whether a sphere of this (not reduced) radius lies inside the surface, given that its centre does not lie beyond it.
     fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
         !self.is_near_wall(&[centre.x, centre.y, centre.z, 0.0])
-            || self.boundary.clears(centre, self.from_wall(radius))
+            || self.boundary.clears(centre, self.wall_clearance(radius))
     }
 
     /// How far from the wall the centre of a sphere of this (not reduced) radius must be.
-    fn from_wall(&self, radius: f64) -> f64 {
+    fn wall_clearance(&self, radius: f64) -> f64 {
         radius * self.settings.wall_factor
     }
 
@@ -400,7 +400,7 @@ impl<'a> Front<'a> {
         workspace.walls.clear();
         if self.is_near_wall(front) {
             let centre = centre_of(front);
-            let reach = front[3] + reduced + self.from_wall(largest);
+            let reach = front[3] + reduced + self.wall_clearance(largest);
             self.boundary.walls(
                 self.boundary.triangles_near(&centre, reach),
                 &centre,
@@ -439,7 +439,7 @@ impl<'a> Front<'a> {
             let towards = (wall.point - halo.centre) / wall.distance;
             for j in 0..halo.neighbours() {
                 let Some(places) =
-                    halo.wall_corners(j, &towards, wall.distance - self.from_wall(radius))
+                    halo.wall_corners(j, &towards, wall.distance - self.wall_clearance(radius))
                 else {
                     continue;
                 };
@@ -461,7 +461,7 @@ impl<'a> Front<'a> {
     /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
     /// if it is free. The wall is taken for a plane at its nearest point, again and again.
     fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
-        let radius = self.from_wall(radius);
+        let radius = self.wall_clearance(radius);
         let wanted = radius * (1.0 + 1e-12);
         let mut p = *p;
         for _ in 0..8 {
