@@ -117,13 +117,19 @@ pub fn pack(
             sizes.mean_m() / history.largest_inscribed_diameter_m,
         )
     });
+    // Rounded for the same reason as the radii.
+    let share = (1e6 * share).round() * 1e-6;
     history.settle = share;
     let seed = seed_point(surface, boundary, settings, &deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
     let shrink = 1.0 - share;
-    let small = |u: f64| shrink * 0.5 * settings.sizes.quantile_by_number(u) / unit;
-    let range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
+    let exact_range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
+    let step = rounding_step(exact_range[1]);
+    let rounded = |r: f64| (r / step).round() * step;
+    let full = |u: f64| rounded(0.5 * settings.sizes.quantile_by_number(u) / unit);
+    let small = |u: f64| shrink * full(u);
+    let range = exact_range.map(rounded);
     let expected = 0.58 * surface.volume_m3()
         / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
             .max(f64::MIN_POSITIVE);
@@ -184,7 +190,6 @@ pub fn pack(
 
     let started = Instant::now();
     progress("filling voids", 0.0)?;
-    let full = |u: f64| 0.5 * settings.sizes.quantile_by_number(u) / unit;
     let settings_full = FrontSettings {
         radius: &full,
         radius_range: range,
@@ -211,7 +216,11 @@ pub fn pack(
     let enlarge = 1.0 + settings.overlap;
     let spheres = Spheres {
         positions: front.balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
-        radii: front.balls.iter().map(|b| b[3] * enlarge).collect(),
+        radii: front
+            .balls
+            .iter()
+            .map(|b| (b[3] * enlarge).clamp(exact_range[0], exact_range[1]))
+            .collect(),
     };
     Ok(Packing { spheres, history })
 }
@@ -219,6 +228,12 @@ pub fn pack(
 /// A local point in metres.
 pub fn to_metres(surface: &Surface, point: &Vector3) -> [f64; 3] {
     [0, 1, 2].map(|k| surface.origin_m[k] + surface.unit_m * point[k])
+}
+
+/// Radii are multiples of this, some 2e-10 of the largest: so that a radius is the same number in whatever unit it was given. A difference in the
+/// last bit would grow while the spheres settle, until every sphere lay elsewhere.
+fn rounding_step(largest: f64) -> f64 {
+    (largest.log2().floor() - 32.0).exp2()
 }
 
 fn check_sizes_fit(surface: &Surface, sizes: &Sizes, inscribed_m: f64) -> Result<()> {
