@@ -11,7 +11,7 @@ pub const NEAR_ENOUGH: f64 = 1e-3;
 /// Densities are near the wanted one up to this, relative: more than chance makes.
 const NEAR: f64 = 0.01;
 /// Packings tried at most.
-const MOST_PACKINGS: usize = 12;
+const MOST_PACKINGS: usize = 30;
 /// Overlaps nearer to each other than this are not tried twice: they change the density by less than chance does.
 const FINEST_STEP: f64 = 1e-5;
 /// Overlaps are below this: a sphere must not swallow its neighbour's centre.
