@@ -221,6 +221,8 @@ impl<'a> State<'a> {
     /// Lists, for each sphere, the others that could come to touch it before the lists are made again.
     fn list_neighbours(&mut self) {
         let balls = &self.balls;
+        // The old lists make room for the new ones.
+        self.near = Near::default();
         self.near = Near::list(self.boundary, balls, self.enlarge, self.skin);
         self.listed_at.clone_from(balls);
         self.response = (0..balls.len())

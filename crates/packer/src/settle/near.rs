@@ -69,13 +69,14 @@ fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -
         .enumerate()
         .map(|(chunk, part)| {
             let (mut list, mut ends) = (
-                Vec::with_capacity(part.len() * 10),
+                Vec::with_capacity(part.len() * 16),
                 Vec::with_capacity(part.len()),
             );
             for (k, ball) in part.iter().enumerate() {
                 fill(chunk * CHUNK + k, ball, &mut list);
                 ends.push(list.len() as u32);
             }
+            list.shrink_to_fit();
             (list, ends)
         })
         .collect();
