@@ -63,13 +63,17 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
     }
     let history = &made.history;
     text += &format!(
-        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, about {} voids left for the smallest\n",
+        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
         significant(history.settle, 3),
         history.fronts,
         history.settling_steps,
         history.taken_out,
         history.void_fillers,
-        history.voids_left
+        match history.voids_left {
+            0 => "0".to_owned(),
+            // Extrapolated from the part that was searched.
+            many => format!("about {many}"),
+        }
     );
     text += &format!(
         "time             {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
