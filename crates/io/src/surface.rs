@@ -116,6 +116,11 @@ impl Surface {
         sum - self.overlap_volume_m3
     }
 
+    /// Number of parts: shells that are no cavities.
+    pub fn parts(&self) -> usize {
+        self.shells.iter().filter(|s| !s.is_cavity).count()
+    }
+
     /// The largest corner of the bounding box, in local units (the smallest is the origin). Length 3.
     pub fn extent(&self) -> [f64; 3] {
         let mut extent = [0.0_f64; 3];

@@ -59,13 +59,15 @@ impl Plane {
         }
     }
 
+    /// u and v of a point given from the corner.
+    fn along_triangle(&self, from_corner: &Vector3) -> [f64; 2] {
+        [&self.along_u, &self.along_v].map(|along| from_corner.dot(along))
+    }
+
     /// How far a point is from the plane, positive on the side of the normal, if it is above or below the triangle.
     fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
         let from_corner = point - self.corner;
-        let (u, v) = (
-            from_corner.dot(&self.along_u),
-            from_corner.dot(&self.along_v),
-        );
+        let [u, v] = self.along_triangle(&from_corner);
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
     }
 }
@@ -132,10 +134,7 @@ impl Boundary {
         const EDGE: f64 = 1e-6;
         let plane = self.planes.get(nearest_triangle as usize)?;
         let from_corner = point - plane.corner;
-        let (u, v) = (
-            from_corner.dot(&plane.along_u),
-            from_corner.dot(&plane.along_v),
-        );
+        let [u, v] = plane.along_triangle(&from_corner);
         let height = from_corner.dot(&plane.normal);
         let sure =
             u > EDGE && v > EDGE && u + v < 1.0 - EDGE && height.abs() > EDGE * from_corner.norm();

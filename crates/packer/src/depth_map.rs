@@ -96,8 +96,7 @@ impl<'a> DepthMap<'a> {
             counts,
             rows: Vec::new(),
             corners: Vec::new(),
-            one_part: surface.repairs.self_intersections == 0
-                && surface.shells.iter().filter(|s| !s.is_cavity).count() == 1,
+            one_part: surface.repairs.self_intersections == 0 && surface.parts() == 1,
         };
         map.rows = (0..counts[1] * counts[2])
             .into_par_iter()

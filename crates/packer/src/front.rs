@@ -83,17 +83,17 @@ impl<'a> Front<'a> {
             4.0 * reduced,
             settings.most_cells,
         );
-        let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.cell;
-        let [nx, ny, nz] = grid.counts;
+        let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.lattice.cell;
+        let [nx, ny, nz] = grid.lattice.counts;
         let near_wall = (0..nx * ny * nz)
             .into_par_iter()
             .map(|at| {
                 let cell = [at % nx, at / nx % ny, at / (nx * ny)];
                 cell.iter()
-                    .zip(grid.counts)
+                    .zip(grid.lattice.counts)
                     .any(|(c, n)| *c == 0 || *c + 1 == n)
                     || !boundary.clears(
-                        &grid.centre(cell),
+                        &grid.lattice.centre(cell),
                         half_diagonal + largest * settings.wall_factor,
                     )
             })
@@ -232,8 +232,8 @@ impl<'a> Front<'a> {
         self.seeds.push(*seed);
     }
 
-    /// The part of a radius within which spheres do not overlap.
-    fn reduced(&self, radius: f64) -> f64 {
+    /// The part of a (not reduced) radius within which spheres do not overlap.
+    pub fn reduced(&self, radius: f64) -> f64 {
         radius / (1.0 + self.settings.overlap)
     }
 
@@ -250,9 +250,8 @@ impl<'a> Front<'a> {
 
     /// Whether the cell that the ball's centre lies in is near the wall.
     fn is_near_wall(&self, ball: &Ball) -> bool {
-        self.near_wall[self
-            .grid
-            .index(self.grid.cell_of(ball[0], ball[1], ball[2]))]
+        let lattice = &self.grid.lattice;
+        self.near_wall[lattice.index(lattice.cell_of(ball[0], ball[1], ball[2]))]
     }
 
     /// Advances the front from the spheres `queue` (indices of `balls`), until nothing fits around any of them and their followers.
@@ -326,17 +325,18 @@ impl<'a> Front<'a> {
     }
 
     fn shell_thickness(&self) -> f64 {
-        0.5 * self.grid.cell
+        0.5 * self.grid.lattice.cell
     }
 
     /// Colour and number of the block that a sphere's centre lies in.
     fn block_of(&self, ball: &Ball) -> (usize, usize) {
         let block = self
             .grid
+            .lattice
             .cell_of(ball[0], ball[1], ball[2])
             .map(|c| c / BLOCK);
         let colour = block[0] % 2 + 2 * (block[1] % 2) + 4 * (block[2] % 2);
-        (colour, self.grid.index(block))
+        (colour, self.grid.lattice.index(block))
     }
 
     /// Works off the front spheres of one block as far as `within` from the seed.

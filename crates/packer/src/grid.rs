@@ -1,17 +1,57 @@
-//! A dense grid of cells over the bounding box: which spheres lie near a point.
+//! A dense grid of cells over a box: which spheres lie near a point.
 
 use crate::Vector3;
+use std::ops::Range;
 
 /// A sphere as the front sees it: centre x, y, z and reduced radius r_gen, local units.
 pub type Ball = [f64; 4];
 
-/// Spheres sorted into cubic cells.
-pub struct Grid {
-    low: Vector3,
+/// Equal cubic cells over a box, numbered along x first.
+pub struct Lattice {
+    /// Smallest corner of the box, local units. Length 3.
+    pub low: [f64; 3],
     /// Edge of a cell, local units.
     pub cell: f64,
     /// Number of cells along x, y, z.
     pub counts: [usize; 3],
+}
+
+impl Lattice {
+    /// The cell of a point along each axis; points outside belong to the outermost cells.
+    pub fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
+        let p = [x, y, z];
+        [0, 1, 2]
+            .map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
+    }
+
+    /// Number of a cell.
+    pub fn index(&self, cell: [usize; 3]) -> usize {
+        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
+    }
+
+    /// Centre of a cell, local units.
+    pub fn centre(&self, cell: [usize; 3]) -> Vector3 {
+        Vector3::from([0, 1, 2].map(|k| self.low[k] + (cell[k] as f64 + 0.5) * self.cell))
+    }
+
+    /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around the point touches.
+    #[inline]
+    pub fn rows_near(&self, [x, y, z]: [f64; 3], reach: f64, mut visit: impl FnMut(Range<usize>)) {
+        let first = self.cell_of(x - reach, y - reach, z - reach);
+        let last = self.cell_of(x + reach, y + reach, z + reach);
+        for k in first[2]..=last[2] {
+            for j in first[1]..=last[1] {
+                let row = self.index([0, j, k]);
+                visit(row + first[0]..row + last[0] + 1);
+            }
+        }
+    }
+}
+
+/// Spheres sorted into cubic cells.
+pub struct Grid {
+    /// The cells.
+    pub lattice: Lattice,
     cells: Vec<Vec<Ball>>,
 }
 
@@ -23,10 +63,9 @@ impl Grid {
         loop {
             let counts = [0, 1, 2].map(|k| (((high[k] - low[k]) / cell).floor() as usize) + 1);
             if counts.iter().map(|c| *c as f64).product::<f64>() <= most_cells as f64 {
+                let low = (*low).into();
                 return Self {
-                    low: *low,
-                    cell,
-                    counts,
+                    lattice: Lattice { low, cell, counts },
                     cells: vec![Vec::new(); counts.iter().product()],
                 };
             }
@@ -34,45 +73,20 @@ impl Grid {
         }
     }
 
-    /// The cell of a point along each axis; points outside belong to the outermost cells.
-    pub fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
-        let p = [x, y, z];
-        [0, 1, 2]
-            .map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
-    }
-
-    /// Position of a cell in storage.
-    pub fn index(&self, cell: [usize; 3]) -> usize {
-        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
-    }
-
-    /// Centre of a cell, local units.
-    pub fn centre(&self, cell: [usize; 3]) -> Vector3 {
-        self.low
-            + Vector3::new(
-                cell[0] as f64 + 0.5,
-                cell[1] as f64 + 0.5,
-                cell[2] as f64 + 0.5,
-            ) * self.cell
-    }
-
     /// Adds a sphere.
     pub fn insert(&mut self, ball: Ball) {
-        let at = self.index(self.cell_of(ball[0], ball[1], ball[2]));
+        let at = self
+            .lattice
+            .index(self.lattice.cell_of(ball[0], ball[1], ball[2]));
         self.cells[at].push(ball);
     }
 
     /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the point touches.
     pub fn near(&self, x: f64, y: f64, z: f64, reach: f64, mut visit: impl FnMut(&[Ball])) {
-        let first = self.cell_of(x - reach, y - reach, z - reach);
-        let last = self.cell_of(x + reach, y + reach, z + reach);
-        for k in first[2]..=last[2] {
-            for j in first[1]..=last[1] {
-                let row = self.index([0, j, k]);
-                for cell in &self.cells[row + first[0]..=row + last[0]] {
-                    visit(cell);
-                }
+        self.lattice.rows_near([x, y, z], reach, |row| {
+            for cell in &self.cells[row] {
+                visit(cell);
             }
-        }
+        });
     }
 }

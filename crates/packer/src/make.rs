@@ -145,7 +145,7 @@ pub fn make_body(
         parts: if surface.repairs.self_intersections > 0 {
             1
         } else {
-            surface.shells.iter().filter(|s| !s.is_cavity).count()
+            surface.parts()
         },
     })?;
     quality

@@ -159,7 +159,7 @@ pub fn pack(
         settings,
         &seed,
         share > 0.0,
-        2.0 * front.settings.radius_range[1] / (1.0 + settings.overlap),
+        2.0 * front.reduced(front.settings.radius_range[1]),
     );
     run_fronts(
         &mut front,
@@ -323,7 +323,7 @@ fn run_fronts(
     // What no front has reached: other shells, and rooms behind a neck narrower than a sphere.
     for place in inner {
         let smallest = front.smallest_next();
-        let reduced = smallest / (1.0 + front.settings.overlap);
+        let reduced = front.reduced(smallest);
         if place.radius < 0.5 * smallest || front.gap(&place.centre, reduced) < 0.9 * reduced {
             continue;
         }
@@ -349,7 +349,7 @@ fn run_fronts(
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
 fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -> Range<u32> {
     let radii = front.next_radii();
-    let reduced = radii.map(|r| r / (1.0 + front.settings.overlap));
+    let reduced = radii.map(|r| front.reduced(r));
     let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
         front.fits(centre, radius) && is_inside(boundary, centre)
     });

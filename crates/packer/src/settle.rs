@@ -11,7 +11,7 @@
 
 mod near;
 
-use self::near::{Near, squared_distance};
+use self::near::{CHUNK, Near, squared_distance};
 use crate::Vector3;
 use crate::boundary::Boundary;
 use crate::grid::Ball;
@@ -39,8 +39,6 @@ const FEW_NEIGHBOURS: f64 = 10.0;
 const BEYOND: f64 = 0.9;
 /// No sphere moves farther in a step, in mean radii: centres that begin almost on each other are not shot through a wall.
 const LARGEST_MOVE: f64 = 0.2;
-/// Spheres handled by one task.
-const CHUNK: usize = 1024;
 
 /// Steps before spheres are taken out, at first and then between one time and the next.
 const PATIENCE: [usize; 2] = [1500, 200];
@@ -218,6 +216,7 @@ impl<'a> State<'a> {
         *self = Self::new(boundary, std::mem::take(&mut self.balls), self.enlarge);
         worst.len()
     }
+
     /// Lists, for each sphere, the others that could come to touch it before the lists are made again.
     fn list_neighbours(&mut self) {
         let balls = &self.balls;

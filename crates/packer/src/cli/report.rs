@@ -27,14 +27,14 @@ pub(super) fn surface_text(surface: &Surface) -> String {
         .map(|e| show_length(e * surface.unit_m))
         .join(" x ");
     let corner = surface.origin_m.map(show_length).join(", ");
-    let cavities = surface.shells.iter().filter(|s| s.is_cavity).count();
+    let parts = surface.parts();
     let mut text = format!(
-        "{}\n  surface     {} triangles, {} corners, closed\n  size        {size}, from ({corner})\n  volume      {} mm3\n  parts       {}, cavities {cavities}\n",
+        "{}\n  surface     {} triangles, {} corners, closed\n  size        {size}, from ({corner})\n  volume      {} mm3\n  parts       {parts}, cavities {}\n",
         surface.source,
         surface.triangles.len(),
         surface.vertices.len(),
         significant(surface.volume_m3() * 1e9, 6),
-        surface.shells.len() - cavities,
+        surface.shells.len() - parts,
     );
     for warning in &surface.warnings {
         text += &format!("  note        {warning}\n");

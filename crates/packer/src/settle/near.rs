@@ -2,13 +2,13 @@
 
 use crate::Vector3;
 use crate::boundary::Boundary;
-use crate::grid::Ball;
+use crate::grid::{Ball, Lattice};
 use rayon::prelude::*;
 
 /// Cells of a search at most, for each sphere.
 const MOST_CELLS_PER_SPHERE: f64 = 8.0;
 /// Spheres handled by one task.
-const CHUNK: usize = 1024;
+pub(super) const CHUNK: usize = 1024;
 
 /// What each sphere could come to touch before the lists are made again: other spheres, triangles of the wall.
 #[derive(Default)]
@@ -109,9 +109,8 @@ fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
 
 /// Spheres sorted by cell (counting sort), for one search.
 struct Cells {
-    low: [f64; 3],
-    cell: f64,
-    counts: [usize; 3],
+    lattice: Lattice,
+    /// For each cell where its spheres begin; and where the last ends.
     first: Vec<u32>,
     balls: Vec<Ball>,
     numbers: Vec<u32>,
@@ -126,16 +125,15 @@ impl Cells {
         let cell = cell.max((volume / most).cbrt());
         let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
         let mut cells = Self {
-            low,
-            cell,
-            counts,
+            lattice: Lattice { low, cell, counts },
             first: vec![0; counts.iter().product::<usize>() + 1],
             balls: vec![[0.0; 4]; balls.len()],
             numbers: vec![0; balls.len()],
         };
         let at: Vec<u32> = balls
             .iter()
-            .map(|b| cells.index(cells.cell_of(b)) as u32)
+            .map(|b| cells.lattice.cell_of(b[0], b[1], b[2]))
+            .map(|cell| cells.lattice.index(cell) as u32)
             .collect();
         for a in &at {
             cells.first[*a as usize + 1] += 1;
@@ -153,27 +151,12 @@ impl Cells {
         cells
     }
 
-    fn cell_of(&self, ball: &Ball) -> [usize; 3] {
-        [0, 1, 2].map(|k| {
-            (((ball[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1)
-        })
-    }
-
-    fn index(&self, cell: [usize; 3]) -> usize {
-        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
-    }
-
     /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of `ball`, and their numbers.
     fn near(&self, ball: &Ball, reach: f64, mut visit: impl FnMut(&[Ball], &[u32])) {
-        let low = self.cell_of(&ball.map(|x| x - reach));
-        let high = self.cell_of(&ball.map(|x| x + reach));
-        for z in low[2]..=high[2] {
-            for y in low[1]..=high[1] {
-                let row = self.index([0, y, z]);
-                let of_row =
-                    self.first[row + low[0]] as usize..self.first[row + high[0] + 1] as usize;
-                visit(&self.balls[of_row.clone()], &self.numbers[of_row]);
-            }
-        }
+        self.lattice
+            .rows_near([ball[0], ball[1], ball[2]], reach, |row| {
+                let spheres = self.first[row.start] as usize..self.first[row.end] as usize;
+                visit(&self.balls[spheres.clone()], &self.numbers[spheres]);
+            });
     }
 }
