@@ -6,6 +6,7 @@
 pub mod body;
 pub mod diagnostic;
 pub mod safe_write;
+pub mod scene;
 pub mod stl;
 pub mod surface;
 pub mod units;

@@ -2,3 +2,16 @@
 
 pub mod stiffness;
 pub mod total;
+
+/// What a bond carries.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondLoad {
+    /// Along the bond, tension positive, N.
+    pub normal_n: f64,
+    /// Across it, N. Not negative.
+    pub shear_n: f64,
+    /// Torsional moment, N m. Not negative.
+    pub torsion_n_m: f64,
+    /// Bending moment, N m. Not negative.
+    pub bending_n_m: f64,
+}
