@@ -86,6 +86,23 @@ proptest! {
     }
 
     #[test]
+    fn half_of_load_times_deformation_is_the_energy_of_each_mode((k, direction, ends) in bond()) {
+        let BondForces { energy, load, .. } = bond_forces(&k, &direction, &ends);
+        let modes = [
+            (energy.normal, load.normal_n, k.normal),
+            (energy.shear, load.shear_n, k.shear),
+            (energy.torsion, load.torsion_n_m, k.torsion),
+            (energy.bending, load.bending_n_m, k.bending),
+        ];
+        for (energy, load, k) in modes {
+            prop_assert!((0.5 * load * load / k - energy).abs() <= 1e-14 * energy);
+        }
+        prop_assert!(load.shear_n >= 0.0 && load.torsion_n_m >= 0.0 && load.bending_n_m >= 0.0);
+        let length = (ends[1].position_m - ends[0].position_m).norm();
+        prop_assert_eq!(load.normal_n > 0.0, length > 1.0);
+    }
+
+    #[test]
     fn it_does_not_matter_which_end_is_named_first((k, direction, ends) in bond()) {
         let forward = bond_forces(&k, &direction, &ends);
         let [a, b] = k.levers_m;

@@ -9,6 +9,7 @@
 //! phi is twice the vector part of the relative quaternion: 2 sin(angle/2) along the axis. It needs no trigonometry and differs from the
 //! rotation vector in third order only.
 
+use super::BondLoad;
 use super::stiffness::Stiffness;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -50,9 +51,14 @@ pub struct BondForces {
     pub torques: [Vector3<f64>; 2],
     /// Energy stored, J.
     pub energy: BondEnergy,
+    /// What it carries, mode by mode: each stiffness times its deformation, so half of load times deformation is the energy of the mode.
+    pub load: BondLoad,
 }
 
 /// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
+///
+/// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and load the caller does not read is not computed.
+#[inline(always)]
 pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
     let [a, b] = ends;
     let [lever_a, lever_b] = stiffness.levers_m;
@@ -68,11 +74,7 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
 
     let relative = b.turned.quaternion() * a.turned.quaternion().conjugate();
     // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.
-    let relative = if relative.w < 0.0 {
-        -relative
-    } else {
-        relative
-    };
+    let relative = relative * 1.0_f64.copysign(relative.w);
     let (cosine, half_phi) = (relative.w, relative.imag());
     let phi = 2.0 * half_phi;
     let sum = direction_a + direction_b;
@@ -83,7 +85,8 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
 
     // Gradients of the energy with respect to phi and e; a change of e is a change of the sum, across it.
     let by_phi = stiffness.bending * phi + excess * twist * e;
-    let by_sum = (excess * twist / sum_length) * (phi - twist * e);
+    let bend = phi - twist * e;
+    let by_sum = (excess * twist / sum_length) * bend;
     let turn = cosine * by_phi;
     let swing = half_phi.cross(&by_phi);
 
@@ -98,7 +101,13 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
             normal: 0.5 * stiffness.normal * stretch * stretch,
             shear: 0.5 * stiffness.shear * across.norm_squared(),
             torsion: 0.5 * stiffness.torsion * twist * twist,
-            bending: 0.5 * stiffness.bending * (phi.norm_squared() - twist * twist),
+            bending: 0.5 * stiffness.bending * bend.norm_squared(),
+        },
+        load: BondLoad {
+            normal_n: stiffness.normal * stretch,
+            shear_n: stiffness.shear * across.norm(),
+            torsion_n_m: stiffness.torsion * twist.abs(),
+            bending_n_m: stiffness.bending * bend.norm(),
         },
     }
 }
