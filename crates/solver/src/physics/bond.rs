@@ -1,5 +1,6 @@
 //! Elastic bonds between two spheres.
 
+pub mod failure;
 pub mod stiffness;
 pub mod total;
 

@@ -6,5 +6,6 @@
     reason = "a test stops where it fails"
 )]
 
+mod failure;
 mod stiffness;
 mod total;

@@ -1,0 +1,107 @@
+//! When a bond breaks: stresses from its own forces and moments against strengths.
+//!
+//! Sources: MUSEN's elastic solid bond (normal and shear strength); Platzer 2022, eqs. 11-13 (von Mises).
+//!
+//! MUSEN's normal force is a magnitude: with `compressive`, pressing and pulling count alike. The thesis' eqs. 11 and 12 speak of strains of
+//! the bond; here the same stresses come from its forces and moments, each with its own stiffness. A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
+
+use super::BondLoad;
+use std::f64::consts::PI;
+
+/// Strengths of a bond. An infinite strength is not asked for; several may act together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Criteria {
+    /// MUSEN's normal strength: largest normal stress of axial force and bending, Pa.
+    pub tension_pa: f64,
+    /// MUSEN's shear strength: largest shear stress of shear force and torsion, Pa.
+    pub shear_pa: f64,
+    /// The thesis' equivalent stress, in which the axial part counts only while it pulls, Pa.
+    pub von_mises_pa: f64,
+    /// Whether MUSEN's normal strength also holds while the bond is pressed.
+    pub compressive: bool,
+}
+
+/// Largest stresses in the section of a bond, each from one mode.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Stresses {
+    /// F_n / A, tension positive, Pa.
+    pub axial_pa: f64,
+    /// M_ben r / I, Pa. Not negative.
+    pub bending_pa: f64,
+    /// F_s / A, Pa. Not negative.
+    pub shear_pa: f64,
+    /// M_tor r / J, Pa. Not negative.
+    pub torsion_pa: f64,
+}
+
+/// Which criterion a bond failed by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// Normal strength, while pulled.
+    Tension,
+    /// Normal strength, while pressed.
+    Compression,
+    /// Shear strength.
+    Shear,
+    /// Equivalent stress.
+    VonMises,
+}
+
+/// Stresses in a bond of this radius under this load.
+#[inline(always)]
+pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
+    let per_area = 1.0 / (PI * radius_m * radius_m);
+    // 1 / (A r), without a second division.
+    let per_area_radius = PI * radius_m * per_area * per_area;
+    Stresses {
+        axial_pa: load.normal_n * per_area,
+        bending_pa: 4.0 * load.bending_n_m * per_area_radius,
+        shear_pa: load.shear_n * per_area,
+        torsion_pa: 2.0 * load.torsion_n_m * per_area_radius,
+    }
+}
+
+/// Largest share of a strength that is used; the bond breaks at 1.
+///
+/// `strength_factor` multiplies all strengths: scatter times rate strengthening. As neither the stresses nor the strengths depend on it, a loop
+/// over bonds may leave out a factor that is never below 1, and compute it for the few bonds that would break without it.
+#[inline(always)]
+pub fn utilisation(criteria: &Criteria, stresses: &Stresses, strength_factor: f64) -> f64 {
+    let [normal, shear, von_mises] = shares(criteria, stresses);
+    normal.max(shear).max(von_mises) / strength_factor
+}
+
+/// The criterion of which the largest share is used.
+pub fn cause(criteria: &Criteria, stresses: &Stresses) -> Cause {
+    let [normal, shear, von_mises] = shares(criteria, stresses);
+    if normal >= shear && normal >= von_mises {
+        if stresses.axial_pa >= 0.0 {
+            Cause::Tension
+        } else {
+            Cause::Compression
+        }
+    } else if shear >= von_mises {
+        Cause::Shear
+    } else {
+        Cause::VonMises
+    }
+}
+
+/// Normal, shear and equivalent stress, each over its strength.
+#[inline(always)]
+fn shares(criteria: &Criteria, stresses: &Stresses) -> [f64; 3] {
+    let counts = criteria.compressive || stresses.axial_pa > 0.0;
+    let normal = if counts {
+        stresses.axial_pa.abs() + stresses.bending_pa
+    } else {
+        0.0
+    };
+    let shear = stresses.shear_pa + stresses.torsion_pa;
+    let pulled = stresses.axial_pa.max(0.0) + stresses.bending_pa;
+    let von_mises = (pulled * pulled + 3.0 * shear * shear).sqrt();
+    [
+        normal / criteria.tension_pa,
+        shear / criteria.shear_pa,
+        von_mises / criteria.von_mises_pa,
+    ]
+}
