@@ -1,5 +1,6 @@
 //! Elastic bonds between two spheres.
 
+pub mod damping;
 pub mod failure;
 pub mod stiffness;
 pub mod total;

@@ -6,6 +6,7 @@
     reason = "a test stops where it fails"
 )]
 
+mod damping;
 mod failure;
 mod stiffness;
 mod total;

@@ -1,0 +1,145 @@
+//! Viscous damping of bonds: four coefficients, one for each mode, whatever rule they come from. Rules may be added.
+//!
+//! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
+
+use super::stiffness::Stiffness;
+use nalgebra::Vector3;
+use std::ops::Add;
+
+/// Damping force or moment per relative speed at the contact point, mode by mode.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DampingCoefficients {
+    /// Along the bond, N s/m.
+    pub normal: f64,
+    /// Across it, N s/m.
+    pub shear: f64,
+    /// About the bond, N m s/rad.
+    pub torsion: f64,
+    /// About axes across it, N m s/rad.
+    pub bending: f64,
+}
+
+impl Add for DampingCoefficients {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            normal: self.normal + other.normal,
+            shear: self.shear + other.shear,
+            torsion: self.torsion + other.torsion,
+            bending: self.bending + other.bending,
+        }
+    }
+}
+
+/// Reduced mass and moment of inertia of the two ends of a bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reduced {
+    /// m_a m_b / (m_a + m_b), kg.
+    pub mass_kg: f64,
+    /// I_a I_b / (I_a + I_b), kg m^2.
+    pub inertia_kg_m2: f64,
+}
+
+/// Reduced mass and inertia of two ends, from one over mass and one over moment of inertia: 0 for an end that is held. Between two held ends both are 0, so nothing is damped.
+#[inline(always)]
+pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced {
+    let reduced = |[a, b]: [f64; 2]| if a + b > 0.0 { 1.0 / (a + b) } else { 0.0 };
+    Reduced {
+        mass_kg: reduced(inverse_masses),
+        inertia_kg_m2: reduced(inverse_inertias),
+    }
+}
+
+/// [Chen 9, 10]: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2 k_tor I_red) about all axes.
+#[inline(always)]
+pub fn chen(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
+    let force = 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt();
+    let moment = 2.0 * eta * (2.0 * stiffness.torsion * reduced.inertia_kg_m2).sqrt();
+    DampingCoefficients {
+        normal: force,
+        shear: force,
+        torsion: moment,
+        bending: moment,
+    }
+}
+
+/// As [`chen`], but 2 eta sqrt(k m_red), 2 eta sqrt(k I_red) with the stiffness k of each mode, and without the 2 under the root of eq. 10.
+/// eta is then the share of critical damping of each mode of two particles that is not coupled to another (stretch, torsion).
+#[inline(always)]
+pub fn chen_by_mode(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
+    DampingCoefficients {
+        normal: 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt(),
+        shear: 2.0 * eta * (stiffness.shear * reduced.mass_kg).sqrt(),
+        torsion: 2.0 * eta * (stiffness.torsion * reduced.inertia_kg_m2).sqrt(),
+        bending: 2.0 * eta * (stiffness.bending * reduced.inertia_kg_m2).sqrt(),
+    }
+}
+
+/// [Platzer 7, 9]: `coefficient_n_s_m` times the whole relative velocity, and `moment_factor` (1 as printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
+///
+/// The thesis' table 1 gives its coefficient without a unit; eq. 7 needs N s/m.
+#[inline(always)]
+pub fn platzer(
+    stiffness: &Stiffness,
+    reduced: &Reduced,
+    coefficient_n_s_m: f64,
+    moment_factor: f64,
+) -> DampingCoefficients {
+    DampingCoefficients {
+        normal: coefficient_n_s_m,
+        shear: coefficient_n_s_m,
+        torsion: moment_factor * (stiffness.torsion * reduced.inertia_kg_m2).sqrt(),
+        bending: moment_factor * (stiffness.bending * reduced.inertia_kg_m2).sqrt(),
+    }
+}
+
+/// How an end of a bond moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndMotion {
+    /// Velocity of the centre, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Spin, rad/s.
+    pub spin_rad_s: Vector3<f64>,
+}
+
+/// What damping does to the ends of a bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DampingForces {
+    /// Force on the second end, N. The first end feels the opposite.
+    pub force_on_b: Vector3<f64>,
+    /// Torques on the two ends, N m.
+    pub torques: [Vector3<f64>; 2],
+}
+
+/// Damping of a bond now `length_m` long along the unit vector `c` from a to b. Its contact point splits the length as the `levers_m` do the initial one.
+///
+/// The bond is turned by nothing as a whole, gives no force while it moves as a rigid body, and never adds energy.
+#[inline(always)]
+pub fn damping_forces(
+    coefficients: &DampingCoefficients,
+    levers_m: &[f64; 2],
+    c: &Vector3<f64>,
+    length_m: f64,
+    ends: &[EndMotion; 2],
+) -> DampingForces {
+    let [a, b] = ends;
+    let [lever_a, lever_b] = *levers_m;
+    let scale = length_m / (lever_a + lever_b);
+    let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
+    let velocity =
+        b.velocity_m_s - a.velocity_m_s - a.spin_rad_s.cross(&arm_a) - b.spin_rad_s.cross(&arm_b);
+    let spin = b.spin_rad_s - a.spin_rad_s;
+    let force = split(coefficients.normal, coefficients.shear, &velocity, c);
+    let moment = split(coefficients.torsion, coefficients.bending, &spin, c);
+    DampingForces {
+        force_on_b: -force,
+        torques: [moment + arm_a.cross(&force), arm_b.cross(&force) - moment],
+    }
+}
+
+/// `along` times the part of a vector along `c` plus `across` times the rest.
+#[inline(always)]
+fn split(along: f64, across: f64, vector: &Vector3<f64>, c: &Vector3<f64>) -> Vector3<f64> {
+    across * vector + c * ((along - across) * vector.dot(c))
+}
