@@ -3,6 +3,7 @@
 pub mod damping;
 pub mod failure;
 pub mod stiffness;
+pub mod strain_rate;
 pub mod total;
 
 /// What a bond carries.

@@ -9,4 +9,5 @@
 mod damping;
 mod failure;
 mod stiffness;
+mod strain_rate;
 mod total;
