@@ -8,6 +8,7 @@
 
 mod damping;
 mod failure;
+mod scatter;
 mod stiffness;
 mod strain_rate;
 mod total;
