@@ -2,3 +2,5 @@
 
 pub mod cli;
 pub mod physics;
+pub mod stages;
+pub mod state;

@@ -1,3 +1,4 @@
 //! Physics as functions of plain numbers: nothing here knows of storage, threads, files or scenes.
 
 pub mod bond;
+pub mod rigid;

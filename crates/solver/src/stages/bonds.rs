@@ -1,0 +1,278 @@
+//! Forces of the bonds on the particles, total formulation.
+//!
+//! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
+//! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
+
+use std::ops::Range;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::physics::bond::failure::{Criteria, stresses, utilisation};
+use crate::physics::bond::stiffness::Stiffness;
+use crate::physics::bond::total::{End, bond_forces};
+use crate::state::bonds::Bonds;
+use crate::state::particles::{Pose, Wrench};
+use crate::state::shares::{Batch, Share, Which};
+
+/// Bonds in a block.
+const BLOCK: usize = 32;
+
+/// One number of each bond of a block.
+type Column = [f64; BLOCK];
+/// Four numbers of each bond of a block.
+type Rows = [[f64; 4]; BLOCK];
+
+/// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
+pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
+    match shares {
+        [] => {}
+        [share] => pulp::Arch::new().dispatch(ShareWork {
+            bonds,
+            poses,
+            share,
+            wrenches,
+        }),
+        _ => {
+            let (left, right) = shares.split_at_mut(shares.len() / 2);
+            let count = right[0].particles.start - left[0].particles.start;
+            let (of_left, of_right) = wrenches.split_at_mut(count);
+            rayon::join(
+                || bond_wrenches(bonds, poses, left, of_left),
+                || bond_wrenches(bonds, poses, right, of_right),
+            );
+        }
+    }
+}
+
+/// The work on one share: a call that is compiled for AVX2 as well.
+struct ShareWork<'a> {
+    bonds: &'a Bonds,
+    poses: &'a [Pose],
+    share: &'a mut Share,
+    /// Of the share's particles only.
+    wrenches: &'a mut [Wrench],
+}
+
+impl pulp::NullaryFnOnce for ShareWork<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Share {
+            particles,
+            batches,
+            failing,
+        } = self.share;
+        failing.clear();
+        self.wrenches.fill(Wrench::default());
+        let mut block = Block::new();
+        for Batch { rule, which } in batches.iter() {
+            let rule = &self.bonds.rules[*rule];
+            if rule.incremental {
+                continue;
+            }
+            match which {
+                Which::Border(list) => {
+                    for some in list.chunks(BLOCK) {
+                        block.gather_some(self.bonds, some, self.poses);
+                        block.compute();
+                        let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
+                        block.add_to_second(ends, self.wrenches, particles.start);
+                    }
+                }
+                Which::Run(range) => {
+                    let mut first = range.start;
+                    while first < range.end {
+                        let run = first..(first + BLOCK).min(range.end);
+                        block.gather_run(self.bonds, run.clone(), self.poses);
+                        block.compute();
+                        let ends = &self.bonds.ends[run.clone()];
+                        block.add_to_both(ends, self.wrenches, particles);
+                        if let Some(criteria) = &rule.criteria {
+                            block.check(criteria, self.bonds, run, failing);
+                        }
+                        first += BLOCK;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What a block of bonds needs, and what comes of it.
+struct Block {
+    apart: Rows,
+    turned: [Rows; 2],
+    direction: [Column; 3],
+    levers: [Column; 2],
+    normal: Column,
+    shear: Column,
+    torsion: Column,
+    bending: Column,
+    radius: Column,
+    force_on_b: Rows,
+    torques: [Rows; 2],
+    /// Normal, shear, torsion, bending.
+    load: [Column; 4],
+}
+
+impl Block {
+    fn new() -> Self {
+        let column = [0.0; BLOCK];
+        let rows = [[0.0; 4]; BLOCK];
+        Self {
+            apart: rows,
+            turned: [rows; 2],
+            direction: [column; 3],
+            levers: [column; 2],
+            normal: column,
+            shear: column,
+            torsion: column,
+            bending: column,
+            radius: [1.0; BLOCK],
+            force_on_b: rows,
+            torques: [rows; 2],
+            load: [column; 4],
+        }
+    }
+
+    /// The columns that are copied, and where from.
+    #[inline(always)]
+    fn columns<'a>(&'a mut self, bonds: &'a Bonds) -> [(&'a mut Column, &'a [f64]); 10] {
+        let [x, y, z] = &mut self.direction;
+        let [lever_a, lever_b] = &mut self.levers;
+        [
+            (x, &bonds.direction[0]),
+            (y, &bonds.direction[1]),
+            (z, &bonds.direction[2]),
+            (lever_a, &bonds.levers_m[0]),
+            (lever_b, &bonds.levers_m[1]),
+            (&mut self.normal, &bonds.normal),
+            (&mut self.shear, &bonds.shear),
+            (&mut self.torsion, &bonds.torsion),
+            (&mut self.bending, &bonds.bending),
+            (&mut self.radius, &bonds.radii_m),
+        ]
+    }
+
+    #[inline(always)]
+    fn gather_run(&mut self, bonds: &Bonds, run: Range<usize>, poses: &[Pose]) {
+        for (to, from) in self.columns(bonds) {
+            to[..run.len()].copy_from_slice(&from[run.clone()]);
+        }
+        self.gather_ends(bonds.ends[run].iter().copied(), poses);
+    }
+
+    #[inline(always)]
+    fn gather_some(&mut self, bonds: &Bonds, some: &[u32], poses: &[Pose]) {
+        for (to, from) in self.columns(bonds) {
+            for (to, &at) in to.iter_mut().zip(some) {
+                *to = from[at as usize];
+            }
+        }
+        self.gather_ends(some.iter().map(|&at| bonds.ends[at as usize]), poses);
+    }
+
+    #[inline(always)]
+    fn gather_ends(&mut self, ends: impl Iterator<Item = [u32; 2]>, poses: &[Pose]) {
+        for (i, [a, b]) in (0..BLOCK).zip(ends) {
+            let (a, b) = (&poses[a as usize], &poses[b as usize]);
+            self.apart[i] = [0, 1, 2, 3].map(|k| b.position_m[k] - a.position_m[k]);
+            self.turned[0][i] = a.turned;
+            self.turned[1][i] = b.turned;
+        }
+    }
+
+    /// Forces, torques and loads. What is left of an earlier block at the end of a shorter one does no harm.
+    #[inline(always)]
+    fn compute(&mut self) {
+        for i in 0..BLOCK {
+            let turned = |q: &[f64; 4]| {
+                UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
+            };
+            let apart = self.apart[i];
+            let ends = [
+                End {
+                    position_m: Vector3::zeros(),
+                    turned: turned(&self.turned[0][i]),
+                },
+                End {
+                    position_m: Vector3::new(apart[0], apart[1], apart[2]),
+                    turned: turned(&self.turned[1][i]),
+                },
+            ];
+            let stiffness = Stiffness {
+                normal: self.normal[i],
+                shear: self.shear[i],
+                torsion: self.torsion[i],
+                bending: self.bending[i],
+                levers_m: [self.levers[0][i], self.levers[1][i]],
+            };
+            let [x, y, z] = &self.direction;
+            let direction = Vector3::new(x[i], y[i], z[i]);
+            let forces = bond_forces(&stiffness, &direction, &ends);
+            let row = |v: &Vector3<f64>| [v.x, v.y, v.z, 0.0];
+            self.force_on_b[i] = row(&forces.force_on_b);
+            self.torques[0][i] = row(&forces.torques[0]);
+            self.torques[1][i] = row(&forces.torques[1]);
+            self.load[0][i] = forces.load.normal_n;
+            self.load[1][i] = forces.load.shear_n;
+            self.load[2][i] = forces.load.torsion_n_m;
+            self.load[3][i] = forces.load.bending_n_m;
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_both(&self, ends: &[[u32; 2]], wrenches: &mut [Wrench], particles: &Range<usize>) {
+        for (i, &[a, b]) in (0..BLOCK).zip(ends) {
+            let a = &mut wrenches[a as usize - particles.start];
+            for k in 0..4 {
+                a.force_n[k] -= self.force_on_b[i][k];
+                a.torque_n_m[k] += self.torques[0][i][k];
+            }
+            if (b as usize) < particles.end {
+                self.add_to_b(i, &mut wrenches[b as usize - particles.start]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_second(
+        &self,
+        ends: impl Iterator<Item = [u32; 2]>,
+        wrenches: &mut [Wrench],
+        start: usize,
+    ) {
+        for (i, [_, b]) in (0..BLOCK).zip(ends) {
+            self.add_to_b(i, &mut wrenches[b as usize - start]);
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_b(&self, i: usize, b: &mut Wrench) {
+        for k in 0..4 {
+            b.force_n[k] += self.force_on_b[i][k];
+            b.torque_n_m[k] += self.torques[1][i][k];
+        }
+    }
+
+    /// Lists the bonds that have reached their strength, before any strengthening by rate.
+    #[inline(always)]
+    fn check(&mut self, criteria: &Criteria, bonds: &Bonds, run: Range<usize>, failing: &mut Vec<u32>) {
+        let mut used = [0.0; BLOCK];
+        for i in 0..BLOCK {
+            let load = crate::physics::bond::BondLoad {
+                normal_n: self.load[0][i],
+                shear_n: self.load[1][i],
+                torsion_n_m: self.load[2][i],
+                bending_n_m: self.load[3][i],
+            };
+            used[i] = utilisation(criteria, &stresses(&load, self.radius[i]), 1.0);
+        }
+        for (i, at) in (0..BLOCK).zip(run) {
+            if used[i] >= bonds.strength_factor(at) {
+                failing.push(at as u32);
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Kick and drift: forces change velocities, velocities change places.
+//!
+//! Velocities stand halfway between two steps (leapfrog), which is kick-drift-kick with the second kick of a step and the first of the next in one.
+
+use rayon::prelude::*;
+
+use crate::physics::rigid::turn;
+use crate::state::particles::{Motion, Particles, Wrench};
+
+/// Particles handled by one task.
+pub const CHUNK: usize = 1024;
+
+/// Velocities changed by the wrenches, and by `resisting` ones if there are any (one for each particle), and by gravity over the time `kick_s`.
+pub fn kick(particles: &mut Particles, resisting: &[Wrench], gravity_m_s2: [f64; 3], kick_s: f64) {
+    let Particles {
+        motions,
+        wrenches,
+        inverse_masses,
+        inverse_inertias,
+        ..
+    } = particles;
+    motions
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, motions)| {
+            let first = chunk * CHUNK;
+            for (i, motion) in (first..).zip(motions) {
+                let per_mass = kick_s * inverse_masses[i];
+                let per_inertia = kick_s * inverse_inertias[i];
+                let wrench = &wrenches[i];
+                for k in 0..3 {
+                    motion.velocity_m_s[k] +=
+                        per_mass * wrench.force_n[k] + kick_s * gravity_m_s2[k];
+                    motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
+                }
+                if let Some(wrench) = resisting.get(i) {
+                    for k in 0..3 {
+                        motion.velocity_m_s[k] += per_mass * wrench.force_n[k];
+                        motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
+                    }
+                }
+            }
+        });
+}
+
+/// Places and orientations after moving on for `time_step_s`.
+pub fn drift(particles: &mut Particles, time_step_s: f64) {
+    let Particles { poses, motions, .. } = particles;
+    poses
+        .par_chunks_mut(CHUNK)
+        .zip(motions.par_chunks(CHUNK))
+        .for_each(|(poses, motions)| {
+            for (pose, motion) in poses.iter_mut().zip(motions) {
+                for k in 0..3 {
+                    pose.position_m[k] += time_step_s * motion.velocity_m_s[k];
+                }
+                pose.turned = turn(
+                    pose.turned,
+                    motion.spin_rad_s.map(|spin| spin * time_step_s),
+                );
+            }
+        });
+}
+
+/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each component of force and torque, against the motion.
+/// `total` is what moves the particle: its wrench, with gravity.
+pub fn add_particle_damping(
+    particles: &Particles,
+    gravity_m_s2: [f64; 3],
+    gamma: f64,
+    resisting: &mut [Wrench],
+) {
+    resisting
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, resisting)| {
+            for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
+                let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
+                let weight = gravity_m_s2.map(|g| g / particles.inverse_masses[i]);
+                for k in 0..3 {
+                    let force = wrench.force_n[k] + weight[k];
+                    resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);
+                    resisting.torque_n_m[k] -=
+                        gamma * against(wrench.torque_n_m[k], motion.spin_rad_s[k]);
+                }
+            }
+        });
+}
+
+/// The magnitude of a force with the sign of a velocity; nothing at rest.
+fn against(force: f64, velocity: f64) -> f64 {
+    if velocity == 0.0 {
+        0.0
+    } else {
+        force.abs().copysign(velocity)
+    }
+}
+
+/// Power of wrenches on particles moving so, W. The sum keeps its order for any number of threads.
+pub fn power_w(wrenches: &[Wrench], motions: &[Motion]) -> f64 {
+    ordered_sum(wrenches.len(), |i| {
+        let (wrench, motion) = (&wrenches[i], &motions[i]);
+        (0..3)
+            .map(|k| {
+                wrench.force_n[k] * motion.velocity_m_s[k]
+                    + wrench.torque_n_m[k] * motion.spin_rad_s[k]
+            })
+            .sum()
+    })
+}
+
+/// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
+pub fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let of_chunk = |chunk: usize| {
+        let end = ((chunk + 1) * CHUNK).min(count);
+        (chunk * CHUNK..end).map(&term).sum::<f64>()
+    };
+    (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(of_chunk)
+        .collect::<Vec<f64>>()
+        .iter()
+        .sum()
+}

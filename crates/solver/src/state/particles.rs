@@ -1,0 +1,74 @@
+//! Particles: one entry per sphere in every array.
+
+/// Where a particle is and how it is turned. One cache line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Pose {
+    /// Centre, m: x, y, z and a 0 that makes four.
+    pub position_m: [f64; 4],
+    /// Rotation since the start as a unit quaternion x, y, z, w. Length 4.
+    pub turned: [f64; 4],
+}
+
+/// How a particle moves, half a step after its pose (leapfrog).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Motion {
+    /// m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// rad/s. Length 3.
+    pub spin_rad_s: [f64; 3],
+}
+
+/// What acts on a particle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(align(64))]
+pub struct Wrench {
+    /// N: x, y, z and a 0 that makes four.
+    pub force_n: [f64; 4],
+    /// About the centre, N m: x, y, z and a 0 that makes four.
+    pub torque_n_m: [f64; 4],
+}
+
+/// All particles of a scene. Those of a body stand together, near ones near each other.
+#[derive(Debug, Clone, Default)]
+pub struct Particles {
+    /// Where they are.
+    pub poses: Vec<Pose>,
+    /// How they move.
+    pub motions: Vec<Motion>,
+    /// What acts on them in this step.
+    pub wrenches: Vec<Wrench>,
+    /// 1/mass, 1/kg.
+    pub inverse_masses: Vec<f64>,
+    /// 1/moment of inertia, 1/(kg m2).
+    pub inverse_inertias: Vec<f64>,
+    /// Radii, m.
+    pub radii_m: Vec<f64>,
+}
+
+impl Particles {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// Adds a sphere at rest.
+    pub fn push_sphere(&mut self, position_m: [f64; 3], radius_m: f64, density_kg_m3: f64) {
+        let mass = density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+        self.poses.push(Pose {
+            position_m: [position_m[0], position_m[1], position_m[2], 0.0],
+            turned: [0.0, 0.0, 0.0, 1.0],
+        });
+        self.motions.push(Motion::default());
+        self.wrenches.push(Wrench::default());
+        self.inverse_masses.push(1.0 / mass);
+        self.inverse_inertias
+            .push(1.0 / (0.4 * mass * radius_m * radius_m));
+        self.radii_m.push(radius_m);
+    }
+}

@@ -1,0 +1,112 @@
+//! Which particles and bonds each thread works on.
+//!
+//! A share is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
+//! of two shares are computed by both. So no two threads write to the same place, and every sum keeps its order for any number of shares.
+
+use std::ops::Range;
+
+use super::bonds::Bonds;
+
+/// Bonds of one rule that a share computes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Batch {
+    /// Which of [`Bonds::rules`] they follow.
+    pub rule: usize,
+    /// Which they are.
+    pub which: Which,
+}
+
+/// Which bonds a batch holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Which {
+    /// One after another; their first ends are in the share.
+    Run(Range<usize>),
+    /// These; only their second ends are in the share.
+    Border(Vec<u32>),
+}
+
+/// What one thread works on at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Share {
+    /// Its particles.
+    pub particles: Range<usize>,
+    /// Its bonds: those of the border first, so that each particle meets its bonds in their order.
+    pub batches: Vec<Batch>,
+    /// Bonds of its own that have reached their strength in this step, in order.
+    pub failing: Vec<u32>,
+}
+
+/// Divides particles and bonds into `count` shares with about the same number of bonds each; fewer where there are not enough particles.
+pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Share> {
+    // A particle costs about a third of a bond.
+    let work = 3 * bonds.len() + particles;
+    let mut first_bond = vec![0_usize; particles + 1];
+    for &[a, _] in &bonds.ends {
+        first_bond[a as usize + 1] += 1;
+    }
+    for p in 0..particles {
+        first_bond[p + 1] += first_bond[p];
+    }
+    let mut starts: Vec<usize> = (0..=count)
+        .map(|k| {
+            let wanted = work * k / count;
+            let mut low = 0;
+            let mut high = particles;
+            while low < high {
+                let middle = (low + high) / 2;
+                if 3 * first_bond[middle] + middle < wanted {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
+            }
+            low
+        })
+        .collect();
+    starts.dedup();
+    let mut shares: Vec<Share> = starts
+        .windows(2)
+        .map(|w| Share {
+            particles: w[0]..w[1],
+            batches: Vec::new(),
+            failing: Vec::new(),
+        })
+        .collect();
+    add_borders(bonds, &mut shares);
+    for share in &mut shares {
+        let own = first_bond[share.particles.start]..first_bond[share.particles.end];
+        for (rule, range) in bonds.runs(own) {
+            share.batches.push(Batch {
+                rule,
+                which: Which::Run(range),
+            });
+        }
+    }
+    shares
+}
+
+/// Gives each bond whose ends lie in two shares to the share of its second end as well.
+fn add_borders(bonds: &Bonds, shares: &mut [Share]) {
+    let mut of_first = 0;
+    for (at, &[a, b]) in bonds.ends.iter().enumerate() {
+        while shares[of_first].particles.end <= a as usize {
+            of_first += 1;
+        }
+        if (b as usize) < shares[of_first].particles.end {
+            continue;
+        }
+        let of_second = shares.partition_point(|s| s.particles.end <= b as usize);
+        let rule = bonds.rule_of(at);
+        let batches = &mut shares[of_second].batches;
+        match batches.last_mut() {
+            Some(Batch {
+                rule: last,
+                which: Which::Border(list),
+            }) if *last == rule => list.push(at as u32),
+            _ => batches.push(Batch {
+                rule,
+                which: Which::Border(vec![at as u32]),
+            }),
+        }
+    }
+}
