@@ -8,6 +8,7 @@
 
 mod damping;
 mod failure;
+mod pair;
 mod scatter;
 mod stiffness;
 mod strain_rate;
