@@ -8,6 +8,7 @@
 
 mod damping;
 mod failure;
+mod incremental;
 mod pair;
 mod scatter;
 mod stiffness;
