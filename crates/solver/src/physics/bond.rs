@@ -2,6 +2,8 @@
 
 pub mod damping;
 pub mod failure;
+pub mod incremental;
+pub mod pair;
 pub mod scatter;
 pub mod stiffness;
 pub mod strain_rate;

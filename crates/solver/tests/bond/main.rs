@@ -8,6 +8,8 @@
 
 mod damping;
 mod failure;
+mod incremental;
+mod pair;
 mod scatter;
 mod stiffness;
 mod strain_rate;
