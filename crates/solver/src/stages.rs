@@ -1,4 +1,9 @@
 //! Physics over the state, in the order of the step.
 
 pub mod bonds;
+pub mod breakage;
+pub mod damping;
+pub mod incremental;
+pub mod loads;
 pub mod motion;
+pub mod supports;

@@ -2,9 +2,15 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector3;
+
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::stiffness::Stiffness;
+use crate::physics::bond::total::{BondForces, End};
+use crate::physics::bond::{incremental, total};
+
+use super::particles::Pose;
 
 /// What the bonds of a kind have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,6 +104,23 @@ impl Bonds {
             bending: self.bending[at],
             levers_m: [self.levers_m[0][at], self.levers_m[1][at]],
         }
+    }
+
+    /// What bond `at`, which is not broken, does to its ends.
+    pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
+        let [a, b] = self.ends[at].map(|end| &poses[end as usize]);
+        let stiffness = self.stiffness(at);
+        if self.rules[self.rule_of(at)].incremental {
+            let apart = b.place() - a.place();
+            return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
+        }
+        let [x, y, z] = &self.direction;
+        let direction = Vector3::new(x[at], y[at], z[at]);
+        let ends = [a, b].map(|pose| End {
+            position_m: pose.place(),
+            turned: pose.rotation(),
+        });
+        total::bond_forces(&stiffness, &direction, &ends)
     }
 
     /// Initial length of bond `at`, m.

@@ -1,5 +1,7 @@
 //! Particles: one entry per sphere in every array.
 
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
 /// Where a particle is and how it is turned. One cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
@@ -8,6 +10,22 @@ pub struct Pose {
     pub position_m: [f64; 4],
     /// Rotation since the start as a unit quaternion x, y, z, w. Length 4.
     pub turned: [f64; 4],
+}
+
+impl Pose {
+    /// Centre, m.
+    #[inline(always)]
+    pub fn place(&self) -> Vector3<f64> {
+        let [x, y, z, _] = self.position_m;
+        Vector3::new(x, y, z)
+    }
+
+    /// Rotation since the start.
+    #[inline(always)]
+    pub fn rotation(&self) -> UnitQuaternion<f64> {
+        let [x, y, z, w] = self.turned;
+        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+    }
 }
 
 /// How a particle moves, half a step after its pose (leapfrog).
@@ -27,6 +45,17 @@ pub struct Wrench {
     pub force_n: [f64; 4],
     /// About the centre, N m: x, y, z and a 0 that makes four.
     pub torque_n_m: [f64; 4],
+}
+
+impl Wrench {
+    /// Adds a force, N, and a torque, N m.
+    #[inline(always)]
+    pub fn add(&mut self, force_n: &Vector3<f64>, torque_n_m: &Vector3<f64>) {
+        for k in 0..3 {
+            self.force_n[k] += force_n[k];
+            self.torque_n_m[k] += torque_n_m[k];
+        }
+    }
 }
 
 /// All particles of a scene. Those of a body stand together, near ones near each other.

@@ -1,0 +1,96 @@
+//! Bonds that have reached their strength break: checked once more by themselves, with the rate of their elongation where it strengthens them.
+
+use nalgebra::Vector3;
+
+use crate::physics::bond::failure::{Cause, cause, stresses, utilisation};
+use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
+use crate::physics::bond::total::BondForces;
+use crate::state::bonds::Bonds;
+use crate::state::particles::Particles;
+use crate::state::shares::Share;
+
+/// A bond that has broken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Break {
+    /// Which bond.
+    pub bond: u32,
+    /// Halfway between its ends, m. Length 3.
+    pub place_m: [f64; 3],
+    /// What it failed by.
+    pub cause: Cause,
+    /// Elastic energy that it held, J.
+    pub released_j: f64,
+}
+
+/// Breaks the bonds that the shares list, if they fail, and adds them to `broken`, in the order of the bonds.
+///
+/// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its force is taken back from what moves them on.
+pub fn break_bonds(
+    bonds: &mut Bonds,
+    particles: &mut Particles,
+    shares: &[Share],
+    half_kick_s: f64,
+    broken: &mut Vec<Break>,
+) {
+    for share in shares {
+        for &at in &share.failing {
+            let forces = bonds.forces(at as usize, &particles.poses);
+            if let Some(cause) = fails(bonds, at as usize, particles, &forces) {
+                broken.push(remove(
+                    bonds,
+                    particles,
+                    at as usize,
+                    &forces,
+                    cause,
+                    half_kick_s,
+                ));
+            }
+        }
+    }
+}
+
+fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -> Option<Cause> {
+    let rule = &bonds.rules[bonds.rule_of(at)];
+    let criteria = rule.criteria?;
+    let stresses = stresses(&forces.load, bonds.radii_m[at]);
+    let strengthening = rule.strengthening_from_1_s.map_or(1.0, |from| {
+        let [a, b] = bonds.ends[at].map(|end| end as usize);
+        let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
+        let velocities =
+            [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
+        let rate = elongation_rate(&c, &velocities, bonds.initial_length_m(at));
+        dynamic_increase_factor(rate, from)
+    });
+    let factor = bonds.strength_factor(at) * strengthening;
+    (utilisation(&criteria, &stresses, factor) >= 1.0).then(|| cause(&criteria, &stresses))
+}
+
+fn remove(
+    bonds: &mut Bonds,
+    particles: &mut Particles,
+    at: usize,
+    forces: &BondForces,
+    cause: Cause,
+    half_kick_s: f64,
+) -> Break {
+    let ends = bonds.ends[at].map(|end| end as usize);
+    let on_ends = [-forces.force_on_b, forces.force_on_b];
+    for ((end, force), torque) in ends.into_iter().zip(on_ends).zip(forces.torques) {
+        particles.wrenches[end].add(&-force, &-torque);
+        let per_mass = half_kick_s * particles.inverse_masses[end];
+        let per_inertia = half_kick_s * particles.inverse_inertias[end];
+        let motion = &mut particles.motions[end];
+        for k in 0..3 {
+            motion.velocity_m_s[k] += per_mass * force[k];
+            motion.spin_rad_s[k] += per_inertia * torque[k];
+        }
+    }
+    bonds.set_broken(at);
+    let [a, b] = ends.map(|end| particles.poses[end].place());
+    Break {
+        bond: at as u32,
+        place_m: (0.5 * (a + b)).into(),
+        cause,
+        released_j: forces.energy.total(),
+    }
+}

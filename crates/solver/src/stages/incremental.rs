@@ -1,0 +1,95 @@
+//! Forces of bonds of the incremental formulation.
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use crate::physics::bond::failure::{stresses, utilisation};
+use crate::physics::bond::incremental::{Step, advance, bond_forces};
+use crate::state::bonds::Bonds;
+use crate::state::particles::{Motion, Pose, Wrench};
+use crate::state::shares::{Batch, Share, Which};
+
+/// Brings the histories up to the present places, after a drift of `time_step_s` with these motions.
+pub fn advance_histories(bonds: &mut Bonds, poses: &[Pose], motions: &[Motion], time_step_s: f64) {
+    let mut histories = std::mem::take(&mut bonds.histories);
+    let known = &*bonds;
+    histories
+        .par_iter_mut()
+        .with_min_len(1024)
+        .enumerate()
+        .for_each(|(at, history)| {
+            if known.is_broken(at) || !known.rules[known.rule_of(at)].incremental {
+                return;
+            }
+            let [a, b] = known.ends[at].map(|end| end as usize);
+            let after = poses[b].place() - poses[a].place();
+            let velocity = |end: usize| Vector3::from(motions[end].velocity_m_s);
+            let step = Step {
+                apart_before: after - time_step_s * (velocity(b) - velocity(a)),
+                apart_after: after,
+                turns: [a, b].map(|end| time_step_s * Vector3::from(motions[end].spin_rad_s)),
+            };
+            *history = advance(&known.stiffness(at), history, &step);
+        });
+    bonds.histories = histories;
+}
+
+/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their strength to the shares' lists.
+pub fn add_incremental_wrenches(
+    bonds: &Bonds,
+    poses: &[Pose],
+    shares: &mut [Share],
+    wrenches: &mut [Wrench],
+) {
+    match shares {
+        [] => {}
+        [share] => of_share(bonds, poses, share, wrenches),
+        _ => {
+            let (left, right) = shares.split_at_mut(shares.len() / 2);
+            let count = right[0].particles.start - left[0].particles.start;
+            let (of_left, of_right) = wrenches.split_at_mut(count);
+            rayon::join(
+                || add_incremental_wrenches(bonds, poses, left, of_left),
+                || add_incremental_wrenches(bonds, poses, right, of_right),
+            );
+        }
+    }
+}
+
+fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wrench]) {
+    let Share {
+        particles: own,
+        batches,
+        failing,
+    } = share;
+    for Batch { rule, which } in batches.iter() {
+        let rule = &bonds.rules[*rule];
+        if !rule.incremental {
+            continue;
+        }
+        let mut add = |at: usize| {
+            if bonds.is_broken(at) {
+                return;
+            }
+            let [a, b] = bonds.ends[at].map(|end| end as usize);
+            let apart = poses[b].place() - poses[a].place();
+            let forces = bond_forces(&bonds.stiffness(at), &bonds.histories[at], &apart);
+            if own.contains(&a) {
+                wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
+                if let Some(criteria) = &rule.criteria {
+                    let stresses = stresses(&forces.load, bonds.radii_m[at]);
+                    if utilisation(criteria, &stresses, bonds.strength_factor(at)) >= 1.0 {
+                        failing.push(at as u32);
+                    }
+                }
+            }
+            if own.contains(&b) {
+                wrenches[b - own.start].add(&forces.force_on_b, &forces.torques[1]);
+            }
+        };
+        match which {
+            Which::Border(list) => list.iter().for_each(|&at| add(at as usize)),
+            Which::Run(range) => range.clone().for_each(&mut add),
+        }
+    }
+}
