@@ -5,11 +5,14 @@
 
 pub mod body;
 pub mod diagnostic;
+mod hash;
 pub mod safe_write;
 pub mod scene;
 pub mod stl;
 pub mod surface;
 pub mod units;
+pub mod vtk;
+mod xml;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};
