@@ -118,7 +118,7 @@ pub fn svg(plot: &Plot) -> String {
         let level = reference.map(|(value, _)| area.place([0.0, y.share(*value)])[1]);
         legend = Legend::inside(&entries, &segments, level, area);
         if legend.is_none() {
-            let below = Legend::below(&entries, area);
+            let below = Legend::below(&entries);
             area.bottom -= below.height;
             segments = segments_of(plot, [&x, &y], area);
             legend = Some(below);
@@ -309,7 +309,8 @@ fn write_labels(out: &mut String, plot: &Plot, layout: &Layout) -> std::fmt::Res
         bottom,
     } = layout.area;
     if !plot.title.is_empty() {
-        let title = shortened(&plot.title, 15.0, WIDTH - 40.0);
+        // Bold letters are wider.
+        let title = shortened(&plot.title, 17.0, WIDTH - 40.0);
         writeln!(
             out,
             "<text x=\"{:.2}\" y=\"25\" text-anchor=\"middle\" font-size=\"15\" font-weight=\"bold\">{}</text>",

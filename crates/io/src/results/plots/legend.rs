@@ -45,10 +45,7 @@ impl Legend {
         level: Option<f64>,
         area: Area,
     ) -> Option<Self> {
-        let names = entries
-            .iter()
-            .map(|entry| name_width(entry))
-            .fold(0.0, f64::max);
+        let names = entries.iter().map(name_width).fold(0.0, f64::max);
         let wide = names + SAMPLE + 3.0 * ROOM;
         let high = ROW * entries.len() as f64 + ROOM;
         if wide > 0.6 * (area.right - area.left) || high > 0.7 * (area.bottom - area.top) {
@@ -85,41 +82,32 @@ impl Legend {
         })
     }
 
-    /// A legend below the plot, in a few rows. If there are too many lines, it says how many are left out.
-    pub(super) fn below(entries: &[Entry], area: Area) -> Self {
-        let left = area.left.min(60.0);
-        let right = WIDTH - 16.0;
-        // From the first row on; moved up when the number of rows is known.
-        let mut places = Vec::new();
-        let (mut x, mut row) = (left, 0);
-        let mut more = None;
-        for (index, entry) in entries.iter().enumerate() {
-            let wide = SAMPLE + ROOM + name_width(entry);
-            if x > left && x + wide > right {
-                (x, row) = (left, row + 1);
-            }
-            let rest = entries.len() - index;
-            // The last row keeps room to say that there are more.
-            let needed = if rest > 1 && row + 1 == ROWS_BELOW {
-                wide + 90.0
-            } else {
-                wide
-            };
-            if row >= ROWS_BELOW || (row + 1 == ROWS_BELOW && x > left && x + needed > right) {
-                let row = row.min(ROWS_BELOW - 1);
-                more = Some((rest, [x, row as f64]));
-                break;
-            }
-            places.push([x, row as f64]);
-            x += wide + 2.0 * ROOM;
-        }
-        let rows = places.last().map_or(0.0, |place| place[1]) + 1.0;
+    /// A legend below the plot, in columns. If there are too many lines, it says how many are left out.
+    pub(super) fn below(entries: &[Entry]) -> Self {
+        let (left, right) = (30.0, WIDTH - 16.0);
+        let names = entries.iter().map(name_width).fold(0.0, f64::max);
+        let wide = SAMPLE + names + 3.0 * ROOM;
+        let columns = ((right - left) / wide).floor().max(1.0) as usize;
+        let cells = entries.len().min(columns * ROWS_BELOW);
+        let rows = cells.div_ceil(columns) as f64;
+        let left = (WIDTH - cells.min(columns) as f64 * wide) / 2.0;
         let top = HEIGHT - 8.0 - rows * ROW;
-        let place = |[x, row]: [f64; 2]| [x, top + ROW * (row + 0.5)];
+        let mut places: Vec<[f64; 2]> = (0..cells)
+            .map(|cell| {
+                let (column, row) = (cell % columns, cell / columns);
+                [left + wide * column as f64, top + ROW * (row as f64 + 0.5)]
+            })
+            .collect();
+        let more = if cells < entries.len() {
+            let rest = entries.len() - cells + 1;
+            places.pop().map(|place| (rest, place))
+        } else {
+            None
+        };
         Self {
             frame: None,
-            places: places.into_iter().map(place).collect(),
-            more: more.map(|(count, at)| (count, place(at))),
+            places,
+            more,
             height: rows * ROW + 2.0,
         }
     }

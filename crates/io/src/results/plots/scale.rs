@@ -1,9 +1,13 @@
 //! From values to places along an axis, and the ticks of it.
 
 use super::Axis;
+use super::text::width;
 
 /// Values beyond this are gaps: sums of them are not finite.
 const LARGEST: f64 = 1e300;
+
+/// Room for the numbers below a plot, px.
+const LABELS: f64 = 400.0;
 
 /// Where values stand along an axis.
 #[derive(Debug, Clone)]
@@ -57,19 +61,31 @@ impl Scale {
     }
 
     fn linear(axis: &Axis, low: f64, high: f64, rounded: bool) -> Self {
-        let step = nice_step((high - low) / if rounded { 5.0 } else { 6.0 });
-        // A little more than a whole step is one, not two.
-        let (mut first, mut last) = ((low / step + 1e-6).floor(), (high / step - 1e-6).ceil());
-        let (mut from, mut to) = (first * step, last * step);
         if rounded {
-            from = from.min(low);
-            to = to.max(high);
-        } else {
-            (from, to) = (low, high);
-            (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+            return Self::with_ticks(axis, low, high, 5.0, true);
         }
-        let largest = from.abs().max(to.abs());
-        let (label, power) = with_prefix(&axis.label, largest);
+        let scale = Self::with_ticks(axis, low, high, 8.0, false);
+        let widths = scale.ticks.iter().map(|tick| width(&tick.label, 12.0));
+        if widths.sum::<f64>() < LABELS {
+            scale
+        } else {
+            Self::with_ticks(axis, low, high, 5.0, false)
+        }
+    }
+
+    /// Numbers at round values, at most `intervals` and one more, or two if the axis is `rounded`.
+    fn with_ticks(axis: &Axis, low: f64, high: f64, intervals: f64, rounded: bool) -> Self {
+        let step = nice_step((high - low) / intervals);
+        // A little more than a whole step is one, not two.
+        let (from, to, first, last);
+        if rounded {
+            (first, last) = ((low / step + 1e-6).floor(), (high / step - 1e-6).ceil());
+            (from, to) = ((first * step).min(low), (last * step).max(high));
+        } else {
+            (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+            (from, to) = (low, high);
+        }
+        let (label, power) = with_prefix(&axis.label, from.abs().max(to.abs()));
         let mut scale = Self {
             low: from,
             high: to,
@@ -78,9 +94,8 @@ impl Scale {
             ticks: Vec::new(),
             fine: Vec::new(),
         };
-        let decimals = (f64::from(power) - step.log10() - 1e-6)
-            .ceil()
-            .clamp(0.0, 15.0) as usize;
+        let decimals = f64::from(power) - step.log10() - 1e-6;
+        let decimals = decimals.ceil().clamp(0.0, 15.0) as usize;
         let count = (last - first).clamp(0.0, 20.0) as u32;
         scale.ticks = (0..=count)
             .map(|number| {
@@ -96,7 +111,7 @@ impl Scale {
 
     /// Whole decades.
     fn logarithmic(axis: &Axis, low: f64, high: f64) -> Self {
-        let (mut from, mut to) = if low > high {
+        let (from, mut to) = if low > high {
             (0.0, 1.0)
         } else {
             ((low.log10() + 1e-9).floor(), (high.log10() - 1e-9).ceil())
@@ -108,12 +123,8 @@ impl Scale {
         let step = if decades <= 8.0 {
             1.0
         } else {
-            nice_step(decades / 6.0).max(2.0)
+            nice_step(decades / 8.0).max(2.0)
         };
-        if decades > 8.0 {
-            from = (from / step).floor() * step;
-            to = (to / step).ceil() * step;
-        }
         let mut scale = Self {
             low: from,
             high: to,
@@ -122,11 +133,12 @@ impl Scale {
             ticks: Vec::new(),
             fine: Vec::new(),
         };
-        let share = |exponent: f64| (exponent - from) / (to - from);
-        let count = ((to - from) / step) as u32;
+        let share = |exponent: f64| (exponent - from) / decades;
+        let first = (from / step).ceil();
+        let count = ((to / step).floor() - first) as u32;
         scale.ticks = (0..=count)
             .map(|number| {
-                let exponent = from + f64::from(number) * step;
+                let exponent = (first + f64::from(number)) * step;
                 Tick {
                     share: share(exponent),
                     label: power_of_ten(exponent as i32),
@@ -175,7 +187,7 @@ fn with_prefix(label: &str, largest: f64) -> (String, i32) {
     if let (Some((quantity, unit)), Some(prefix)) = (unit_of(label), prefix) {
         return (format!("{quantity}({prefix}{unit})"), power);
     }
-    if (1e-3..0.1).contains(&largest) {
+    if (1e-2..0.1).contains(&largest) {
         return (label.to_owned(), 0);
     }
     let factor = format!("×{}", power_of_ten(power));

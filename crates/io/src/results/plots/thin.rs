@@ -34,7 +34,7 @@ fn thinned(points: &[Option<[f64; 2]>]) -> Vec<Option<[f64; 2]>> {
     }
 }
 
-/// Of each run of points in one column the first, the lowest and the highest, in their order. Gaps within a column cannot be seen.
+/// Of each run of points in one column the lowest and the highest, in their order. Gaps within a column cannot be seen.
 fn by_column(
     points: &[Option<[f64; 2]>],
     column: impl Fn(usize, [f64; 2]) -> usize,
