@@ -15,5 +15,5 @@ pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
 pub use plots::{Axis, Line, Plot, svg};
-pub use series::SeriesFile;
+pub use series::{Series, SeriesFile, read_series};
 pub use summary::write_json;

@@ -121,3 +121,28 @@ pub(super) fn field(text: &str) -> String {
         line
     }
 }
+
+/// The texts that [`field`] put between the commas of a line.
+pub(super) fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => {
+                letters.next();
+                push(&mut fields, '"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            other => push(&mut fields, other),
+        }
+    }
+    fields
+}
+
+fn push(fields: &mut [String], letter: char) {
+    if let Some(last) = fields.last_mut() {
+        last.push(letter);
+    }
+}
