@@ -8,7 +8,7 @@ pub mod csv;
 pub mod files;
 pub mod lammps;
 pub mod summary;
-mod table;
+pub(crate) mod table;
 pub mod txt;
 pub mod vtp;
 

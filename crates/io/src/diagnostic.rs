@@ -9,6 +9,8 @@ pub enum Kind {
     Input,
     /// The program could not do its work (disk full, interrupted): exit code 1.
     Failed,
+    /// A check stopped the run because it went unstable: exit code 3.
+    Unstable,
 }
 
 /// One message: where, what, and the remedy.
@@ -56,6 +58,20 @@ impl Diagnostic {
         }
     }
 
+    /// A check stopped the run at `place`.
+    pub fn unstable(
+        place: impl Into<String>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            kind: Kind::Unstable,
+            place: place.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
+    }
+
     /// The same message, said of a place in a larger thing (a facet of a file).
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
@@ -67,11 +83,12 @@ impl Diagnostic {
         self
     }
 
-    /// 2 for bad input, 1 for work that failed.
+    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             Kind::Input => 2,
             Kind::Failed => 1,
+            Kind::Unstable => 3,
         }
     }
 }

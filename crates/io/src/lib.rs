@@ -1,15 +1,21 @@
 //! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an algorithm of either program.
 //!
-//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files.
+//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files; what a run has to tell
+//! -> [`results`]; its state <-> [`checkpoint`].
 //! Lengths are metres unless a name says otherwise.
 
 pub mod body;
+pub mod checkpoint;
 pub mod diagnostic;
+mod hash;
+pub mod results;
 pub mod safe_write;
 pub mod scene;
 pub mod stl;
 pub mod surface;
 pub mod units;
+pub mod vtk;
+mod xml;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};

@@ -11,6 +11,9 @@ use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
 
+/// How the names of temporary files begin.
+pub(crate) const UNFINISHED_PREFIX: &str = ".unfinished-";
+
 /// Temporary files that exist at this moment.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -186,7 +189,7 @@ fn folder_of(path: &Path) -> &Path {
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".unfinished-");
+    builder.prefix(UNFINISHED_PREFIX);
     if let Some(permissions) = usual_permissions() {
         builder.permissions(permissions);
     }
@@ -208,7 +211,7 @@ fn usual_permissions() -> Option<Permissions> {
 }
 
 /// What went wrong when writing to `path`, for a person.
-fn explain(path: &Path, error: &io::Error) -> Diagnostic {
+pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
         ErrorKind::NotFound => (

@@ -5,14 +5,14 @@ use std::io::BufRead;
 use crate::{Diagnostic, Result};
 
 /// The lines of a text file, one at a time.
-pub(super) struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     input: &'a mut dyn BufRead,
     bytes: Vec<u8>,
     number: u64,
 }
 
 impl<'a> Lines<'a> {
-    pub(super) fn new(input: &'a mut dyn BufRead) -> Self {
+    pub(crate) fn new(input: &'a mut dyn BufRead) -> Self {
         Self {
             input,
             bytes: Vec::new(),
@@ -24,7 +24,7 @@ impl<'a> Lines<'a> {
     ///
     /// # Errors
     /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line break, too.
-    pub(super) fn next(&mut self) -> Result<Option<(u64, &str)>> {
+    pub(crate) fn next(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
         let read = self.input.read_until(b'\n', &mut self.bytes);
         if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
@@ -60,12 +60,12 @@ impl<'a> Lines<'a> {
 }
 
 /// The same message, said of a line.
-pub(super) fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
+pub(crate) fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
     error.within(&format!("line {number}"))
 }
 
 /// The number that `word` is.
-pub(super) fn float(word: Option<&str>, what: &str) -> Result<f64> {
+pub(crate) fn float(word: Option<&str>, what: &str) -> Result<f64> {
     let word = word.ok_or_else(|| missing(what))?;
     word.parse()
         .map_err(|_| not_a_number(word, what, "a number"))

@@ -12,6 +12,7 @@ use super::union_volume::{Excess, excess};
 use super::vector::{bounds, distance};
 use super::warnings::{Remarks, sentences};
 use super::{Repairs, Shell, duplicates, holes, t_junctions, weld};
+use crate::hash::fnv1a;
 use crate::stl::read_facets;
 use crate::{Diagnostic, Result, Surface};
 use std::ops::Range;
@@ -98,7 +99,7 @@ fn build(bytes: &[u8], unit_m: f64, fill_holes: bool) -> Result<Surface> {
     repairs.self_intersections = relations.crossings.pairs;
     let mut surface = Surface {
         source: String::new(),
-        source_hash: hash(bytes),
+        source_hash: fnv1a(bytes),
         origin_m: frame.corner.map(|x| x * unit_m),
         unit_m: local_unit_m,
         vertices: mesh.vertices,
@@ -334,11 +335,4 @@ fn relate(mesh: &mut Mesh, parts: &mut [Part]) -> Relations {
         places,
         excess,
     }
-}
-
-/// FNV-1a, 64 bit (<http://www.isthe.com/chongo/tech/comp/fnv/>).
-fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }

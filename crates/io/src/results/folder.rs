@@ -1,0 +1,227 @@
+//! The folder of a run: what is called how, and what may be in it before.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::plots;
+use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, write_file};
+use crate::{Diagnostic, Result};
+
+const FRAMES: &str = "frames";
+const PLOTS: &str = "plots";
+const INDEX: &str = "frames.pvd";
+const SERIES: &str = "series.csv";
+const EVENTS: &str = "events.csv";
+const SUMMARY: &str = "summary.json";
+const CHECKPOINT: &str = "checkpoint.dem";
+
+/// What to do with a folder that holds something already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// Refuse it.
+    Refuse,
+    /// Remove the files that an earlier run wrote, and nothing else: `--force`.
+    Replace,
+    /// Leave all as it is, for a run that goes on: `--resume`.
+    Continue,
+}
+
+/// The folder that a run writes to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ResultsFolder {
+    path: PathBuf,
+}
+
+impl ResultsFolder {
+    /// Makes the folder `path` or takes the one that is there, and makes sure that it can be written to.
+    ///
+    /// # Errors
+    /// It is not empty, by `existing`; there is none to continue (both exit code 2). Its parent is missing, a file has its
+    /// name, no permission to write in it (all exit code 1).
+    pub fn create(path: &Path, existing: Existing) -> Result<Self> {
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        if existing == Existing::Continue {
+            if !path.is_dir() {
+                return Err(Diagnostic::input(
+                    path.display().to_string(),
+                    "there is no such folder, so no run to continue",
+                    "check its name, or start the run without --resume",
+                ));
+            }
+        } else {
+            make_folder(path)?;
+            if existing == Existing::Replace {
+                folder.remove_results()?;
+            } else if entries(path)?.next().is_some() {
+                return Err(Diagnostic::input(
+                    path.display().to_string(),
+                    "this folder is not empty",
+                    "write to another one, replace its results with --force, or continue its run with --resume",
+                ));
+            }
+        }
+        // Nothing comes of this file: it only shows that files can be written here.
+        PendingFile::write(&folder.summary(), |_| Ok(()))?;
+        Ok(folder)
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
+    pub fn frame(&self, number: usize) -> PathBuf {
+        self.path.join(frame_name(number))
+    }
+
+    /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
+    pub fn frames_index(&self) -> PathBuf {
+        self.path.join(INDEX)
+    }
+
+    /// Time series: `series.csv`.
+    pub fn series(&self) -> PathBuf {
+        self.path.join(SERIES)
+    }
+
+    /// Events: `events.csv`.
+    pub fn events(&self) -> PathBuf {
+        self.path.join(EVENTS)
+    }
+
+    /// Summary: `summary.json`.
+    pub fn summary(&self) -> PathBuf {
+        self.path.join(SUMMARY)
+    }
+
+    /// The latest state of the run: `checkpoint.dem`.
+    pub fn checkpoint(&self) -> PathBuf {
+        self.path.join(CHECKPOINT)
+    }
+
+    /// A plot: `plots/NAME.svg`. Letters that a file name may not hold become `_`.
+    pub fn plot(&self, name: &str) -> PathBuf {
+        let name: String = name
+            .chars()
+            .map(|letter| match letter {
+                '/' | '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|' => '_',
+                control if control.is_control() => '_',
+                other => other,
+            })
+            .collect();
+        self.path.join(PLOTS).join(format!("{name}.svg"))
+    }
+
+    /// Makes the folder of the frames, unless it is there.
+    ///
+    /// # Errors
+    /// No permission, a file has its name (exit code 1).
+    pub(super) fn make_frames_folder(&self) -> Result<()> {
+        make_folder(&self.path.join(FRAMES))
+    }
+
+    /// Writes a plot to `plots/NAME.svg`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// No permission, full disk, a file or folder in the way (all exit code 1).
+    pub fn write_plot(&self, name: &str, plot: &plots::Plot) -> Result<()> {
+        make_folder(&self.path.join(PLOTS))?;
+        write_file(&self.plot(name), |out| {
+            out.write_all(plots::svg(plot).as_bytes())
+        })
+    }
+
+    /// Removes frame `number` and all after it.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_frames_from(&self, number: usize) -> Result<()> {
+        self.remove_files(FRAMES, |name| {
+            frame_number(name).is_some_and(|found| found >= number)
+        })
+    }
+
+    /// Removes the list of all frames, if there is one.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_frames_index(&self) -> Result<()> {
+        self.remove_files("", |name| name == INDEX)
+    }
+
+    fn remove_results(&self) -> Result<()> {
+        // First, so that a folder of which only a part could be removed is not taken for a run to continue.
+        self.remove_files("", |name| name == CHECKPOINT)?;
+        self.remove_files("", |name| [INDEX, SERIES, EVENTS, SUMMARY].contains(&name))?;
+        self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
+        let plots = self.path.join(PLOTS);
+        self.remove_files(PLOTS, |name| {
+            name.ends_with(".svg") && plots::is_ours(&plots.join(name))
+        })
+    }
+
+    /// Removes the files of the folder `part` that are `ours` by their name. A file of a write that was killed is ours, too.
+    fn remove_files(&self, part: &str, ours: impl Fn(&str) -> bool) -> Result<()> {
+        let folder = self.path.join(part);
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        for entry in entries(&folder)? {
+            let path = entry.map_err(|error| explain(&folder, &error))?;
+            let is_ours = path
+                .file_name()
+                .and_then(|name| name.to_str())
+                .is_some_and(|name| ours(name) || name.starts_with(UNFINISHED_PREFIX));
+            if is_ours && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+                fs::remove_file(&path).map_err(|error| explain(&path, &error))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The name of a frame in the folder, with `/` on every system: ParaView wants it so.
+pub(super) fn frame_name(number: usize) -> String {
+    format!("{FRAMES}/frame_{number:06}.vtp")
+}
+
+/// 123 of `frame_000123.vtp`.
+fn frame_number(name: &str) -> Option<usize> {
+    let digits = name.strip_prefix("frame_")?.strip_suffix(".vtp")?;
+    let is_number = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
+    is_number.then(|| digits.parse().ok()).flatten()
+}
+
+/// Makes a folder unless it is there. Its parent must be.
+fn make_folder(path: &Path) -> Result<()> {
+    match fs::create_dir(path) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            if path.is_dir() {
+                return Ok(());
+            }
+            Err(Diagnostic::failed(
+                path.display().to_string(),
+                "this is a file, where a folder is needed",
+                "remove it, or write elsewhere",
+            ))
+        }
+        Err(error) => Err(explain(path, &error)),
+    }
+}
+
+/// The paths of what is in a folder.
+fn entries(folder: &Path) -> Result<impl Iterator<Item = std::io::Result<PathBuf>>> {
+    let entries = fs::read_dir(folder).map_err(|error| {
+        Diagnostic::failed(
+            folder.display().to_string(),
+            format!("this folder cannot be read: {error}"),
+            "write elsewhere",
+        )
+    })?;
+    Ok(entries.map(|entry| entry.map(|entry| entry.path())))
+}

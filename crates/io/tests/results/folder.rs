@@ -1,0 +1,148 @@
+//! The folder: when it is refused, what is removed, what is called how.
+
+use std::fs;
+
+use dem_io::results::{Existing, Line, Plot, ResultsFolder, write_json};
+use tempfile::tempdir;
+
+use crate::{contents, results_in};
+
+#[test]
+fn names_in_the_folder() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let at = |name: &str| parent.path().join("out").join(name);
+    assert_eq!(folder.frame(123), at("frames/frame_000123.vtp"));
+    assert_eq!(folder.frame(1_234_567), at("frames/frame_1234567.vtp"));
+    assert_eq!(folder.frames_index(), at("frames.pvd"));
+    assert_eq!(folder.series(), at("series.csv"));
+    assert_eq!(folder.events(), at("events.csv"));
+    assert_eq!(folder.summary(), at("summary.json"));
+    assert_eq!(folder.checkpoint(), at("checkpoint.dem"));
+    assert_eq!(folder.plot("a/b: c"), at("plots/a_b_ c.svg"));
+    assert!(contents(folder.path()).is_empty());
+}
+
+#[test]
+fn a_folder_with_something_in_it_is_refused() {
+    let parent = tempdir().unwrap();
+    let path = parent.path().join("out");
+    fs::create_dir(&path).unwrap();
+    ResultsFolder::create(&path, Existing::Refuse).expect("an empty folder will do");
+    fs::write(path.join("notes.txt"), "mine").unwrap();
+    let error = ResultsFolder::create(&path, Existing::Refuse).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(error.problem, "this folder is not empty");
+    assert!(error.remedy.contains("--force") && error.remedy.contains("--resume"));
+}
+
+#[test]
+fn force_removes_what_a_run_wrote_and_nothing_else() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let path = folder.path();
+    folder.write_plot("energy", &Plot::default()).unwrap();
+    fs::create_dir(path.join("frames")).unwrap();
+    fs::create_dir(path.join("frames/frame_000009.vtp")).unwrap();
+    let ours = [
+        "frames/frame_000000.vtp",
+        "frames/frame_1000000.vtp",
+        "frames/.unfinished-x1",
+        "frames.pvd",
+        "series.csv",
+        "events.csv",
+        "summary.json",
+        "checkpoint.dem",
+    ];
+    let foreign = [
+        "frames/frame_1.vtp",
+        "frames/frame_000001.vtp.bak",
+        "frames/view.pvsm",
+        "plots/mine.svg",
+        "plots/notes.md",
+        "scene.toml",
+        "series.csv.old",
+    ];
+    for name in ours.iter().chain(&foreign) {
+        fs::write(path.join(name), "<svg/>").unwrap();
+    }
+    ResultsFolder::create(path, Existing::Continue).unwrap();
+    assert_eq!(contents(path).len(), ours.len() + 1 + foreign.len());
+    ResultsFolder::create(path, Existing::Replace).unwrap();
+    let mut left: Vec<_> = foreign.iter().map(|name| path.join(name)).collect();
+    left.sort();
+    assert_eq!(
+        contents(path)
+            .into_iter()
+            .map(|(path, _)| path)
+            .collect::<Vec<_>>(),
+        left
+    );
+}
+
+#[test]
+fn folders_that_cannot_be() {
+    let parent = tempdir().unwrap();
+    for existing in [Existing::Refuse, Existing::Replace] {
+        let error = ResultsFolder::create(&parent.path().join("a/out"), existing).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.problem.starts_with("there is no folder '"), "{error}");
+        let file = parent.path().join("file");
+        fs::write(&file, "").unwrap();
+        let error = ResultsFolder::create(&file, existing).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.problem.starts_with("this is a file"), "{error}");
+    }
+    let error = ResultsFolder::create(&parent.path().join("b"), Existing::Continue).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.problem.contains("no such folder"), "{error}");
+    let folder = results_in(&parent);
+    fs::write(folder.path().join("plots"), "").unwrap();
+    let error = folder.write_plot("energy", &Plot::default()).unwrap_err();
+    assert!(error.problem.starts_with("this is a file"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_is_read_only_is_noticed_at_once() {
+    use std::os::unix::fs::PermissionsExt;
+    let parent = tempdir().unwrap();
+    let path = parent.path().join("out");
+    fs::create_dir(&path).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o555)).unwrap();
+    // Who may write everywhere cannot test this.
+    if fs::write(path.join("probe"), "").is_ok() {
+        return;
+    }
+    let error = ResultsFolder::create(&path, Existing::Refuse).unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    assert!(error.problem.starts_with("no permission"), "{error}");
+}
+
+#[test]
+fn plots_and_summaries_are_replaced_whole() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let mut plot = Plot::default();
+    folder.write_plot("energy", &plot).unwrap();
+    let empty = fs::read(folder.plot("energy")).unwrap();
+    plot.lines.push(Line {
+        points: vec![[0.0, 1.0], [1.0, 2.0]],
+        ..Line::default()
+    });
+    folder.write_plot("energy", &plot).unwrap();
+    assert_ne!(fs::read(folder.plot("energy")).unwrap(), empty);
+    #[derive(serde::Serialize)]
+    struct Summary {
+        steps: u64,
+        error: f64,
+    }
+    let summary = Summary {
+        steps: 7,
+        error: f64::NAN,
+    };
+    write_json(&folder.summary(), &summary).unwrap();
+    let text = fs::read_to_string(folder.summary()).unwrap();
+    assert_eq!(text, "{\n  \"steps\": 7,\n  \"error\": null\n}\n");
+    assert_eq!(contents(folder.path()).len(), 2);
+}

@@ -1,0 +1,262 @@
+//! Frames: read back by the reader of bodies, whose format they share, and checked array by array.
+
+use std::fs;
+
+use dem_io::body::vtp;
+use dem_io::results::{Frame, FrameFiles, NamedArray, ResultsFolder, Values, write_frame};
+use proptest::prelude::*;
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use tempfile::tempdir;
+
+use crate::{contents, results_in};
+
+const POSITIONS: [[f64; 3]; 3] = [[0.0; 3], [1e-3, 0.0, 0.0], [-0.0, 1e-3, 1e-4]];
+const VELOCITIES: [[f64; 3]; 3] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]];
+const BONDS: [[u32; 2]; 2] = [[0, 1], [0, 2]];
+
+const PARTICLE_ARRAYS: [NamedArray<'static>; 4] = [
+    NamedArray {
+        name: "velocity_m_s",
+        values: Values::Vectors(&VELOCITIES),
+    },
+    NamedArray {
+        name: "body \"a\" & <b>",
+        values: Values::Counts(&[7, 8, u32::MAX]),
+    },
+    NamedArray {
+        name: "radius",
+        values: Values::Scalars(&[6e-4, 5e-4, 7e-4]),
+    },
+    NamedArray {
+        name: "cluster",
+        values: Values::Integers(&[-1, 0, i32::MIN]),
+    },
+];
+
+const BOND_ARRAYS: [NamedArray<'static>; 3] = [
+    NamedArray {
+        name: "state",
+        values: Values::Integers(&[1, -1]),
+    },
+    NamedArray {
+        name: "bond_radius",
+        values: Values::Scalars(&[4e-4, 3e-4]),
+    },
+    NamedArray {
+        name: "force_n",
+        values: Values::Vectors(&[[1.0; 3], [f64::NAN; 3]]),
+    },
+];
+
+fn frame(time_s: f64) -> Frame<'static> {
+    Frame {
+        time_s,
+        positions: &POSITIONS,
+        particle_arrays: &PARTICLE_ARRAYS,
+        bonds: &BONDS,
+        bond_arrays: &BOND_ARRAYS,
+    }
+}
+
+fn bytes_of(frame: &Frame<'_>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    frame.check().unwrap();
+    write_frame(frame, &mut bytes).unwrap();
+    bytes
+}
+
+/// Section, type, name, components and bytes of an appended array.
+type Found = (String, String, String, usize, Vec<u8>);
+
+/// Every appended array, and the text of the time.
+fn arrays(bytes: &[u8]) -> (Vec<Found>, String) {
+    let begin = b"<AppendedData encoding=\"raw\">\n_";
+    let at = bytes
+        .windows(begin.len())
+        .position(|part| part == begin)
+        .unwrap();
+    let data = &bytes[at + begin.len()..];
+    let header = std::str::from_utf8(&bytes[..at]).unwrap();
+    let mut xml = Reader::from_str(header);
+    let (mut found, mut time, mut section, mut end) = (Vec::new(), String::new(), String::new(), 0);
+    loop {
+        match xml.read_event().unwrap() {
+            Event::Start(element) => section = element.name().as_ref().to_owned(),
+            Event::Text(text) if section == "DataArray" => time = text.to_string(),
+            Event::End(_) => section.clear(),
+            Event::Empty(array) => {
+                let attribute = |name: &str| {
+                    let found = array.try_get_attribute(name).unwrap();
+                    found.map(|found| {
+                        found
+                            .normalized_value(quick_xml::XmlVersion::Implicit1_0)
+                            .unwrap()
+                            .into_owned()
+                    })
+                };
+                let offset: usize = attribute("offset").unwrap().parse().unwrap();
+                assert_eq!(offset, end, "the arrays stand one after the other");
+                let size =
+                    u64::from_le_bytes(data[offset..offset + 8].try_into().unwrap()) as usize;
+                end = offset + 8 + size;
+                found.push((
+                    section.clone(),
+                    attribute("type").unwrap(),
+                    attribute("Name").unwrap(),
+                    attribute("NumberOfComponents").map_or(1, |number| number.parse().unwrap()),
+                    data[offset + 8..end].to_vec(),
+                ));
+            }
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    assert_eq!(&data[end..], b"\n  </AppendedData>\n</VTKFile>\n");
+    (found, time)
+}
+
+#[test]
+fn every_array_stands_where_the_header_says() {
+    let (found, time) = arrays(&bytes_of(&frame(1.0 / 3.0)));
+    assert_eq!(
+        time.parse::<f64>().unwrap().to_bits(),
+        (1.0_f64 / 3.0).to_bits()
+    );
+    let shapes: Vec<_> = found
+        .iter()
+        .map(|(section, kind, name, components, bytes)| {
+            (
+                section.as_str(),
+                kind.as_str(),
+                name.as_str(),
+                *components,
+                bytes.len(),
+            )
+        })
+        .collect();
+    assert_eq!(
+        shapes,
+        [
+            ("Points", "Float64", "Points", 3, 72),
+            ("Lines", "Int64", "connectivity", 1, 32),
+            ("Lines", "Int64", "offsets", 1, 16),
+            ("PointData", "Float64", "velocity_m_s", 3, 72),
+            ("PointData", "UInt32", "body \"a\" & <b>", 1, 12),
+            ("PointData", "Float64", "radius", 1, 24),
+            ("PointData", "Int32", "cluster", 1, 12),
+            ("CellData", "Int32", "state", 1, 8),
+            ("CellData", "Float64", "bond_radius", 1, 16),
+            ("CellData", "Float64", "force_n", 3, 48),
+        ]
+    );
+    assert_eq!(
+        found[4].4,
+        [7_u32, 8, u32::MAX].map(u32::to_le_bytes).concat()
+    );
+    assert_eq!(
+        found[6].4,
+        [-1_i32, 0, i32::MIN].map(i32::to_le_bytes).concat()
+    );
+    let velocities: Vec<u8> = VELOCITIES
+        .as_flattened()
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    assert_eq!(found[3].4, velocities);
+}
+
+#[test]
+fn the_reader_of_bodies_reads_a_frame() {
+    let body = vtp::read(&mut bytes_of(&frame(0.5)).as_slice()).unwrap();
+    assert_eq!(body.positions, POSITIONS);
+    assert_eq!(body.bonds, BONDS);
+    assert_eq!(body.radii, [6e-4, 5e-4, 7e-4]);
+    assert_eq!(body.bond_radii, [4e-4, 3e-4]);
+}
+
+#[test]
+fn a_wrong_frame_is_a_fault_with_a_name() {
+    let mut wrong = frame(0.0);
+    wrong.bonds = &[[0, 1], [1, 3]];
+    let error = wrong.check().unwrap_err();
+    assert_eq!(error.problem, "bond 1 joins [1, 3] of 3 particles");
+    let mut wrong = frame(0.0);
+    wrong.bonds = &[[0, 1]];
+    let error = wrong.check().unwrap_err();
+    assert_eq!(error.problem, "array 'state' has 2 values for 1 bonds");
+    let mut wrong = frame(0.0);
+    wrong.positions = &POSITIONS[..2];
+    let error = wrong.check().unwrap_err();
+    assert_eq!(
+        error.problem,
+        "array 'velocity_m_s' has 3 values for 2 particles"
+    );
+}
+
+#[test]
+fn the_index_lists_every_frame_with_its_time() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let mut frames = FrameFiles::create(&folder);
+    assert!(contents(folder.path()).is_empty());
+    for time_s in [0.0, 5e-3, 0.01] {
+        frames.append(&frame(time_s)).unwrap();
+    }
+    assert_eq!(frames.times_s(), [0.0, 5e-3, 0.01]);
+    assert_eq!(
+        fs::read_to_string(folder.frames_index()).unwrap(),
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n    \
+         <DataSet timestep=\"0e0\" file=\"frames/frame_000000.vtp\"/>\n    \
+         <DataSet timestep=\"5e-3\" file=\"frames/frame_000001.vtp\"/>\n    \
+         <DataSet timestep=\"1e-2\" file=\"frames/frame_000002.vtp\"/>\n  </Collection>\n</VTKFile>\n"
+    );
+    assert_eq!(fs::read(folder.frame(2)).unwrap(), bytes_of(&frame(0.01)));
+    assert_eq!(contents(folder.path()).len(), 4);
+}
+
+fn written(folder: &ResultsFolder) -> Vec<(String, Vec<u8>)> {
+    contents(folder.path())
+        .into_iter()
+        .map(|(path, bytes)| {
+            (
+                path.strip_prefix(folder.path())
+                    .unwrap()
+                    .display()
+                    .to_string(),
+                bytes,
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn a_missing_frame_is_told_when_a_run_continues() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    FrameFiles::create(&folder).append(&frame(0.0)).unwrap();
+    let error = FrameFiles::continue_at(&folder, vec![0.0, 1.0]).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.place.ends_with("frame_000001.vtp"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn an_interrupted_run_leaves_the_same_frames(times in prop::collection::vec(0.0..1e3_f64, 0..6), crash in any::<prop::sample::Index>(), checkpoint in any::<prop::sample::Index>()) {
+        let crash = crash.index(times.len() + 1);
+        let checkpoint = checkpoint.index(crash + 1);
+        let [a, b] = [tempdir().unwrap(), tempdir().unwrap()];
+        let [whole, resumed] = [results_in(&a), results_in(&b)];
+        let mut frames = FrameFiles::create(&whole);
+        times.iter().for_each(|time| frames.append(&frame(*time)).unwrap());
+        let mut frames = FrameFiles::create(&resumed);
+        times[..crash].iter().for_each(|time| frames.append(&frame(*time)).unwrap());
+        let mut frames = FrameFiles::continue_at(&resumed, times[..checkpoint].to_vec()).unwrap();
+        prop_assert_eq!(written(&resumed).len(), if checkpoint == 0 { 0 } else { checkpoint + 1 });
+        times[checkpoint..].iter().for_each(|time| frames.append(&frame(*time)).unwrap());
+        prop_assert_eq!(written(&resumed), written(&whole));
+    }
+}

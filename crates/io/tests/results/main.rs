@@ -1,0 +1,32 @@
+//! What a run writes: the folder and its files, whole, readable by others, and the same after an interruption.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod checkpoints;
+mod folder;
+mod frames;
+mod plots;
+mod tables;
+
+use std::path::{Path, PathBuf};
+
+use dem_io::results::{Existing, ResultsFolder};
+
+fn results_in(parent: &tempfile::TempDir) -> ResultsFolder {
+    ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap()
+}
+
+/// All files of a folder and of those in it, with their bytes.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in folder.read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(contents(&path));
+        } else {
+            let bytes = std::fs::read(&path).unwrap();
+            found.push((path, bytes));
+        }
+    }
+    found.sort();
+    found
+}
