@@ -13,4 +13,5 @@ pub mod units;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};
+pub use scene::{Scene, read_scene, scene_from_text};
 pub use surface::Surface;
