@@ -19,4 +19,5 @@ mod xml;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};
+pub use scene::{Scene, read_scene, scene_from_text};
 pub use surface::Surface;

@@ -2,8 +2,27 @@
 //!
 //! Every table of the file has one struct here; names are unique within their table. The reader of the file refuses what cannot be simulated.
 
+mod body;
+mod bond;
+mod describe;
+mod field;
+mod load;
+mod material;
+mod measure;
+mod names;
+mod output;
+mod overrides;
+mod read;
+mod run;
+mod set;
+mod support;
+mod table;
+mod tree;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+
+pub use read::{read_scene, scene_from_text};
 
 /// Version of the scene format.
 pub const SCENE_VERSION: u64 = 1;
@@ -38,24 +57,24 @@ pub struct Scene {
 pub struct Run {
     /// `end_time`: simulated time at the end, s.
     pub end_time_s: f64,
-    /// `rest`: end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
+    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
     pub rest: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
     pub time_step_s: Option<f64>,
     /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 1).
     pub safety: f64,
-    /// `gravity`, m/s2. Length 3.
+    /// `gravity`, m/s2; none unless given. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// `particle_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
     pub particle_damping: f64,
-    /// `seed` of everything random (scatter of strengths).
+    /// `seed` of everything random (scatter of strengths); 0 unless given.
     pub seed: u64,
 }
 
 /// What particles are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// `density`, kg/m3. None: the density that the body's file names.
+    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand in the scene has none.
     pub density_kg_m3: Option<f64>,
     /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
@@ -126,7 +145,7 @@ pub struct BondDamping {
 }
 
 /// What breaks a bond; whichever comes first.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
     /// `tension`: largest normal stress, Pa (MUSEN's sigma_max).
     pub tension_pa: Option<f64>,
@@ -147,11 +166,11 @@ pub struct BondFailure {
 pub enum BodySource {
     /// `file`, resolved against the folder of the scene; "-" is standard input.
     File(PathBuf),
-    /// `particles` and `bonds` in the scene.
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its particles, times `radius_factor`, and as long as they are apart.
     Inline {
         /// `particles = [[x, y, z, radius], ...]`, m.
         particles: Vec<[f64; 4]>,
-        /// `bonds = [[a, b], ...]`: indices of particles, from 0.
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here, in any order in the file.
         bonds: Vec<[u32; 2]>,
     },
 }
@@ -178,7 +197,7 @@ pub struct BodyEntry {
 /// Which particles are meant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParticleSet {
-    /// `body`: only of this one. None: of all.
+    /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
     pub body: Option<String>,
     /// How they are picked, at the start of the run.
     pub pick: Pick,
@@ -237,7 +256,7 @@ pub enum Hold {
 pub struct Support {
     /// `of`: a set, a body or `all`.
     pub of: String,
-    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Length 6.
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all are free. Length 6.
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,
@@ -248,7 +267,7 @@ pub struct Support {
 pub struct Load {
     /// `of`: a set, a body or `all`.
     pub of: String,
-    /// `force` on the whole set, N. Length 3.
+    /// `force` on the whole set, N. Length 3. Not zero together with the torque.
     pub force_n: [f64; 3],
     /// `torque` on the whole set, N m. Length 3.
     pub torque_n_m: [f64; 3],
@@ -305,7 +324,7 @@ pub struct Measure {
     pub quantity: Quantity,
     /// `at`, "end" unless given.
     pub at: At,
-    /// `reference`: what the result should be, in the quantity's SI unit.
+    /// `reference`: what the result should be, in the quantity's SI unit. Not zero where there is a tolerance.
     pub reference: Option<f64>,
     /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
     pub tolerance: Option<f64>,
@@ -314,7 +333,7 @@ pub struct Measure {
 /// What is written, and how often. Times are simulated seconds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
-    /// `folder`: results go here. None: the scene's name with `-out`.
+    /// `folder`: results go here, resolved against the folder of the scene. None: the scene's name with `-out`.
     pub folder: Option<PathBuf>,
     /// `frames`: time between frames. None: first and last only.
     pub frames_s: Option<f64>,

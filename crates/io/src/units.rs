@@ -1,5 +1,7 @@
 //! Numbers with units, as people write them: "2 mm", "2.05 g/cm3". Inside the program everything is SI.
 
+use std::f64::consts::PI;
+
 use crate::{Diagnostic, Result};
 
 /// Units of length and their size in metres.
@@ -16,12 +18,185 @@ pub const LENGTH_UNITS: [(&str, f64); 7] = [
 /// Units of density and their size in kg/m3.
 pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
 
+/// A physical dimension and the units in which people write it.
+#[derive(Debug, Clone, Copy)]
+pub struct Dimension {
+    /// What a value of it is called.
+    pub name: &'static str,
+    /// Its SI unit; empty for plain numbers.
+    pub si: &'static str,
+    /// Units and their size in the SI unit.
+    pub units: &'static [(&'static str, f64)],
+    /// A value as people write it.
+    pub example: &'static str,
+}
+
+/// Length, m.
+pub const LENGTH: Dimension = Dimension {
+    name: "length",
+    si: "m",
+    units: &LENGTH_UNITS,
+    example: "2mm",
+};
+
+/// Density, kg/m3.
+pub const DENSITY: Dimension = Dimension {
+    name: "density",
+    si: "kg/m3",
+    units: &DENSITY_UNITS,
+    example: "2050kg/m3",
+};
+
+/// Time, s.
+pub const TIME: Dimension = Dimension {
+    name: "time",
+    si: "s",
+    units: &[
+        ("ns", 1e-9),
+        ("us", 1e-6),
+        ("ms", 1e-3),
+        ("s", 1.0),
+        ("min", 60.0),
+        ("h", 3600.0),
+    ],
+    example: "5 ms",
+};
+
+/// Angle, rad.
+pub const ANGLE: Dimension = Dimension {
+    name: "angle",
+    si: "rad",
+    units: &[
+        ("rad", 1.0),
+        ("mrad", 1e-3),
+        ("deg", PI / 180.0),
+        ("°", PI / 180.0),
+    ],
+    example: "45 deg",
+};
+
+/// Velocity, m/s.
+pub const VELOCITY: Dimension = Dimension {
+    name: "velocity",
+    si: "m/s",
+    units: &[
+        ("um/s", 1e-6),
+        ("mm/s", 1e-3),
+        ("cm/s", 1e-2),
+        ("m/s", 1.0),
+        ("km/h", 1.0 / 3.6),
+    ],
+    example: "3 m/s",
+};
+
+/// Angular velocity, rad/s.
+pub const ANGULAR_VELOCITY: Dimension = Dimension {
+    name: "angular velocity",
+    si: "rad/s",
+    units: &[("rad/s", 1.0), ("deg/s", PI / 180.0), ("rpm", PI / 30.0)],
+    example: "2 rpm",
+};
+
+/// Acceleration, m/s2.
+pub const ACCELERATION: Dimension = Dimension {
+    name: "acceleration",
+    si: "m/s2",
+    units: &[("mm/s2", 1e-3), ("cm/s2", 1e-2), ("m/s2", 1.0)],
+    example: "9.81 m/s2",
+};
+
+/// Stress and modulus, Pa.
+pub const STRESS: Dimension = Dimension {
+    name: "stress",
+    si: "Pa",
+    units: &[
+        ("Pa", 1.0),
+        ("kPa", 1e3),
+        ("MPa", 1e6),
+        ("GPa", 1e9),
+        ("N/m2", 1.0),
+        ("N/mm2", 1e6),
+    ],
+    example: "12.05 MPa",
+};
+
+/// Force, N.
+pub const FORCE: Dimension = Dimension {
+    name: "force",
+    si: "N",
+    units: &[
+        ("uN", 1e-6),
+        ("mN", 1e-3),
+        ("N", 1.0),
+        ("kN", 1e3),
+        ("MN", 1e6),
+    ],
+    example: "100 kN",
+};
+
+/// Torque, N m.
+pub const TORQUE: Dimension = Dimension {
+    name: "torque",
+    si: "N m",
+    units: &[
+        ("uN m", 1e-6),
+        ("mN m", 1e-3),
+        ("N mm", 1e-3),
+        ("N m", 1.0),
+        ("kN m", 1e3),
+    ],
+    example: "2 N m",
+};
+
+/// Energy, J.
+pub const ENERGY: Dimension = Dimension {
+    name: "energy",
+    si: "J",
+    units: &[
+        ("nJ", 1e-9),
+        ("uJ", 1e-6),
+        ("mJ", 1e-3),
+        ("J", 1.0),
+        ("kJ", 1e3),
+    ],
+    example: "3 mJ",
+};
+
+/// Rate, 1/s.
+pub const RATE: Dimension = Dimension {
+    name: "rate",
+    si: "1/s",
+    units: &[("1/s", 1.0), ("/s", 1.0), ("%/s", 1e-2)],
+    example: "1e-5 1/s",
+};
+
+/// Force over velocity, N s/m.
+pub const VISCOUS_DAMPING: Dimension = Dimension {
+    name: "damping",
+    si: "N s/m",
+    units: &[
+        ("mN s/m", 1e-3),
+        ("N s/m", 1.0),
+        ("N s/mm", 1e3),
+        ("kN s/m", 1e3),
+    ],
+    example: "10 N s/m",
+};
+
+/// A number without a unit.
+pub const NUMBER: Dimension = Dimension {
+    name: "number",
+    si: "",
+    units: &[("%", 1e-2)],
+    example: "0.3",
+};
+
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.
 ///
 /// # Errors
 /// Not a number, not finite, or an unknown unit.
 pub fn length_m(text: &str) -> Result<f64> {
-    quantity(text, &LENGTH_UNITS, "length", "2mm")
+    quantity(text, &LENGTH)
 }
 
 /// A density in kg/m3 from "2.05 g/cm3" or a plain number of kg/m3.
@@ -29,7 +204,7 @@ pub fn length_m(text: &str) -> Result<f64> {
 /// # Errors
 /// Not a number, not finite, or an unknown unit.
 pub fn density_kg_m3(text: &str) -> Result<f64> {
-    quantity(text, &DENSITY_UNITS, "density", "2050kg/m3")
+    quantity(text, &DENSITY)
 }
 
 /// Metres in one unit of length, from its name.
@@ -37,31 +212,35 @@ pub fn density_kg_m3(text: &str) -> Result<f64> {
 /// # Errors
 /// An unknown unit.
 pub fn length_unit_m(name: &str) -> Result<f64> {
-    unit_size(name.trim(), &LENGTH_UNITS)
+    unit_size(name.trim(), &LENGTH)
 }
 
-fn quantity(text: &str, units: &[(&str, f64)], what: &str, example: &str) -> Result<f64> {
+/// A value in SI from a number with a unit of `dimension`, or from a plain number in SI.
+///
+/// # Errors
+/// Not a number, not finite, or a unit of something else, with the units that fit.
+pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let text = text.trim();
     let number_end = number_length(text);
     let (number, unit) = text.split_at(number_end);
     let value: f64 = number.parse().map_err(|_| {
         Diagnostic::input(
             "",
-            format!("'{text}' is not a {what}"),
-            format!("write a number with a unit, such as {example}"),
+            format!("'{}' is not a {}", text.escape_debug(), dimension.name),
+            format!("write a number with a unit, such as {}", dimension.example),
         )
     })?;
     let unit = unit.trim();
     let size = if unit.is_empty() {
         1.0
     } else {
-        unit_size(unit, units)?
+        unit_size(unit, dimension)?
     };
     let value = value * size;
     if !value.is_finite() {
         return Err(Diagnostic::input(
             "",
-            format!("'{text}' is not a finite {what}"),
+            format!("'{text}' is not a finite {}", dimension.name),
             "",
         ));
     }
@@ -88,20 +267,39 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-fn unit_size(name: &str, units: &[(&str, f64)]) -> Result<f64> {
-    let name = name.replace('µ', "u").replace('³', "3").replace('^', "");
-    units
+fn unit_size(name: &str, dimension: &Dimension) -> Result<f64> {
+    let wanted = unit_letters(name);
+    dimension
+        .units
         .iter()
-        .find(|(known, _)| *known == name)
+        .find(|(known, _)| unit_letters(known) == wanted)
         .map(|(_, size)| *size)
         .ok_or_else(|| {
-            let known: Vec<&str> = units.iter().map(|(n, _)| *n).collect();
+            let known: Vec<&str> = dimension.units.iter().map(|(n, _)| *n).collect();
             Diagnostic::input(
                 "",
-                format!("unknown unit '{name}'"),
+                format!(
+                    "unknown unit '{}' of {}",
+                    name.escape_debug(),
+                    dimension.name
+                ),
                 format!("use one of {}", known.join(", ")),
             )
         })
+}
+
+/// A unit in plain letters: "N·s/m", "N*s/m" and "N s/m" are the same.
+fn unit_letters(name: &str) -> String {
+    name.chars()
+        .filter_map(|c| match c {
+            'µ' | 'μ' => Some('u'),
+            '²' => Some('2'),
+            '³' => Some('3'),
+            '^' | '*' | '·' => None,
+            c if c.is_whitespace() => None,
+            c => Some(c),
+        })
+        .collect()
 }
 
 /// A length for a person: three to four digits in the unit that suits its size.
@@ -148,6 +346,53 @@ mod tests {
         for bad in ["", "mm", "2 parsec", "nan", "1e999", "2mm3", "--2"] {
             assert!(length_m(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn every_unit_reads_its_size() {
+        for dimension in [
+            LENGTH,
+            DENSITY,
+            TIME,
+            ANGLE,
+            VELOCITY,
+            ANGULAR_VELOCITY,
+            ACCELERATION,
+            STRESS,
+            FORCE,
+            TORQUE,
+            ENERGY,
+            RATE,
+            VISCOUS_DAMPING,
+            NUMBER,
+        ] {
+            for (unit, size) in dimension.units {
+                let value = quantity(&format!("2 {unit}"), &dimension);
+                assert_eq!(value.ok(), Some(2.0 * size), "{unit}");
+            }
+            assert!(quantity(dimension.example, &dimension).is_ok());
+            assert!(quantity("2 parsec", &dimension).is_err());
+        }
+    }
+
+    #[test]
+    fn units_in_several_spellings() {
+        assert_eq!(quantity("5 N·s/m", &VISCOUS_DAMPING).ok(), Some(5.0));
+        assert_eq!(quantity("5Ns/m", &VISCOUS_DAMPING).ok(), Some(5.0));
+        assert_eq!(quantity("2 N*m", &TORQUE).ok(), Some(2.0));
+        assert_eq!(quantity("9.81 m/s²", &ACCELERATION).ok(), Some(9.81));
+        assert_eq!(quantity("9.81 m/s^2", &ACCELERATION).ok(), Some(9.81));
+        assert_eq!(quantity("3 μs", &TIME).ok(), Some(3.0 * 1e-6));
+        assert_eq!(quantity("1e-5 1/s", &RATE).ok(), Some(1e-5));
+        assert_eq!(quantity("180 deg", &ANGLE).ok(), Some(PI));
+        assert_eq!(quantity("30 rpm", &ANGULAR_VELOCITY).ok(), Some(PI));
+    }
+
+    #[test]
+    fn a_wrong_unit_names_those_that_fit() {
+        let message = quantity("5 mm", &TIME).map_err(|e| e.to_string());
+        let wanted = "unknown unit 'mm' of time; use one of ns, us, ms, s, min, h";
+        assert_eq!(message, Err(wanted.to_owned()));
     }
 
     #[test]

@@ -1,0 +1,196 @@
+//! `[bodies.NAME]`
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+use super::field::Field;
+use super::read::resolved;
+use super::table::Table;
+use super::{BodyEntry, BodySource, BondKind, Material};
+use crate::Result;
+use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, NUMBER, VELOCITY};
+
+const KEYS: [&str; 9] = [
+    "file",
+    "particles",
+    "bond_list",
+    "material",
+    "bonds",
+    "position",
+    "rotation",
+    "velocity",
+    "angular_velocity",
+];
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    materials: &BTreeMap<String, Material>,
+    bonds: &BTreeMap<String, BondKind>,
+    folder: &Path,
+) -> Result<BTreeMap<String, BodyEntry>> {
+    let tables = root.named("bodies")?;
+    if tables.is_empty() {
+        let remedy = "add [bodies.NAME] with file = \"body.vtp\"";
+        return Err(root.refuse("there is no body", remedy));
+    }
+    let mut bodies = BTreeMap::new();
+    for (name, field) in tables {
+        if name == "all" {
+            let problem = format!("{} is named like all particles of the scene", field.path);
+            return Err(field.refuse(problem, "give it another name"));
+        }
+        bodies.insert(name, read(&field, materials, bonds, folder)?);
+    }
+    Ok(bodies)
+}
+
+fn read(
+    field: &Field<'_>,
+    materials: &BTreeMap<String, Material>,
+    bonds: &BTreeMap<String, BondKind>,
+    folder: &Path,
+) -> Result<BodyEntry> {
+    let table = field.table(&KEYS)?;
+    let source = source(&table, folder)?;
+    let material_field = table.need("material", "\"NAME\", a name in [materials]")?;
+    let material = material_field.reference(materials.keys(), "materials")?;
+    let bond_kind = table.read("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
+    if let BodySource::Inline { bonds, .. } = &source {
+        if !bonds.is_empty() && bond_kind.is_none() {
+            table.need("bonds", "\"NAME\", a name in [bonds]")?;
+        }
+        let density = materials
+            .get(&material)
+            .and_then(|found| found.density_kg_m3);
+        if density.is_none() {
+            let problem = format!(
+                "{} is \"{material}\", which has no density, and no file names one for {}",
+                material_field.path, table.path
+            );
+            let remedy = format!("add density = \"2050 kg/m3\" to [materials.{material}]");
+            return Err(material_field.refuse(problem, remedy));
+        }
+    }
+    Ok(BodyEntry {
+        source,
+        material,
+        bond_kind,
+        position_m: table
+            .read("position", |field| field.vector(&LENGTH))?
+            .unwrap_or_default(),
+        rotation_rad: table
+            .read("rotation", |field| rotation(&field))?
+            .unwrap_or_default(),
+        velocity_m_s: table
+            .read("velocity", |field| field.vector(&VELOCITY))?
+            .unwrap_or_default(),
+        angular_velocity_rad_s: table
+            .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
+            .unwrap_or_default(),
+    })
+}
+
+fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
+    let particles = table.get("particles");
+    let bonds = table.get("bond_list");
+    if let Some(file) = table.get("file") {
+        if let Some(field) = particles.or(bonds) {
+            let problem = format!("{} stands beside file", field.path);
+            return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
+        }
+        let name = file.text()?;
+        if name.trim().is_empty() {
+            return Err(file.wrong("the name of a file", "such as \"body.vtp\""));
+        }
+        return Ok(BodySource::File(resolved(folder, name)));
+    }
+    let Some(particles) = particles else {
+        let problem = format!("{} has no particles", table.path);
+        let remedy = "add file = \"body.vtp\", or particles = [[x, y, z, radius]]";
+        return Err(table.refuse(problem, remedy));
+    };
+    let particles = read_particles(&particles)?;
+    let bonds = match bonds {
+        Some(field) => read_bonds(&field, &particles)?,
+        None => Vec::new(),
+    };
+    Ok(BodySource::Inline { particles, bonds })
+}
+
+fn read_particles(field: &Field<'_>) -> Result<Vec<[f64; 4]>> {
+    let mut particles = Vec::new();
+    for item in field.items()? {
+        let values = item.items()?;
+        let [x, y, z, radius] = values.as_slice() else {
+            return Err(item.wrong("a list of 4", "write [x, y, z, radius]"));
+        };
+        particles.push([
+            x.quantity(&LENGTH)?,
+            y.quantity(&LENGTH)?,
+            z.quantity(&LENGTH)?,
+            radius.positive(&LENGTH)?,
+        ]);
+    }
+    Ok(particles)
+}
+
+/// Bonds with the smaller index first.
+fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>> {
+    let mut bonds = Vec::new();
+    let mut known: HashMap<[u32; 2], usize> = HashMap::new();
+    for (number, item) in field.items()?.into_iter().enumerate() {
+        let values = item.items()?;
+        let [a, b] = values.as_slice() else {
+            return Err(item.wrong("a list of 2", "write the numbers of two particles, from 0"));
+        };
+        let last = particles.len() as u64 - 1;
+        let end = |field: &Field<'_>| {
+            let index = field.particle()?;
+            if u64::from(index) > last {
+                let limit = format!("a particle from 0 to {last}");
+                return Err(field.wrong(&limit, "correct or remove this bond"));
+            }
+            Ok(index)
+        };
+        let (a, b) = (end(a)?, end(b)?);
+        if a == b {
+            let problem = format!("{} joins particle {a} to itself", item.path);
+            return Err(item.refuse(problem, "correct or remove this bond"));
+        }
+        let pair = [a.min(b), a.max(b)];
+        if let Some(first) = known.insert(pair, number) {
+            let problem = format!(
+                "{} joins particles {} and {}, which {}[{first}] joins already",
+                item.path, pair[0], pair[1], field.path
+            );
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        let [from, to] = pair.map(|end| &particles[end as usize]);
+        if from[..3] == to[..3] {
+            let problem = format!(
+                "{} joins particles {} and {}, which stand at the same place",
+                item.path, pair[0], pair[1]
+            );
+            return Err(item.refuse(problem, "a bond needs a length: move one of them"));
+        }
+        bonds.push(pair);
+    }
+    Ok(bonds)
+}
+
+/// `{ axis, angle }` as a rotation vector, rad.
+fn rotation(field: &Field<'_>) -> Result<[f64; 3]> {
+    let table = field.table(&["axis", "angle"])?;
+    let axis = table.need("axis", "[0, 0, 1]")?;
+    let direction = axis.vector(&NUMBER)?;
+    let angle = table.need("angle", "\"45 deg\"")?.quantity(&ANGLE)?;
+    // Scaled first: squares of very large or small numbers leave the range of f64.
+    let largest = direction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    if largest == 0.0 {
+        let problem = format!("{} is [0, 0, 0], which points nowhere", axis.path);
+        return Err(axis.refuse(problem, "give an axis such as [0, 0, 1]"));
+    }
+    let scaled = direction.map(|c| c / largest);
+    let length = scaled.iter().map(|c| c * c).sum::<f64>().sqrt();
+    Ok(scaled.map(|c| c / length * angle))
+}

@@ -1,0 +1,260 @@
+//! One value of a scene: what it should be, and the message where it is not.
+
+use super::names::suggestion;
+use super::table::Table;
+use super::tree::{Document, Node, Value, shortened};
+use crate::units::{self, Dimension, NUMBER};
+use crate::{Diagnostic, Result};
+
+/// Longest text of a value that a message repeats in full, in characters.
+const SHOWN_TEXT: usize = 40;
+
+/// A value of the scene, with its path for messages.
+#[derive(Clone)]
+pub(super) struct Field<'a> {
+    pub(super) document: &'a Document,
+    /// As in `bodies.bar.particles[3]`.
+    pub(super) path: String,
+    pub(super) node: &'a Node,
+}
+
+impl<'a> Field<'a> {
+    /// A message at the place of this value.
+    pub(super) fn refuse(
+        &self,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::input(self.document.place(self.node.origin), problem, remedy)
+    }
+
+    /// This value is not what it must be.
+    pub(super) fn wrong(&self, limit: &str, remedy: impl Into<String>) -> Diagnostic {
+        let problem = format!("{} is {}, but must be {limit}", self.path, self.shown());
+        self.refuse(problem, remedy)
+    }
+
+    /// The value as written, or its kind where that is long.
+    pub(super) fn shown(&self) -> String {
+        match &self.node.value {
+            Value::Text(text) => format!("\"{}\"", shortened(text, SHOWN_TEXT)),
+            Value::Number(written, _) => written.clone(),
+            Value::Boolean(boolean) => boolean.to_string(),
+            Value::Date(date) => format!("the date {date}"),
+            Value::List(items) if items.is_empty() => "an empty list".to_owned(),
+            Value::List(items) => format!("a list of {}", items.len()),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+
+    /// A finite value in SI.
+    ///
+    /// # Errors
+    /// No number, or a unit of something else.
+    pub(super) fn quantity(&self, dimension: &Dimension) -> Result<f64> {
+        match &self.node.value {
+            Value::Number(_, value) if value.is_finite() => Ok(*value),
+            Value::Number(..) => Err(self.wrong("a finite number", example(dimension))),
+            Value::Text(text) => units::quantity(text, dimension).map_err(|error| {
+                let problem = format!("{} is {}: {}", self.path, self.shown(), error.problem);
+                self.refuse(problem, error.remedy)
+            }),
+            _ => Err(self.wrong("a number", example(dimension))),
+        }
+    }
+
+    /// A value for which `holds` is true, which `limit` says in words.
+    ///
+    /// # Errors
+    /// Those of [`Field::quantity`], and beyond the limit.
+    pub(super) fn limited(
+        &self,
+        dimension: &Dimension,
+        holds: impl Fn(f64) -> bool,
+        limit: &str,
+        remedy: &str,
+    ) -> Result<f64> {
+        let value = self.quantity(dimension)?;
+        if holds(value) {
+            return Ok(value);
+        }
+        Err(self.wrong(limit, remedy))
+    }
+
+    /// A value above zero.
+    pub(super) fn positive(&self, dimension: &Dimension) -> Result<f64> {
+        let limit = with_unit("more than 0", dimension);
+        self.limited(dimension, |value| value > 0.0, &limit, &example(dimension))
+    }
+
+    /// A value of zero or more.
+    pub(super) fn not_negative(&self, dimension: &Dimension) -> Result<f64> {
+        let limit = with_unit("at least 0", dimension);
+        self.limited(dimension, |value| value >= 0.0, &limit, &example(dimension))
+    }
+
+    /// A plain number above `low` and below `high`.
+    pub(super) fn between(&self, low: f64, high: f64) -> Result<f64> {
+        self.limited(
+            &NUMBER,
+            |value| value > low && value < high,
+            &format!("more than {low} and less than {high}"),
+            "correct it",
+        )
+    }
+
+    /// Poisson's ratio.
+    pub(super) fn poisson_ratio(&self) -> Result<f64> {
+        self.between(-1.0, 0.5)
+    }
+
+    /// Three values in SI.
+    pub(super) fn vector(&self, dimension: &Dimension) -> Result<[f64; 3]> {
+        let items = self.items()?;
+        let [x, y, z] = items.as_slice() else {
+            let remedy = "write three values, along x, y and z, such as [0, 0, 1]";
+            return Err(self.wrong("a list of 3", remedy));
+        };
+        Ok([
+            x.quantity(dimension)?,
+            y.quantity(dimension)?,
+            z.quantity(dimension)?,
+        ])
+    }
+
+    /// The values of a list that is not empty.
+    ///
+    /// # Errors
+    /// No list, or empty.
+    pub(super) fn items(&self) -> Result<Vec<Field<'a>>> {
+        let Value::List(items) = &self.node.value else {
+            return Err(self.wrong("a list", "write it in [ ]"));
+        };
+        if items.is_empty() {
+            let problem = format!("{} is an empty list", self.path);
+            return Err(self.refuse(problem, "give at least one, or leave the key out"));
+        }
+        let item = |(at, node)| Field {
+            document: self.document,
+            path: format!("{}[{at}]", self.path),
+            node,
+        };
+        Ok(items.iter().enumerate().map(item).collect())
+    }
+
+    /// A text.
+    pub(super) fn text(&self) -> Result<&'a str> {
+        match &self.node.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.wrong("text", "write it in quotes")),
+        }
+    }
+
+    /// True or false.
+    pub(super) fn boolean(&self) -> Result<bool> {
+        match self.node.value {
+            Value::Boolean(boolean) => Ok(boolean),
+            _ => Err(self.wrong("true or false", "write it without quotes")),
+        }
+    }
+
+    /// A whole number from 0.
+    pub(super) fn whole(&self, largest: u64) -> Result<u64> {
+        let limit = format!("a whole number from 0 to {largest}");
+        match &self.node.value {
+            Value::Number(written, _) => written
+                .parse()
+                .ok()
+                .filter(|number| *number <= largest)
+                .ok_or_else(|| self.wrong(&limit, "correct it")),
+            _ => Err(self.wrong(&limit, "correct it")),
+        }
+    }
+
+    /// Number of a particle, from 0.
+    pub(super) fn particle(&self) -> Result<u32> {
+        // Within u32 by the limit.
+        self.whole(u64::from(u32::MAX - 1))
+            .map(|number| number as u32)
+    }
+
+    /// One of several words.
+    pub(super) fn choice<T: Copy>(&self, known: &[(&str, T)]) -> Result<T> {
+        let text = self.text()?;
+        match known.iter().find(|(word, _)| *word == text) {
+            Some((_, meant)) => Ok(*meant),
+            None => {
+                let problem = format!("{} is {}, which is unknown", self.path, self.shown());
+                Err(self.refuse(
+                    problem,
+                    suggestion(text, known.iter().map(|(word, _)| *word)),
+                ))
+            }
+        }
+    }
+
+    /// A name of `known`: the names in `[table.NAME]`.
+    ///
+    /// # Errors
+    /// No text, or no such name.
+    pub(super) fn reference<'n>(
+        &self,
+        known: impl Iterator<Item = &'n String>,
+        table: &str,
+    ) -> Result<String> {
+        let name = self.text()?;
+        let known: Vec<&str> = known.map(String::as_str).collect();
+        if known.contains(&name) {
+            return Ok(name.to_owned());
+        }
+        let problem = format!(
+            "{} is {}, but nothing in [{table}] has this name",
+            self.path,
+            self.shown()
+        );
+        let remedy = if known.is_empty() {
+            format!("add [{table}.{}]", shortened(name, SHOWN_TEXT))
+        } else {
+            suggestion(name, known.into_iter())
+        };
+        Err(self.refuse(problem, remedy))
+    }
+
+    /// A table that may have these keys.
+    ///
+    /// # Errors
+    /// No table, or an unknown key in it.
+    pub(super) fn table(&self, keys: &[&str]) -> Result<Table<'a>> {
+        let table = self.any_table()?;
+        table.refuse_unknown(keys)?;
+        Ok(table)
+    }
+
+    /// A table with any keys.
+    pub(super) fn any_table(&self) -> Result<Table<'a>> {
+        let Value::Table(entries) = &self.node.value else {
+            let remedy = format!("write it as [{}], or in {{ }}", self.path);
+            return Err(self.wrong("a table", remedy));
+        };
+        Ok(Table {
+            document: self.document,
+            path: self.path.clone(),
+            origin: self.node.origin,
+            entries,
+        })
+    }
+}
+
+fn example(dimension: &Dimension) -> String {
+    if dimension.si.is_empty() {
+        return format!("write a number such as {}", dimension.example);
+    }
+    format!(
+        "write a {} such as \"{}\"",
+        dimension.name, dimension.example
+    )
+}
+
+fn with_unit(limit: &str, dimension: &Dimension) -> String {
+    format!("{limit} {}", dimension.si).trim_end().to_owned()
+}

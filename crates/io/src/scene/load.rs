@@ -1,0 +1,64 @@
+//! `[loads.NAME]`, and the factor over time that loads and supports share.
+
+use super::field::Field;
+use super::read::Targets;
+use super::table::Table;
+use super::{Factor, Load};
+use crate::Result;
+use crate::units::{FORCE, NUMBER, TIME, TORQUE};
+
+pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
+    let table = field.table(&["of", "force", "torque", "ramp", "table"])?;
+    let of = targets.name(&table.need("of", "\"NAME\", a set, a body or \"all\"")?)?;
+    let load = Load {
+        of,
+        force_n: table
+            .read("force", |field| field.vector(&FORCE))?
+            .unwrap_or_default(),
+        torque_n_m: table
+            .read("torque", |field| field.vector(&TORQUE))?
+            .unwrap_or_default(),
+        factor: factor(&table)?,
+    };
+    if load.force_n == [0.0; 3] && load.torque_n_m == [0.0; 3] {
+        let problem = format!("{} is a load of zero", table.path);
+        let remedy =
+            "add force = [0, 0, \"100 N\"] or torque = [0, 0, \"1 N m\"], or remove the table";
+        return Err(table.refuse(problem, remedy));
+    }
+    Ok(load)
+}
+
+/// `ramp` or `table`; 1 without either.
+pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
+    match (table.get("ramp"), table.get("table")) {
+        (None, None) => Ok(Factor::One),
+        (Some(field), None) => Ok(Factor::Ramp {
+            until_s: field.positive(&TIME)?,
+        }),
+        (None, Some(field)) => points(&field),
+        (Some(_), Some(field)) => {
+            let problem = format!("{} stands beside ramp", field.path);
+            Err(field.refuse(problem, "the factor follows one of them: remove the other"))
+        }
+    }
+}
+
+fn points(field: &Field<'_>) -> Result<Factor> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for item in field.items()? {
+        let values = item.items()?;
+        let [time, factor] = values.as_slice() else {
+            return Err(item.wrong("a list of 2", "write [time, factor]"));
+        };
+        let time_s = time.quantity(&TIME)?;
+        if let Some([before_s, _]) = points.last()
+            && time_s <= *before_s
+        {
+            let limit = format!("more than the time before it, {before_s} s");
+            return Err(time.wrong(&limit, "put the rows in the order of time"));
+        }
+        points.push([time_s, factor.quantity(&NUMBER)?]);
+    }
+    Ok(Factor::Table(points))
+}

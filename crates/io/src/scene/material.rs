@@ -1,0 +1,30 @@
+//! `[materials.NAME]`
+
+use super::Material;
+use super::field::Field;
+use crate::Result;
+use crate::units::{DENSITY, STRESS};
+
+const KEYS: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poisson_ratio"];
+
+/// `poisson_ratio` unless given.
+const POISSON_RATIO: f64 = 0.3;
+
+pub(super) fn read(field: &Field<'_>) -> Result<Material> {
+    let table = field.table(&KEYS)?;
+    let density_kg_m3 = table.read("density", |field| field.positive(&DENSITY))?;
+    let young = table.read("young_modulus", |field| field.positive(&STRESS))?;
+    let shear = table.read("shear_modulus", |field| field.positive(&STRESS))?;
+    let poisson_ratio = table
+        .read("poisson_ratio", |field| field.poisson_ratio())?
+        .unwrap_or(POISSON_RATIO);
+    if let (Some(_), Some(_), Some(field)) = (young, shear, table.get("shear_modulus")) {
+        let problem = format!("{} stands beside young_modulus", field.path);
+        return Err(field.refuse(problem, "one follows from the other: remove one"));
+    }
+    Ok(Material {
+        density_kg_m3,
+        young_modulus_pa: young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio))),
+        poisson_ratio,
+    })
+}

@@ -1,0 +1,82 @@
+//! Names: what they may look like, and which known one was meant.
+
+/// `did you mean 'end_time'?`, or all the known names where none is near.
+pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.collect();
+    let nearest = known
+        .iter()
+        .map(|candidate| (edit_distance(name, candidate), *candidate))
+        .min_by_key(|(distance, _)| *distance);
+    match nearest {
+        None => "there are none".to_owned(),
+        Some((distance, candidate)) if 3 * distance <= candidate.chars().count() + 2 => {
+            format!("did you mean '{candidate}'?")
+        }
+        Some((_, candidate)) if known.len() > MOST_NAMES => {
+            format!("the nearest known one is '{candidate}'")
+        }
+        Some(_) => format!("known: {}", known.join(", ")),
+    }
+}
+
+/// Longest list of names in a message.
+const MOST_NAMES: usize = 12;
+
+/// Fewest letters inserted, removed, replaced or swapped with their neighbour that make `b` of `a`.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let a: Vec<char> = a.chars().take(LONGEST_COMPARED).collect();
+    let b: Vec<char> = b.chars().take(LONGEST_COMPARED).collect();
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 0..a.len() {
+        let mut row = vec![i + 1];
+        for j in 0..b.len() {
+            let replaced = last[j] + usize::from(a[i] != b[j]);
+            let mut best = replaced.min(last[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j] {
+                best = best.min(before[j - 1] + 1);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}
+
+/// Names are compared by their first letters up to here.
+const LONGEST_COMPARED: usize = 64;
+
+/// Whether `name` is made of letters, digits, - and _.
+pub(super) fn well_formed(name: &str) -> bool {
+    !name.is_empty()
+        && name
+            .bytes()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'_'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances() {
+        for (a, b, distance) in [
+            ("", "", 0),
+            ("end_tim", "end_time", 1),
+            ("end_tmie", "end_time", 1),
+            ("steel", "stone", 3),
+            ("", "abc", 3),
+        ] {
+            assert_eq!(edit_distance(a, b), distance, "{a} {b}");
+            assert_eq!(edit_distance(b, a), distance, "{b} {a}");
+        }
+    }
+
+    #[test]
+    fn suggestions() {
+        let known = || ["end_time", "rest", "seed"].into_iter();
+        assert_eq!(suggestion("end_tim", known()), "did you mean 'end_time'?");
+        assert_eq!(suggestion("colour", known()), "known: end_time, rest, seed");
+        assert_eq!(suggestion("x", std::iter::empty()), "there are none");
+    }
+}

@@ -1,0 +1,146 @@
+//! A scene from its text: the order in which the tables are read, and what holds between them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::names::suggestion;
+use super::table::Table;
+use super::tree::Document;
+use super::{
+    BodyEntry, SCENE_VERSION, Scene, body, bond, load, material, measure, output, run, set, support,
+};
+use crate::scene::field::Field;
+use crate::{Diagnostic, Result};
+
+/// The tables of a scene.
+const KEYS: [&str; 10] = [
+    "version",
+    "run",
+    "materials",
+    "bonds",
+    "bodies",
+    "sets",
+    "supports",
+    "loads",
+    "measures",
+    "output",
+];
+
+/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;
+/// a value that is no TOML is text. File names in the scene are resolved against its folder; "-" stays.
+///
+/// # Errors
+/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
+pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        let remedy = "check the name and its permissions";
+        Diagnostic::input(&name, format!("cannot be read: {error}"), remedy)
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
+        let remedy = "save the file as plain text in UTF-8";
+        Diagnostic::input(format!("{name}:{line}"), "this is not text", remedy)
+    })?;
+    scene_from_text(&text, &name, overrides)
+}
+
+/// Reads a scene from the text of a file named `source`, as [`read_scene`] does.
+///
+/// # Errors
+/// Those of [`read_scene`], but for reading the file.
+pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
+    let mut document = Document::parse(source, text)?;
+    for text in overrides {
+        document.set(text)?;
+    }
+    let root = Table::root(&document)?;
+    check_version(&root)?;
+    root.refuse_unknown(&KEYS)?;
+    let folder = Path::new(source).parent().unwrap_or(Path::new(""));
+
+    let run = run::read(&root)?;
+    let materials = each(&root, "materials", material::read)?;
+    let bonds = each(&root, "bonds", bond::read)?;
+    let bodies = body::read_all(&root, &materials, &bonds, folder)?;
+    let sets = set::read_all(&root, &bodies)?;
+    let targets = Targets::new(&sets, &bodies);
+    Ok(Scene {
+        source: source.to_owned(),
+        run,
+        materials,
+        bonds,
+        supports: each(&root, "supports", |field| support::read(field, &targets))?,
+        loads: each(&root, "loads", |field| load::read(field, &targets))?,
+        measures: each(&root, "measures", |field| measure::read(field, &targets))?,
+        output: root.read("output", |field| output::read(&field, folder))?,
+        bodies,
+        sets,
+    })
+}
+
+fn check_version(root: &Table<'_>) -> Result<()> {
+    let field = root.need("version", &SCENE_VERSION.to_string())?;
+    let version = field.whole(u64::MAX)?;
+    if version > SCENE_VERSION {
+        let problem = format!("version is {version}, but this program knows up to {SCENE_VERSION}");
+        return Err(field.refuse(problem, "use a newer program"));
+    }
+    if version == 0 {
+        return Err(field.wrong(
+            &format!("from 1 to {SCENE_VERSION}"),
+            format!("write version = {SCENE_VERSION}"),
+        ));
+    }
+    Ok(())
+}
+
+/// Every `[key.NAME]`, by name.
+fn each<'a, T>(
+    root: &Table<'a>,
+    key: &str,
+    read: impl Fn(&Field<'a>) -> Result<T>,
+) -> Result<BTreeMap<String, T>> {
+    let tables = root.named(key)?.into_iter();
+    tables
+        .map(|(name, field)| Ok((name, read(&field)?)))
+        .collect()
+}
+
+/// A file of the scene, seen from where the program runs. "-" stays.
+pub(super) fn resolved(folder: &Path, name: &str) -> PathBuf {
+    if name == "-" {
+        PathBuf::from(name)
+    } else {
+        folder.join(name)
+    }
+}
+
+/// What supports, loads and measures can act on: sets, bodies and `all`.
+pub(super) struct Targets<'a> {
+    names: Vec<&'a str>,
+}
+
+impl<'a> Targets<'a> {
+    fn new<T>(sets: &'a BTreeMap<String, T>, bodies: &'a BTreeMap<String, BodyEntry>) -> Self {
+        let names = sets.keys().chain(bodies.keys()).map(String::as_str);
+        Self {
+            names: names.chain(["all"]).collect(),
+        }
+    }
+
+    /// The name that `field` gives, if it is one of these.
+    pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
+        let name = field.text()?;
+        if self.names.contains(&name) {
+            return Ok(name.to_owned());
+        }
+        let problem = format!(
+            "{} is {}, but no set or body has this name",
+            field.path,
+            field.shown()
+        );
+        Err(field.refuse(problem, suggestion(name, self.names.iter().copied())))
+    }
+}

@@ -1,0 +1,76 @@
+//! `[run]`
+
+use super::Run;
+use super::field::Field;
+use super::table::Table;
+use super::tree::Value;
+use crate::Result;
+use crate::units::{ACCELERATION, NUMBER, TIME};
+
+const KEYS: [&str; 7] = [
+    "end_time",
+    "rest",
+    "time_step",
+    "safety",
+    "gravity",
+    "particle_damping",
+    "seed",
+];
+
+/// `safety` unless given.
+const SAFETY: f64 = 0.9;
+
+pub(super) fn read(root: &Table<'_>) -> Result<Run> {
+    let Some(field) = root.get("run") else {
+        let remedy = "add [run] with end_time = \"1 s\"";
+        return Err(root.refuse("the table [run] is missing", remedy));
+    };
+    let table = field.table(&KEYS)?;
+    let end_time_s = table.need("end_time", "\"1 s\"")?.positive(&TIME)?;
+    let time_step_s = match table.get("time_step") {
+        Some(field) => time_step(&field, end_time_s)?,
+        None => None,
+    };
+    Ok(Run {
+        end_time_s,
+        rest: table.read("rest", |field| field.between(0.0, 1.0))?,
+        time_step_s,
+        safety: table
+            .read("safety", |field| field.between(0.0, 1.0))?
+            .unwrap_or(SAFETY),
+        gravity_m_s2: table
+            .read("gravity", |field| field.vector(&ACCELERATION))?
+            .unwrap_or_default(),
+        particle_damping: table
+            .read("particle_damping", |field| {
+                field.limited(
+                    &NUMBER,
+                    |gamma| (0.0..1.0).contains(&gamma),
+                    "at least 0 and less than 1",
+                    "0 damps nothing",
+                )
+            })?
+            .unwrap_or_default(),
+        seed: table
+            .read("seed", |field| field.whole(u64::MAX))?
+            .unwrap_or_default(),
+    })
+}
+
+/// None for "auto".
+fn time_step(field: &Field<'_>, end_time_s: f64) -> Result<Option<f64>> {
+    if matches!(&field.node.value, Value::Text(text) if text == "auto") {
+        return Ok(None);
+    }
+    let step_s = field.limited(
+        &TIME,
+        |step| step > 0.0,
+        "more than 0 s",
+        "write \"auto\" or a time such as \"1 us\"",
+    )?;
+    if step_s > end_time_s {
+        let limit = format!("at most run.end_time, {end_time_s} s");
+        return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));
+    }
+    Ok(Some(step_s))
+}

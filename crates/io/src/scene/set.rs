@@ -1,0 +1,135 @@
+//! `[sets.NAME]`
+
+use std::collections::{BTreeMap, HashSet};
+
+use super::field::Field;
+use super::table::Table;
+use super::{BodyEntry, BodySource, ParticleSet, Pick};
+use crate::Result;
+use crate::units::LENGTH;
+
+/// The ways to pick.
+const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<BTreeMap<String, ParticleSet>> {
+    let mut sets = BTreeMap::new();
+    for (name, field) in root.named("sets")? {
+        if name == "all" || bodies.contains_key(&name) {
+            let of = if name == "all" {
+                "all particles of the scene".to_owned()
+            } else {
+                format!("the body [bodies.{name}]")
+            };
+            let problem = format!("{} is named like {of}", field.path);
+            let remedy = "give it another name, or remove it: the name stands for those particles without it";
+            return Err(field.refuse(problem, remedy));
+        }
+        sets.insert(name, read(&field, bodies)?);
+    }
+    Ok(sets)
+}
+
+fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleSet> {
+    let table = field.table(&["body", "all", "particles", "box", "sphere"])?;
+    let body = table.read("body", |field| field.reference(bodies.keys(), "bodies"))?;
+    let mut given = PICKS
+        .iter()
+        .filter_map(|key| table.get(key).map(|field| (*key, field)));
+    let Some((key, first)) = given.next() else {
+        let problem = format!("{} picks nothing", table.path);
+        let remedy =
+            "add all = true, particles = [0], box = { min, max } or sphere = { centre, radius }";
+        return Err(table.refuse(problem, remedy));
+    };
+    if let Some((_, second)) = given.next() {
+        let problem = format!("{} stands beside {key}", second.path);
+        return Err(second.refuse(
+            problem,
+            "a set picks in one way: remove one, or make two sets",
+        ));
+    }
+    match key {
+        "particles" => {
+            let only = bodies.keys().next().filter(|_| bodies.len() == 1);
+            let Some(body) = body.or(only.cloned()) else {
+                let problem = format!(
+                    "{} says nothing of the body, and there are {}",
+                    first.path,
+                    bodies.len()
+                );
+                let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
+                let remedy = format!("add body = \"NAME\", one of {}", names.join(", "));
+                return Err(first.refuse(problem, remedy));
+            };
+            let pick = Pick::Particles(particles(&first, bodies.get(&body))?);
+            Ok(ParticleSet {
+                body: Some(body),
+                pick,
+            })
+        }
+        "box" => Ok(ParticleSet {
+            body,
+            pick: corners(&first)?,
+        }),
+        "sphere" => {
+            let sphere = first.table(&["centre", "radius"])?;
+            let pick = Pick::Sphere {
+                centre: sphere.need("centre", "[0, 0, 0]")?.vector(&LENGTH)?,
+                radius: sphere.need("radius", "\"5 mm\"")?.positive(&LENGTH)?,
+            };
+            Ok(ParticleSet { body, pick })
+        }
+        _ => {
+            if !first.boolean()? {
+                return Err(first.wrong("true", "write all = true, or pick in another way"));
+            }
+            Ok(ParticleSet {
+                body,
+                pick: Pick::All,
+            })
+        }
+    }
+}
+
+fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
+    let count = match body.map(|body| &body.source) {
+        Some(BodySource::Inline { particles, .. }) => particles.len() as u64,
+        // Whoever reads the file checks the indices.
+        _ => u64::from(u32::MAX),
+    };
+    let mut picked = Vec::new();
+    let mut known = HashSet::new();
+    for item in field.items()? {
+        let index = item.particle()?;
+        if u64::from(index) >= count {
+            let limit = format!("a particle from 0 to {}", count - 1);
+            return Err(item.wrong(&limit, "correct or remove it"));
+        }
+        if !known.insert(index) {
+            let problem = format!("{} is {index}, which is in the list already", item.path);
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        picked.push(index);
+    }
+    Ok(picked)
+}
+
+fn corners(field: &Field<'_>) -> Result<Pick> {
+    let table = field.table(&["min", "max"])?;
+    let min = table.need("min", "[0, 0, 0]")?.vector(&LENGTH)?;
+    let upper = table.need("max", "[1, 1, 1]")?;
+    let max = upper.vector(&LENGTH)?;
+    for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.iter().zip(max)) {
+        if *low > high {
+            let problem = format!(
+                "{} is {high} m along {axis}, but min is {low} m",
+                upper.path
+            );
+            return Err(upper.refuse(problem, "min must be at most max: swap them"));
+        }
+    }
+    Ok(Pick::Box { min, max })
+}
