@@ -258,7 +258,13 @@ impl Block {
 
     /// Lists the bonds that have reached their strength, before any strengthening by rate.
     #[inline(always)]
-    fn check(&mut self, criteria: &Criteria, bonds: &Bonds, run: Range<usize>, failing: &mut Vec<u32>) {
+    fn check(
+        &mut self,
+        criteria: &Criteria,
+        bonds: &Bonds,
+        run: Range<usize>,
+        failing: &mut Vec<u32>,
+    ) {
         let mut used = [0.0; BLOCK];
         for i in 0..BLOCK {
             let load = crate::physics::bond::BondLoad {

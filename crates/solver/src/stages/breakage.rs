@@ -56,8 +56,7 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
     let strengthening = rule.strengthening_from_1_s.map_or(1.0, |from| {
         let [a, b] = bonds.ends[at].map(|end| end as usize);
         let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
-        let velocities =
-            [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
+        let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
         let rate = elongation_rate(&c, &velocities, bonds.initial_length_m(at));
         dynamic_increase_factor(rate, from)
     });

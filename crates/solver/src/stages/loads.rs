@@ -77,7 +77,13 @@ pub fn loads_resultant(
         for &particle in &load.particles {
             let force = load.force_n.map(|f| factor * f);
             let torque = load.torque_n_m.map(|t| factor * t);
-            add_resultant(&mut total, &poses[particle as usize], force, torque, about_m);
+            add_resultant(
+                &mut total,
+                &poses[particle as usize],
+                force,
+                torque,
+                about_m,
+            );
         }
     }
     total

@@ -10,8 +10,13 @@ use crate::state::particles::{Motion, Particles, Wrench};
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
 
-/// Velocities changed by the wrenches, and by `resisting` ones if there are any (one for each particle), and by gravity over the time `kick_s`.
-pub fn kick(particles: &mut Particles, resisting: &[Wrench], gravity_m_s2: [f64; 3], kick_s: f64) {
+/// Velocities changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
+pub fn kick(
+    particles: &mut Particles,
+    resisting: [&[Wrench]; 2],
+    gravity_m_s2: [f64; 3],
+    kick_s: f64,
+) {
     let Particles {
         motions,
         wrenches,
@@ -33,7 +38,7 @@ pub fn kick(particles: &mut Particles, resisting: &[Wrench], gravity_m_s2: [f64;
                         per_mass * wrench.force_n[k] + kick_s * gravity_m_s2[k];
                     motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
                 }
-                if let Some(wrench) = resisting.get(i) {
+                for wrench in resisting.iter().filter_map(|list| list.get(i)) {
                     for k in 0..3 {
                         motion.velocity_m_s[k] += per_mass * wrench.force_n[k];
                         motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];

@@ -31,9 +31,7 @@ fn halve(positions: &[[f64; 3]], order: &mut [u32]) {
     });
     let middle = order.len() / 2;
     let place = |i: &u32| positions[*i as usize][longest];
-    order.select_nth_unstable_by(middle, |i, j| {
-        place(i).total_cmp(&place(j)).then(i.cmp(j))
-    });
+    order.select_nth_unstable_by(middle, |i, j| place(i).total_cmp(&place(j)).then(i.cmp(j)));
     let (left, right) = order.split_at_mut(middle);
     halve(positions, left);
     halve(positions, right);

@@ -1,0 +1,5 @@
+//! What a run checks of itself.
+
+pub mod ledger;
+pub mod limit;
+pub mod watchdog;

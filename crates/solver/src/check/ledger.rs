@@ -1,0 +1,419 @@
+//! Ledgers of energy and momentum: what went in and out, against what is there.
+//!
+//! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning, half at its end. So the ledger is as exact
+//! as the step: its error falls with the square of the time step.
+
+use crate::physics::bond::total::BondEnergy;
+use crate::stages::loads::{SetLoad, add_resultant, loads_power_w, loads_resultant};
+use crate::stages::motion::{CHUNK, ordered_sum, power_w};
+use crate::stages::supports::reactions_power_w;
+use crate::state::State;
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What went in and out since the start.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// Up to the present moment; the half step after it is in `pending`.
+    work: Work,
+    pending: Work,
+    /// Released by bonds that broke, J.
+    released_j: f64,
+    /// Kinetic, elastic and potential energy at the start, J.
+    opening_j: f64,
+    /// Largest energy and work seen, J.
+    scale_j: f64,
+    /// The centre of mass at the start, about which moments are taken, m.
+    about_m: [f64; 3],
+    mass_kg: f64,
+    /// Sum of mass times place from `about_m`, kg m.
+    first_moment: [f64; 3],
+    /// What momentum and angular momentum should be, N s and N m s.
+    momentum: [f64; 3],
+    angular_momentum: [f64; 3],
+    /// Largest sums of magnitudes seen, N s and N m s.
+    momentum_scale: f64,
+    angular_momentum_scale: f64,
+}
+
+/// Work by cause, J. Dissipation counts as positive.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Work {
+    loads: f64,
+    supports: f64,
+    bond_damping: f64,
+    particle_damping: f64,
+}
+
+/// The ledger at a moment.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Balance {
+    /// Of velocities at this moment, J.
+    pub kinetic_j: f64,
+    /// Of bonds, stretch, J.
+    pub elastic_normal_j: f64,
+    /// Of bonds, shear, J.
+    pub elastic_shear_j: f64,
+    /// Of bonds, torsion, J.
+    pub elastic_torsion_j: f64,
+    /// Of bonds, bending, J.
+    pub elastic_bending_j: f64,
+    /// In gravity, from the place at the start, J.
+    pub gravity_j: f64,
+    /// Done by loads, J.
+    pub load_work_j: f64,
+    /// Done by supports, J.
+    pub support_work_j: f64,
+    /// Dissipated by damping of bonds, J.
+    pub bond_damping_j: f64,
+    /// Dissipated by damping of particles, J.
+    pub particle_damping_j: f64,
+    /// Released by bonds that broke, J.
+    pub released_j: f64,
+    /// What is there less what should be, J.
+    pub energy_error_j: f64,
+    /// The same over the largest energy or work so far.
+    pub energy_error: f64,
+    /// Momentum that is there less what should be, over the largest sum of its parts' magnitudes so far.
+    pub momentum_error: f64,
+    /// The same for angular momentum about the initial centre of mass.
+    pub angular_momentum_error: f64,
+}
+
+impl Balance {
+    /// Of bonds, all modes, J.
+    pub fn elastic_j(&self) -> f64 {
+        self.elastic_normal_j
+            + self.elastic_shear_j
+            + self.elastic_torsion_j
+            + self.elastic_bending_j
+    }
+}
+
+impl Ledger {
+    /// The ledger of a state before its first step.
+    pub fn opened(state: &State) -> Self {
+        let p = &state.particles;
+        let mass_kg = ordered_sum(p.len(), |i| 1.0 / p.inverse_masses[i]);
+        let about_m = [0, 1, 2].map(|k| {
+            ordered_sum(p.len(), |i| p.poses[i].position_m[k] / p.inverse_masses[i]) / mass_kg
+        });
+        let mut ledger = Self {
+            about_m,
+            mass_kg,
+            ..Self::default()
+        };
+        let elastic = elastic_energy(state).total();
+        ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic;
+        ledger.scale_j = ledger.opening_j;
+        let (momentum, scales) = momenta(p, about_m);
+        [ledger.momentum, ledger.angular_momentum] = momentum;
+        [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
+        ledger
+    }
+
+    /// Work of the half step that ends with this kick.
+    pub fn before_kick(
+        &mut self,
+        loads: &[SetLoad],
+        bond_resistance: &[Wrench],
+        particle_resistance: &[Wrench],
+        particles: &Particles,
+        time_s: f64,
+        step_before_s: f64,
+    ) {
+        self.settle();
+        let powers = powers(
+            loads,
+            bond_resistance,
+            particle_resistance,
+            &particles.motions,
+            time_s,
+        );
+        self.work.add(&powers, 0.5 * step_before_s);
+    }
+
+    fn settle(&mut self) {
+        let pending = std::mem::take(&mut self.pending);
+        self.work.add(&pending, 1.0);
+    }
+
+    /// Where the centre of mass should be after a drift.
+    pub fn drift(&mut self, time_step_s: f64) {
+        for k in 0..3 {
+            self.first_moment[k] += time_step_s * self.momentum[k];
+        }
+    }
+}
+
+impl Work {
+    fn add(&mut self, other: &Self, factor: f64) {
+        self.loads += factor * other.loads;
+        self.supports += factor * other.supports;
+        self.bond_damping += factor * other.bond_damping;
+        self.particle_damping += factor * other.particle_damping;
+    }
+}
+
+/// Powers of loads and damping, W.
+fn powers(
+    loads: &[SetLoad],
+    bond_resistance: &[Wrench],
+    particle_resistance: &[Wrench],
+    motions: &[Motion],
+    time_s: f64,
+) -> Work {
+    Work {
+        loads: loads_power_w(loads, time_s, motions),
+        supports: 0.0,
+        bond_damping: -power_w(bond_resistance, motions),
+        particle_damping: -power_w(particle_resistance, motions),
+    }
+}
+
+/// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
+pub fn after_kick(state: &mut State) {
+    let State {
+        ledger,
+        particles,
+        supports,
+        loads,
+        ..
+    } = state;
+    let (before_s, after_s) = (state.previous_time_step_s, state.time_step_s);
+    let [power_before, power_after] = reactions_power_w(supports, &particles.motions);
+    ledger.work.supports += 0.5 * before_s * power_before;
+    let mut pending = powers(
+        loads,
+        &state.bond_resistance,
+        &state.particle_resistance,
+        &particles.motions,
+        state.time_s,
+    );
+    pending.supports = power_after;
+    ledger.pending.add(&pending, 0.5 * after_s);
+    for broken in &state.broken {
+        ledger.released_j += broken.released_j;
+    }
+
+    let about = ledger.about_m;
+    let mut total = loads_resultant(loads, state.time_s, &particles.poses, about);
+    for support in supports.iter() {
+        for held in &support.held {
+            let [fx, fy, fz, tx, ty, tz] = held.reaction;
+            let pose = &particles.poses[held.particle as usize];
+            add_resultant(&mut total, pose, [fx, fy, fz], [tx, ty, tz], about);
+        }
+    }
+    let resisted = resultant(&state.particle_resistance, &particles.poses, about);
+    let g = state.gravity_m_s2;
+    let [sx, sy, sz] = ledger.first_moment;
+    let fall = [
+        sy * g[2] - sz * g[1],
+        sz * g[0] - sx * g[2],
+        sx * g[1] - sy * g[0],
+    ];
+    let kick_s = 0.5 * (before_s + after_s);
+    for k in 0..3 {
+        ledger.momentum[k] += kick_s * (total[0][k] + resisted[0][k] + ledger.mass_kg * g[k]);
+        ledger.angular_momentum[k] += kick_s * (total[1][k] + resisted[1][k] + fall[k]);
+    }
+}
+
+/// Force and moment about a point of wrenches on particles.
+fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3]; 2] {
+    let chunks: Vec<[[f64; 3]; 2]> = wrenches
+        .par_chunks(CHUNK)
+        .zip(poses.par_chunks(CHUNK))
+        .map(|(wrenches, poses)| {
+            let mut total = [[0.0; 3]; 2];
+            for (wrench, pose) in wrenches.iter().zip(poses) {
+                let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
+                add_resultant(&mut total, pose, [fx, fy, fz], [tx, ty, tz], about_m);
+            }
+            total
+        })
+        .collect();
+    chunks.iter().fold([[0.0; 3]; 2], |mut sum, part| {
+        for k in 0..3 {
+            sum[0][k] += part[0][k];
+            sum[1][k] += part[1][k];
+        }
+        sum
+    })
+}
+
+/// The ledger between a kick and the drift after it. Remembers the largest energies and momenta.
+pub fn balance(state: &mut State) -> Balance {
+    let motions = synchronous_motions(state);
+    let p = &state.particles;
+    let kinetic = kinetic_energy(p, |i| motions[i]);
+    let elastic = elastic_energy(state);
+    let (present, scales) = momenta(p, state.ledger.about_m);
+    let g = state.gravity_m_s2;
+    let ledger = &mut state.ledger;
+    let gravity: f64 = -(0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
+
+    let work = &ledger.work;
+    let gone = work.bond_damping + work.particle_damping + ledger.released_j;
+    let error =
+        kinetic + elastic.total() + gravity + gone - work.loads - work.supports - ledger.opening_j;
+    let largest = [
+        kinetic + elastic.total(),
+        gravity.abs(),
+        work.loads.abs(),
+        work.supports.abs(),
+    ];
+    ledger.scale_j = largest.into_iter().fold(ledger.scale_j, f64::max);
+    ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
+    ledger.angular_momentum_scale = ledger.angular_momentum_scale.max(scales[1]);
+    let off = |is: [f64; 3], should: [f64; 3], scale: f64| {
+        over(
+            (0..3)
+                .map(|k| (is[k] - should[k]).powi(2))
+                .sum::<f64>()
+                .sqrt(),
+            scale,
+        )
+    };
+    Balance {
+        kinetic_j: kinetic,
+        elastic_normal_j: elastic.normal,
+        elastic_shear_j: elastic.shear,
+        elastic_torsion_j: elastic.torsion,
+        elastic_bending_j: elastic.bending,
+        gravity_j: gravity,
+        load_work_j: work.loads,
+        support_work_j: work.supports,
+        bond_damping_j: work.bond_damping,
+        particle_damping_j: work.particle_damping,
+        released_j: ledger.released_j,
+        energy_error_j: error,
+        energy_error: over(error, ledger.scale_j),
+        momentum_error: off(present[0], ledger.momentum, ledger.momentum_scale),
+        angular_momentum_error: off(
+            present[1],
+            ledger.angular_momentum,
+            ledger.angular_momentum_scale,
+        ),
+    }
+}
+
+/// A ratio that is 0 where there is nothing to compare with.
+fn over(value: f64, scale: f64) -> f64 {
+    if scale == 0.0 { 0.0 } else { value / scale }
+}
+
+/// Velocities and spins at the time of the poses, between a kick and the drift after it. One per particle.
+pub fn synchronous_motions(state: &State) -> Vec<Motion> {
+    let p = &state.particles;
+    let half_s = 0.5 * state.time_step_s;
+    let back = |i: usize| {
+        let mut motion = p.motions[i];
+        let (per_mass, per_inertia) =
+            (half_s * p.inverse_masses[i], half_s * p.inverse_inertias[i]);
+        for wrenches in [
+            &p.wrenches,
+            &state.bond_resistance,
+            &state.particle_resistance,
+        ] {
+            if let Some(wrench) = wrenches.get(i) {
+                for k in 0..3 {
+                    motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];
+                    motion.spin_rad_s[k] -= per_inertia * wrench.torque_n_m[k];
+                }
+            }
+        }
+        for k in 0..3 {
+            motion.velocity_m_s[k] -= half_s * state.gravity_m_s2[k];
+        }
+        motion
+    };
+    let mut motions: Vec<Motion> = (0..p.len())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(back)
+        .collect();
+    for support in &state.supports {
+        for held in &support.held {
+            let after = &p.motions[held.particle as usize];
+            let motion = &mut motions[held.particle as usize];
+            for k in 0..3 {
+                if support.holds[k].is_some() {
+                    motion.velocity_m_s[k] = 0.5 * (held.before[k] + after.velocity_m_s[k]);
+                }
+                if support.holds[k + 3].is_some() {
+                    motion.spin_rad_s[k] = 0.5 * (held.before[k + 3] + after.spin_rad_s[k]);
+                }
+            }
+        }
+    }
+    motions
+}
+
+/// Kinetic energy of particles that move so, J.
+pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
+    ordered_sum(particles.len(), |i| {
+        let Motion {
+            velocity_m_s: v,
+            spin_rad_s: w,
+        } = motion(i);
+        let square = |v: [f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        0.5 * (square(v) / particles.inverse_masses[i] + square(w) / particles.inverse_inertias[i])
+    })
+}
+
+/// Elastic energy of all bonds by mode.
+pub fn elastic_energy(state: &State) -> BondEnergy {
+    let bonds = &state.bonds;
+    let chunk_energy = |chunk: usize| {
+        let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(bonds.len());
+        let mut sum = BondEnergy::default();
+        for at in range.filter(|&at| !bonds.is_broken(at)) {
+            let energy = bonds.forces(at, &state.particles.poses).energy;
+            sum = add_energies(&sum, &energy);
+        }
+        sum
+    };
+    let chunks: Vec<BondEnergy> = (0..bonds.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(chunk_energy)
+        .collect();
+    chunks
+        .iter()
+        .fold(BondEnergy::default(), |sum, part| add_energies(&sum, part))
+}
+
+fn add_energies(a: &BondEnergy, b: &BondEnergy) -> BondEnergy {
+    BondEnergy {
+        normal: a.normal + b.normal,
+        shear: a.shear + b.shear,
+        torsion: a.torsion + b.torsion,
+        bending: a.bending + b.bending,
+    }
+}
+
+/// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
+fn momenta(particles: &Particles, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
+    let part = |i: usize| {
+        let (pose, motion) = (&particles.poses[i], &particles.motions[i]);
+        let (mass, inertia) = (
+            1.0 / particles.inverse_masses[i],
+            1.0 / particles.inverse_inertias[i],
+        );
+        let mut part = [[0.0; 3]; 2];
+        let momentum = motion.velocity_m_s.map(|v| mass * v);
+        let spin = motion.spin_rad_s.map(|w| inertia * w);
+        add_resultant(&mut part, pose, momentum, spin, about_m);
+        part
+    };
+    let component = |which: usize, k: usize| ordered_sum(particles.len(), |i| part(i)[which][k]);
+    let magnitude = |which: usize| {
+        ordered_sum(particles.len(), |i| {
+            part(i)[which].iter().map(|c| c * c).sum::<f64>().sqrt()
+        })
+    };
+    let total = [0, 1].map(|which| [0, 1, 2].map(|k| component(which, k)));
+    (total, [magnitude(0), magnitude(1)])
+}

@@ -1,0 +1,249 @@
+//! The largest stable time step: from the largest eigenvalue of the linearised system, found by Lanczos' method on the real forces.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use crate::physics::rigid::turn;
+use crate::stages::bonds::bond_wrenches;
+use crate::stages::damping::damping_wrenches;
+use crate::state::State;
+use crate::state::particles::{Motion, Wrench};
+
+/// Iterations at least and at most.
+const ITERATIONS: [usize; 2] = [20, 120];
+/// Largest residual over eigenvalue at which the search ends.
+const RESIDUAL: f64 = 1e-4;
+/// Displacement for the difference quotient, in radii, and rotation, in radians.
+const STEP: f64 = 1e-5;
+
+/// What was found of the largest stable step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Largest stable step, s. Infinite where nothing vibrates.
+    pub step_s: f64,
+    /// The same without damping, s.
+    pub undamped_step_s: f64,
+    /// Largest circular frequency, rad/s.
+    pub omega_rad_s: f64,
+    /// Largest eigenvalue of damping over mass, 1/s.
+    pub damping_1_s: f64,
+    /// Iterations needed for the frequency.
+    pub iterations: usize,
+}
+
+/// The limit of kick-drift-kick for the state as it stands: dt <= (-c + sqrt(c^2 + 4 k))/k, with k and c the largest eigenvalues of M^-1 K and M^-1 C.
+///
+/// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. The wrenches of the state are overwritten.
+pub fn limit(state: &mut State) -> Limit {
+    let (k, iterations) = largest_eigenvalue(state, stiffness_times);
+    let c = if state.bond_resistance.is_empty() {
+        0.0
+    } else {
+        largest_eigenvalue(state, damping_times).0
+    };
+    Limit {
+        step_s: damped_step(k, c),
+        undamped_step_s: damped_step(k, 0.0),
+        omega_rad_s: k.sqrt(),
+        damping_1_s: c,
+        iterations,
+    }
+}
+
+/// The step from the two eigenvalues, written so that nothing cancels: 4 / (c + sqrt(c^2 + 4 k)).
+pub fn damped_step(k: f64, c: f64) -> f64 {
+    4.0 / (c + (c * c + 4.0 * k).sqrt())
+}
+
+/// A vector with three displacements and three rotations for each particle.
+type Field = Vec<[f64; 6]>;
+
+/// Largest eigenvalue of a symmetric operator between displacements and forces, over mass; and the iterations needed.
+/// An upper bound by the residual: never too small by more than that is too large.
+fn largest_eigenvalue(
+    state: &mut State,
+    times: fn(&mut State, &Field, &mut Field),
+) -> (f64, usize) {
+    let roots = inverse_mass_roots(state);
+    let count = roots.len();
+    let mut present = start(&roots);
+    let mut before: Field = vec![[0.0; 6]; count];
+    let mut image: Field = vec![[0.0; 6]; count];
+    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    let mut largest = (0.0, 0.0);
+    for iteration in 1..=ITERATIONS[1].min(6 * count) {
+        let moved: Field = scaled(&present, &roots);
+        times(state, &moved, &mut image);
+        image = scaled(&image, &roots);
+        let alpha = dot(&image, &present);
+        let beta_before = beside.last().copied().unwrap_or(0.0);
+        for i in 0..count {
+            for k in 0..6 {
+                image[i][k] -= alpha * present[i][k] + beta_before * before[i][k];
+            }
+        }
+        let beta = dot(&image, &image).sqrt();
+        diagonal.push(alpha);
+        largest = largest_ritz(&diagonal, &beside, beta);
+        let (value, residual) = largest;
+        let settled = iteration >= ITERATIONS[0] && residual <= RESIDUAL * value;
+        if settled || beta <= 1e-13 * value || beta == 0.0 {
+            break;
+        }
+        beside.push(beta);
+        std::mem::swap(&mut before, &mut present);
+        for i in 0..count {
+            for k in 0..6 {
+                present[i][k] = image[i][k] / beta;
+            }
+        }
+    }
+    let (value, residual) = largest;
+    ((value + residual).max(0.0), diagonal.len())
+}
+
+/// Largest eigenvalue of Lanczos' tridiagonal matrix, and how far it can be from an eigenvalue of the operator.
+fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
+    let n = diagonal.len();
+    let mut matrix = DMatrix::zeros(n, n);
+    for i in 0..n {
+        matrix[(i, i)] = diagonal[i];
+        if i + 1 < n {
+            matrix[(i, i + 1)] = beside[i];
+            matrix[(i + 1, i)] = beside[i];
+        }
+    }
+    let eigen = SymmetricEigen::new(matrix);
+    let at = eigen.eigenvalues.imax();
+    (
+        eigen.eigenvalues[at],
+        beta * eigen.eigenvectors[(n - 1, at)].abs(),
+    )
+}
+
+/// One over the root of mass or inertia of each freedom; 0 where a support holds it.
+fn inverse_mass_roots(state: &State) -> Field {
+    let p = &state.particles;
+    let mut roots: Field = (0..p.len())
+        .map(|i| {
+            let (m, j) = (p.inverse_masses[i].sqrt(), p.inverse_inertias[i].sqrt());
+            [m, m, m, j, j, j]
+        })
+        .collect();
+    for support in &state.supports {
+        for held in &support.held {
+            for (root, hold) in roots[held.particle as usize].iter_mut().zip(support.holds) {
+                if hold.is_some() {
+                    *root = 0.0;
+                }
+            }
+        }
+    }
+    roots
+}
+
+/// A unit vector that has a part of every mode: signs and sizes scattered by a hash, the same on every machine.
+fn start(roots: &Field) -> Field {
+    let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut field: Field = roots
+        .iter()
+        .map(|roots| {
+            roots.map(|root| {
+                hash ^= hash << 13;
+                hash ^= hash >> 7;
+                hash ^= hash << 17;
+                if root == 0.0 {
+                    0.0
+                } else {
+                    (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+                }
+            })
+        })
+        .collect();
+    let norm = dot(&field, &field).sqrt();
+    if norm > 0.0 {
+        field.iter_mut().flatten().for_each(|f| *f /= norm);
+    }
+    field
+}
+
+fn scaled(field: &Field, by: &Field) -> Field {
+    let times = |(a, b): (&[f64; 6], &[f64; 6])| [0, 1, 2, 3, 4, 5].map(|k| a[k] * b[k]);
+    field.iter().zip(by).map(times).collect()
+}
+
+fn dot(a: &Field, b: &Field) -> f64 {
+    crate::stages::motion::ordered_sum(a.len(), |i| (0..6).map(|k| a[i][k] * b[i][k]).sum())
+}
+
+/// Stiffness times a small displacement: minus the change of the forces, by a central difference.
+fn stiffness_times(state: &mut State, moved: &Field, result: &mut Field) {
+    let largest = moved
+        .iter()
+        .zip(&state.particles.radii_m)
+        .flat_map(|(m, radius)| {
+            let shift = m[0].abs().max(m[1].abs()).max(m[2].abs()) / radius;
+            [shift, m[3].abs(), m[4].abs(), m[5].abs()]
+        })
+        .fold(0.0, f64::max);
+    if largest == 0.0 {
+        result.fill([0.0; 6]);
+        return;
+    }
+    let step = STEP / largest;
+    let rest = state.particles.poses.clone();
+    let mut forces_at = |sign: f64| {
+        for ((pose, rest), moved) in state.particles.poses.iter_mut().zip(&rest).zip(moved) {
+            let [x, y, z, rx, ry, rz] = moved.map(|m| sign * step * m);
+            let [px, py, pz, zero] = rest.position_m;
+            pose.position_m = [px + x, py + y, pz + z, zero];
+            pose.turned = turn(rest.turned, [rx, ry, rz]);
+        }
+        bonds_as_total(state);
+        state.particles.wrenches.iter().map(six).collect::<Field>()
+    };
+    let forward = forces_at(1.0);
+    let backward = forces_at(-1.0);
+    state.particles.poses = rest;
+    for (result, (f, b)) in result.iter_mut().zip(forward.iter().zip(&backward)) {
+        *result = [0, 1, 2, 3, 4, 5].map(|k| (b[k] - f[k]) / (2.0 * step));
+    }
+}
+
+/// Forces of all bonds by the total formulation, without looking for failing ones.
+fn bonds_as_total(state: &mut State) {
+    let rules = state.bonds.rules.clone();
+    for rule in &mut state.bonds.rules {
+        rule.incremental = false;
+        rule.criteria = None;
+    }
+    let p = &mut state.particles;
+    bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+    state.bonds.rules = rules;
+}
+
+/// Damping times a velocity.
+fn damping_times(state: &mut State, moved: &Field, result: &mut Field) {
+    let motions: Vec<Motion> = moved
+        .iter()
+        .map(|&[vx, vy, vz, wx, wy, wz]| Motion {
+            velocity_m_s: [vx, vy, vz],
+            spin_rad_s: [wx, wy, wz],
+        })
+        .collect();
+    let State {
+        bonds,
+        particles,
+        shares,
+        bond_resistance,
+        ..
+    } = state;
+    damping_wrenches(bonds, &particles.poses, &motions, shares, bond_resistance);
+    for (result, wrench) in result.iter_mut().zip(bond_resistance) {
+        *result = six(wrench).map(|f| -f);
+    }
+}
+
+fn six(wrench: &Wrench) -> [f64; 6] {
+    let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
+    [fx, fy, fz, tx, ty, tz]
+}

@@ -1,0 +1,103 @@
+//! The time step, in the order in which it happens.
+
+use crate::clock::Stage;
+use crate::stages::bonds::bond_wrenches;
+use crate::stages::breakage::break_bonds;
+use crate::stages::damping::damping_wrenches;
+use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
+use crate::stages::loads::add_loads;
+use crate::stages::motion::{add_particle_damping, drift, kick};
+use crate::stages::supports::{hold, remember};
+use crate::state::State;
+use crate::state::particles::Wrench;
+
+/// First half of a step: what acts on the particles where they are, and how that changes their velocities.
+///
+/// Afterwards poses stand at `time_s` and velocities half a step later: the moment at which everything can be measured.
+pub fn act(state: &mut State) {
+    let before_s = state.previous_time_step_s;
+    let p = &mut state.particles;
+    state.clock.start(state.steps);
+
+    if !state.bonds.histories.is_empty() && before_s > 0.0 {
+        advance_histories(&mut state.bonds, &p.poses, &p.motions, before_s);
+    }
+    bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+    if !state.bonds.histories.is_empty() {
+        add_incremental_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+    }
+    state.clock.book(Stage::Bonds);
+
+    state.broken.clear();
+    break_bonds(
+        &mut state.bonds,
+        p,
+        &state.shares,
+        0.5 * before_s,
+        &mut state.broken,
+    );
+    state.broken_count += state.broken.len() as u64;
+    add_loads(&state.loads, state.time_s, &mut p.wrenches);
+    state.clock.book(Stage::Rest);
+
+    if !state.bond_resistance.is_empty() {
+        damping_wrenches(
+            &state.bonds,
+            &p.poses,
+            &p.motions,
+            &state.shares,
+            &mut state.bond_resistance,
+        );
+    }
+    if !state.particle_resistance.is_empty() {
+        state.particle_resistance.fill(Wrench::default());
+        add_particle_damping(
+            p,
+            state.gravity_m_s2,
+            state.particle_damping,
+            &mut state.particle_resistance,
+        );
+    }
+    state.clock.book(Stage::Damping);
+
+    let kick_s = 0.5 * (before_s + state.time_step_s);
+    state.ledger.before_kick(
+        &state.loads,
+        &state.bond_resistance,
+        &state.particle_resistance,
+        p,
+        state.time_s,
+        before_s,
+    );
+    remember(&mut state.supports, &p.motions);
+    state.clock.book(Stage::Rest);
+    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
+    kick(p, resistance, state.gravity_m_s2, kick_s);
+    state.clock.book(Stage::Motion);
+    hold(
+        &mut state.supports,
+        p,
+        state.time_s,
+        state.time_step_s,
+        kick_s,
+    );
+    crate::check::ledger::after_kick(state);
+    state.clock.book(Stage::Rest);
+}
+
+/// Second half of a step: the particles move on.
+pub fn move_on(state: &mut State) {
+    state.clock.start(state.steps);
+    drift(&mut state.particles, state.time_step_s);
+    state.ledger.drift(state.time_step_s);
+    state.time_s += state.time_step_s;
+    state.previous_time_step_s = state.time_step_s;
+    state.steps += 1;
+    state.clock.book(Stage::Motion);
+}
+
+/// A whole step.
+pub fn step(state: &mut State) {
+    act(state);
+    move_on(state);
+}
