@@ -1,6 +1,6 @@
 //! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an algorithm of either program.
 //!
-//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files.
+//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files; TOML -> [`scene`].
 //! Lengths are metres unless a name says otherwise.
 
 pub mod body;
