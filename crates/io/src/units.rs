@@ -31,6 +31,14 @@ pub struct Dimension {
     pub example: &'static str,
 }
 
+impl Dimension {
+    /// "a length", "an angle".
+    pub(crate) fn named(&self) -> String {
+        let vowel = self.name.starts_with(['a', 'e', 'i', 'o', 'u']);
+        format!("{} {}", if vowel { "an" } else { "a" }, self.name)
+    }
+}
+
 /// Length, m.
 pub const LENGTH: Dimension = Dimension {
     name: "length",
@@ -172,7 +180,7 @@ pub const RATE: Dimension = Dimension {
 
 /// Force over velocity, N s/m.
 pub const VISCOUS_DAMPING: Dimension = Dimension {
-    name: "damping",
+    name: "damping coefficient",
     si: "N s/m",
     units: &[
         ("mN s/m", 1e-3),
@@ -226,7 +234,7 @@ pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let value: f64 = number.parse().map_err(|_| {
         Diagnostic::input(
             "",
-            format!("'{}' is not a {}", text.escape_debug(), dimension.name),
+            format!("'{}' is not {}", text.escape_debug(), dimension.named()),
             format!("write a number with a unit, such as {}", dimension.example),
         )
     })?;
@@ -234,14 +242,22 @@ pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let size = if unit.is_empty() {
         1.0
     } else {
-        unit_size(unit, dimension)?
+        unit_size(unit, dimension).map_err(|error| Diagnostic {
+            problem: format!(
+                "'{}' is not {}: {}",
+                text.escape_debug(),
+                dimension.named(),
+                error.problem
+            ),
+            ..error
+        })?
     };
     let value = value * size;
     if !value.is_finite() {
         return Err(Diagnostic::input(
             "",
             format!("'{text}' is not a finite {}", dimension.name),
-            "",
+            "write a smaller number",
         ));
     }
     Ok(value)
@@ -278,11 +294,7 @@ fn unit_size(name: &str, dimension: &Dimension) -> Result<f64> {
             let known: Vec<&str> = dimension.units.iter().map(|(n, _)| *n).collect();
             Diagnostic::input(
                 "",
-                format!(
-                    "unknown unit '{}' of {}",
-                    name.escape_debug(),
-                    dimension.name
-                ),
+                format!("unknown unit '{}'", name.escape_debug()),
                 format!("use one of {}", known.join(", ")),
             )
         })
@@ -391,7 +403,7 @@ mod tests {
     #[test]
     fn a_wrong_unit_names_those_that_fit() {
         let message = quantity("5 mm", &TIME).map_err(|e| e.to_string());
-        let wanted = "unknown unit 'mm' of time; use one of ns, us, ms, s, min, h";
+        let wanted = "'5 mm' is not a time: unknown unit 'mm'; use one of ns, us, ms, s, min, h";
         assert_eq!(message, Err(wanted.to_owned()));
     }
 

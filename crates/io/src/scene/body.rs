@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use super::field::Field;
-use super::read::resolved;
+use super::read::named_path;
 use super::table::Table;
 use super::{BodyEntry, BodySource, BondKind, Material};
 use crate::Result;
@@ -34,12 +34,24 @@ pub(super) fn read_all(
         return Err(root.refuse("there is no body", remedy));
     }
     let mut bodies = BTreeMap::new();
+    let mut piped: Option<String> = None;
     for (name, field) in tables {
         if name == "all" {
             let problem = format!("{} is named like all particles of the scene", field.path);
             return Err(field.refuse(problem, "give it another name"));
         }
-        bodies.insert(name, read(&field, materials, bonds, folder)?);
+        let body = read(&field, materials, bonds, folder)?;
+        if matches!(&body.source, BodySource::File(file) if file.as_os_str() == "-")
+            && let Some(first) = piped.replace(name.clone())
+        {
+            let problem = format!(
+                "{} reads standard input, as bodies.{first} does",
+                field.path
+            );
+            let remedy = "it can be read once: give one of them another file";
+            return Err(field.refuse(problem, remedy));
+        }
+        bodies.insert(name, body);
     }
     Ok(bodies)
 }
@@ -98,11 +110,7 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
             let problem = format!("{} stands beside file", field.path);
             return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
         }
-        let name = file.text()?;
-        if name.trim().is_empty() {
-            return Err(file.wrong("the name of a file", "such as \"body.vtp\""));
-        }
-        return Ok(BodySource::File(resolved(folder, name)));
+        return Ok(BodySource::File(named_path(&file, folder)?));
     }
     let Some(particles) = particles else {
         let problem = format!("{} has no particles", table.path);
@@ -120,10 +128,7 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
 fn read_particles(field: &Field<'_>) -> Result<Vec<[f64; 4]>> {
     let mut particles = Vec::new();
     for item in field.items()? {
-        let values = item.items()?;
-        let [x, y, z, radius] = values.as_slice() else {
-            return Err(item.wrong("a list of 4", "write [x, y, z, radius]"));
-        };
+        let [x, y, z, radius] = item.row("[x, y, z, radius]")?;
         particles.push([
             x.quantity(&LENGTH)?,
             y.quantity(&LENGTH)?,
@@ -138,21 +143,10 @@ fn read_particles(field: &Field<'_>) -> Result<Vec<[f64; 4]>> {
 fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>> {
     let mut bonds = Vec::new();
     let mut known: HashMap<[u32; 2], usize> = HashMap::new();
+    let count = u32::try_from(particles.len()).unwrap_or(u32::MAX);
     for (number, item) in field.items()?.into_iter().enumerate() {
-        let values = item.items()?;
-        let [a, b] = values.as_slice() else {
-            return Err(item.wrong("a list of 2", "write the numbers of two particles, from 0"));
-        };
-        let last = particles.len() as u64 - 1;
-        let end = |field: &Field<'_>| {
-            let index = field.particle()?;
-            if u64::from(index) > last {
-                let limit = format!("a particle from 0 to {last}");
-                return Err(field.wrong(&limit, "correct or remove this bond"));
-            }
-            Ok(index)
-        };
-        let (a, b) = (end(a)?, end(b)?);
+        let [a, b] = item.row("the numbers of two particles, such as [0, 1]")?;
+        let (a, b) = (a.particle(count)?, b.particle(count)?);
         if a == b {
             let problem = format!("{} joins particle {a} to itself", item.path);
             return Err(item.refuse(problem, "correct or remove this bond"));

@@ -167,15 +167,14 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
 
 /// The strain rate from which strengths rise, 1/s. None for `false`.
 fn rate_strengthening(field: &Field<'_>) -> Result<Option<f64>> {
-    match field.node.value {
-        Value::Boolean(on) => Ok(on.then_some(RATE_STRENGTHENING_FROM)),
-        _ => field
-            .limited(
-                &RATE,
-                |rate| rate > 0.0,
-                "more than 0 1/s",
-                "write true, or a strain rate such as \"4.64e-6 1/s\"",
-            )
-            .map(Some),
+    if let Value::Boolean(on) = field.node.value {
+        return Ok(on.then_some(RATE_STRENGTHENING_FROM));
     }
+    let remedy = "write true, or a strain rate such as \"4.64e-6 1/s\"";
+    if field.is_word() {
+        return Err(field.wrong("true, false or a rate", remedy));
+    }
+    field
+        .limited(&RATE, |rate| rate > 0.0, "more than 0 1/s", remedy)
+        .map(Some)
 }

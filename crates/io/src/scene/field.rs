@@ -1,6 +1,6 @@
 //! One value of a scene: what it should be, and the message where it is not.
 
-use super::names::suggestion;
+use super::names::{suggestion, well_formed};
 use super::table::Table;
 use super::tree::{Document, Node, Value, shortened};
 use crate::units::{self, Dimension, NUMBER};
@@ -56,7 +56,7 @@ impl<'a> Field<'a> {
             Value::Number(_, value) if value.is_finite() => Ok(*value),
             Value::Number(..) => Err(self.wrong("a finite number", example(dimension))),
             Value::Text(text) => units::quantity(text, dimension).map_err(|error| {
-                let problem = format!("{} is {}: {}", self.path, self.shown(), error.problem);
+                let problem = format!("{}: {}", self.path, error.problem);
                 self.refuse(problem, error.remedy)
             }),
             _ => Err(self.wrong("a number", example(dimension))),
@@ -94,27 +94,23 @@ impl<'a> Field<'a> {
     }
 
     /// A plain number above `low` and below `high`.
-    pub(super) fn between(&self, low: f64, high: f64) -> Result<f64> {
+    pub(super) fn between(&self, low: f64, high: f64, remedy: &str) -> Result<f64> {
         self.limited(
             &NUMBER,
             |value| value > low && value < high,
             &format!("more than {low} and less than {high}"),
-            "correct it",
+            remedy,
         )
     }
 
     /// Poisson's ratio.
     pub(super) fn poisson_ratio(&self) -> Result<f64> {
-        self.between(-1.0, 0.5)
+        self.between(-1.0, 0.5, "a usual value is 0.3")
     }
 
     /// Three values in SI.
     pub(super) fn vector(&self, dimension: &Dimension) -> Result<[f64; 3]> {
-        let items = self.items()?;
-        let [x, y, z] = items.as_slice() else {
-            let remedy = "write three values, along x, y and z, such as [0, 0, 1]";
-            return Err(self.wrong("a list of 3", remedy));
-        };
+        let [x, y, z] = self.row("the values along x, y and z, such as [0, 0, 1]")?;
         Ok([
             x.quantity(dimension)?,
             y.quantity(dimension)?,
@@ -122,24 +118,42 @@ impl<'a> Field<'a> {
         ])
     }
 
+    /// The values of a list of `N`, which is written as `form` says.
+    ///
+    /// # Errors
+    /// No list, or of another length.
+    pub(super) fn row<const N: usize>(&self, form: &str) -> Result<[Field<'a>; N]> {
+        self.listed()
+            .and_then(|items| items.try_into().ok())
+            .ok_or_else(|| self.wrong(&format!("a list of {N}"), format!("write {form}")))
+    }
+
     /// The values of a list that is not empty.
     ///
     /// # Errors
     /// No list, or empty.
     pub(super) fn items(&self) -> Result<Vec<Field<'a>>> {
-        let Value::List(items) = &self.node.value else {
+        let Some(items) = self.listed() else {
             return Err(self.wrong("a list", "write it in [ ]"));
         };
         if items.is_empty() {
             let problem = format!("{} is an empty list", self.path);
             return Err(self.refuse(problem, "give at least one, or leave the key out"));
         }
+        Ok(items)
+    }
+
+    /// The values of a list; None for anything else.
+    fn listed(&self) -> Option<Vec<Field<'a>>> {
+        let Value::List(items) = &self.node.value else {
+            return None;
+        };
         let item = |(at, node)| Field {
             document: self.document,
             path: format!("{}[{at}]", self.path),
             node,
         };
-        Ok(items.iter().enumerate().map(item).collect())
+        Some(items.iter().enumerate().map(item).collect())
     }
 
     /// A text.
@@ -159,23 +173,29 @@ impl<'a> Field<'a> {
     }
 
     /// A whole number from 0.
-    pub(super) fn whole(&self, largest: u64) -> Result<u64> {
+    pub(super) fn whole(&self, largest: u64, remedy: &str) -> Result<u64> {
         let limit = format!("a whole number from 0 to {largest}");
         match &self.node.value {
             Value::Number(written, _) => written
                 .parse()
                 .ok()
                 .filter(|number| *number <= largest)
-                .ok_or_else(|| self.wrong(&limit, "correct it")),
-            _ => Err(self.wrong(&limit, "correct it")),
+                .ok_or_else(|| self.wrong(&limit, remedy)),
+            _ => Err(self.wrong(&limit, remedy)),
         }
     }
 
-    /// Number of a particle, from 0.
-    pub(super) fn particle(&self) -> Result<u32> {
-        // Within u32 by the limit.
-        self.whole(u64::from(u32::MAX - 1))
-            .map(|number| number as u32)
+    /// Number of one of `count` particles, from 0.
+    pub(super) fn particle(&self, count: u32) -> Result<u32> {
+        let remedy = "particles are numbered from 0: correct or remove it";
+        let number = self.whole(u64::from(count.saturating_sub(1)), remedy)?;
+        // Not above the limit, a u32.
+        Ok(number as u32)
+    }
+
+    /// Text that does not begin like a number.
+    pub(super) fn is_word(&self) -> bool {
+        matches!(&self.node.value, Value::Text(text) if text.starts_with(char::is_alphabetic))
     }
 
     /// One of several words.
@@ -213,7 +233,8 @@ impl<'a> Field<'a> {
             self.shown()
         );
         let remedy = if known.is_empty() {
-            format!("add [{table}.{}]", shortened(name, SHOWN_TEXT))
+            let name = if well_formed(name) { name } else { "NAME" };
+            format!("add [{table}.{name}]")
         } else {
             suggestion(name, known.into_iter())
         };
@@ -246,12 +267,11 @@ impl<'a> Field<'a> {
 }
 
 fn example(dimension: &Dimension) -> String {
-    if dimension.si.is_empty() {
-        return format!("write a number such as {}", dimension.example);
-    }
+    let Dimension { si, example, .. } = dimension;
+    let quotes = if si.is_empty() { "" } else { "\"" };
     format!(
-        "write a {} such as \"{}\"",
-        dimension.name, dimension.example
+        "write {} such as {quotes}{example}{quotes}",
+        dimension.named()
     )
 }
 

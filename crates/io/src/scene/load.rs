@@ -47,10 +47,7 @@ pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
 fn points(field: &Field<'_>) -> Result<Factor> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for item in field.items()? {
-        let values = item.items()?;
-        let [time, factor] = values.as_slice() else {
-            return Err(item.wrong("a list of 2", "write [time, factor]"));
-        };
+        let [time, factor] = item.row("[time, factor]")?;
         let time_s = time.quantity(&TIME)?;
         if let Some([before_s, _]) = points.last()
             && time_s <= *before_s

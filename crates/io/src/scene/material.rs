@@ -22,9 +22,16 @@ pub(super) fn read(field: &Field<'_>) -> Result<Material> {
         let problem = format!("{} stands beside young_modulus", field.path);
         return Err(field.refuse(problem, "one follows from the other: remove one"));
     }
+    let young_modulus_pa = young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio)));
+    if let (Some(field), true) = (
+        table.get("shear_modulus"),
+        young_modulus_pa.is_some_and(f64::is_infinite),
+    ) {
+        return Err(field.wrong("less than 1e307 Pa", "write a smaller number"));
+    }
     Ok(Material {
         density_kg_m3,
-        young_modulus_pa: young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio))),
+        young_modulus_pa,
         poisson_ratio,
     })
 }

@@ -1,6 +1,6 @@
 //! Names: what they may look like, and which known one was meant.
 
-/// `did you mean 'end_time'?`, or all the known names where none is near.
+/// `did you mean 'end_time'?`, or the known names where none is near.
 pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let nearest = known
@@ -9,18 +9,29 @@ pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -
         .min_by_key(|(distance, _)| *distance);
     match nearest {
         None => "there are none".to_owned(),
-        Some((distance, candidate)) if 3 * distance <= candidate.chars().count() + 2 => {
+        Some((distance, candidate)) if near(distance, name, candidate) => {
             format!("did you mean '{candidate}'?")
         }
-        Some((_, candidate)) if known.len() > MOST_NAMES => {
-            format!("the nearest known one is '{candidate}'")
+        Some(_) => {
+            let more = if known.len() > MOST_NAMES {
+                ", ..."
+            } else {
+                ""
+            };
+            let listed = &known[..known.len().min(MOST_NAMES)];
+            format!("known: {}{more}", listed.join(", "))
         }
-        Some(_) => format!("known: {}", known.join(", ")),
     }
 }
 
 /// Longest list of names in a message.
-const MOST_NAMES: usize = 12;
+const MOST_NAMES: usize = 30;
+
+/// Whether one name may be a slip for the other: a third of the letters, and not all of them.
+fn near(distance: usize, name: &str, candidate: &str) -> bool {
+    let length = candidate.chars().count();
+    3 * distance <= length + 2 && distance < length.max(name.chars().count())
+}
 
 /// Fewest letters inserted, removed, replaced or swapped with their neighbour that make `b` of `a`.
 fn edit_distance(a: &str, b: &str) -> usize {
@@ -78,5 +89,8 @@ mod tests {
         assert_eq!(suggestion("end_tim", known()), "did you mean 'end_time'?");
         assert_eq!(suggestion("colour", known()), "known: end_time, rest, seed");
         assert_eq!(suggestion("x", std::iter::empty()), "there are none");
+        assert_eq!(suggestion("w", ["x", "y"].into_iter()), "known: x, y");
+        let many = vec!["some"; 1000];
+        assert!(suggestion("colour", many.into_iter()).ends_with("some, ..."));
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Output;
 use super::field::Field;
-use super::read::resolved;
+use super::read::named_path;
 use crate::Result;
 use crate::units::TIME;
 
@@ -13,11 +13,11 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
     let interval = |key| table.read(key, |field: Field<'_>| field.positive(&TIME));
     Ok(Output {
         folder: table.read("folder", |field| {
-            let name = field.text()?;
-            if name.trim().is_empty() || name == "-" {
-                return Err(field.wrong("the name of a folder", "such as \"results\""));
+            let path = named_path(&field, folder)?;
+            if path.as_os_str() == "-" {
+                return Err(field.wrong("a folder", "write a name such as \"results\""));
             }
-            Ok(resolved(folder, name))
+            Ok(path)
         })?,
         frames_s: interval("frames")?,
         series_s: interval("series")?,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::names::suggestion;
 use super::table::Table;
-use super::tree::Document;
+use super::tree::{Document, Origin};
 use super::{
     BodyEntry, SCENE_VERSION, Scene, body, bond, load, material, measure, output, run, set, support,
 };
@@ -27,7 +27,8 @@ const KEYS: [&str; 10] = [
 ];
 
 /// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;
-/// a value that is no TOML is text. File names in the scene are resolved against its folder; "-" stays.
+/// a value that is no TOML is text. File names in the scene are resolved against its folder, those in
+/// `overrides` against the current one; "-" stays.
 ///
 /// # Errors
 /// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
@@ -82,16 +83,14 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
 
 fn check_version(root: &Table<'_>) -> Result<()> {
     let field = root.need("version", &SCENE_VERSION.to_string())?;
-    let version = field.whole(u64::MAX)?;
+    let remedy = format!("write version = {SCENE_VERSION}");
+    let version = field.whole(u64::MAX, &remedy)?;
     if version > SCENE_VERSION {
         let problem = format!("version is {version}, but this program knows up to {SCENE_VERSION}");
         return Err(field.refuse(problem, "use a newer program"));
     }
     if version == 0 {
-        return Err(field.wrong(
-            &format!("from 1 to {SCENE_VERSION}"),
-            format!("write version = {SCENE_VERSION}"),
-        ));
+        return Err(field.wrong("at least 1", remedy));
     }
     Ok(())
 }
@@ -108,13 +107,22 @@ fn each<'a, T>(
         .collect()
 }
 
-/// A file of the scene, seen from where the program runs. "-" stays.
-pub(super) fn resolved(folder: &Path, name: &str) -> PathBuf {
-    if name == "-" {
+/// The file or folder that `field` names. Names in the file are resolved against its folder; names on the command line
+/// are meant from where the program runs. "-" stays.
+///
+/// # Errors
+/// No text, or empty.
+pub(super) fn named_path(field: &Field<'_>, folder: &Path) -> Result<PathBuf> {
+    let name = field.text()?;
+    if name.trim().is_empty() {
+        return Err(field.wrong("a name", "write a name such as \"cake.vtp\""));
+    }
+    let as_it_stands = name == "-" || matches!(field.node.origin, Origin::Option(_));
+    Ok(if as_it_stands {
         PathBuf::from(name)
     } else {
         folder.join(name)
-    }
+    })
 }
 
 /// What supports, loads and measures can act on: sets, bodies and `all`.

@@ -33,10 +33,14 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     };
     Ok(Run {
         end_time_s,
-        rest: table.read("rest", |field| field.between(0.0, 1.0))?,
+        rest: table.read("rest", |field| {
+            field.between(0.0, 1.0, "a small share such as 1e-6 means at rest")
+        })?,
         time_step_s,
         safety: table
-            .read("safety", |field| field.between(0.0, 1.0))?
+            .read("safety", |field| {
+                field.between(0.0, 1.0, "a usual value is 0.9")
+            })?
             .unwrap_or(SAFETY),
         gravity_m_s2: table
             .read("gravity", |field| field.vector(&ACCELERATION))?
@@ -47,12 +51,14 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
                     &NUMBER,
                     |gamma| (0.0..1.0).contains(&gamma),
                     "at least 0 and less than 1",
-                    "0 damps nothing",
+                    "write 0 for none",
                 )
             })?
             .unwrap_or_default(),
         seed: table
-            .read("seed", |field| field.whole(u64::MAX))?
+            .read("seed", |field| {
+                field.whole(u64::MAX, "write any such number")
+            })?
             .unwrap_or_default(),
     })
 }
@@ -62,12 +68,11 @@ fn time_step(field: &Field<'_>, end_time_s: f64) -> Result<Option<f64>> {
     if matches!(&field.node.value, Value::Text(text) if text == "auto") {
         return Ok(None);
     }
-    let step_s = field.limited(
-        &TIME,
-        |step| step > 0.0,
-        "more than 0 s",
-        "write \"auto\" or a time such as \"1 us\"",
-    )?;
+    let remedy = "write \"auto\" or a time such as \"1 us\"";
+    if field.is_word() {
+        return Err(field.wrong("\"auto\" or a time", remedy));
+    }
+    let step_s = field.limited(&TIME, |step| step > 0.0, "more than 0 s", remedy)?;
     if step_s > end_time_s {
         let limit = format!("at most run.end_time, {end_time_s} s");
         return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use super::field::Field;
 use super::table::Table;
+use super::tree::Node;
 use super::{BodyEntry, BodySource, ParticleSet, Pick};
 use crate::Result;
 use crate::units::LENGTH;
@@ -35,9 +36,11 @@ pub(super) fn read_all(
 fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleSet> {
     let table = field.table(&["body", "all", "particles", "box", "sphere"])?;
     let body = table.read("body", |field| field.reference(bodies.keys(), "bodies"))?;
-    let mut given = PICKS
-        .iter()
-        .filter_map(|key| table.get(key).map(|field| (*key, field)));
+    let ways = |(key, _): &(String, Node)| {
+        let way = PICKS.into_iter().find(|way| way == key)?;
+        Some((way, table.get(way)?))
+    };
+    let mut given = table.entries.iter().filter_map(ways);
     let Some((key, first)) = given.next() else {
         let problem = format!("{} picks nothing", table.path);
         let remedy =
@@ -96,18 +99,15 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
 
 fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     let count = match body.map(|body| &body.source) {
-        Some(BodySource::Inline { particles, .. }) => particles.len() as u64,
+        Some(BodySource::Inline { particles, .. }) => particles.len(),
         // Whoever reads the file checks the indices.
-        _ => u64::from(u32::MAX),
+        _ => usize::MAX,
     };
+    let count = u32::try_from(count).unwrap_or(u32::MAX);
     let mut picked = Vec::new();
     let mut known = HashSet::new();
     for item in field.items()? {
-        let index = item.particle()?;
-        if u64::from(index) >= count {
-            let limit = format!("a particle from 0 to {}", count - 1);
-            return Err(item.wrong(&limit, "correct or remove it"));
-        }
+        let index = item.particle(count)?;
         if !known.insert(index) {
             let problem = format!("{} is {index}, which is in the list already", item.path);
             return Err(item.refuse(problem, "remove one of them"));

@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
-use super::tree::{Document, Node, Origin, Value};
+use super::tree::{Document, Node, Origin, Value, shortened};
 use crate::{Diagnostic, Result};
 
 /// A table of the scene, with its path for messages.
@@ -81,12 +81,14 @@ impl<'a> Table<'a> {
         let Some(field) = self.get(key) else {
             return Ok(Vec::new());
         };
-        let table = field.any_table()?;
+        let Ok(table) = field.any_table() else {
+            return Err(field.wrong("a table of tables", format!("write [{key}.NAME]")));
+        };
         let mut found = Vec::new();
         for (name, node) in table.entries {
             let field = table.field(name, node);
             if !well_formed(name) {
-                let problem = format!("'{}' is no name", name.escape_debug());
+                let problem = format!("'{}' in [{key}] is no name", shortened(name, 40));
                 let remedy = "names are made of letters a to z, digits, - and _";
                 return Err(field.refuse(problem, remedy));
             }

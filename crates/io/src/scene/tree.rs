@@ -166,13 +166,31 @@ fn not_toml(name: &str, text: &str, lines: &[usize], error: &Error) -> Diagnosti
     let byte = error.span().map_or(0, |span| span.start).min(end);
     let line = line_of(lines, byte);
     let place = format!("{name}:{line}");
-    let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+    let written = text.lines().nth(line - 1).unwrap_or_default();
+    let span = error.span().unwrap_or_default();
+    let part = shortened(text.get(span).unwrap_or_default().trim(), SHOWN_OPTION);
     let message = error.message();
+    let message = message
+        .strip_suffix(", expected nothing")
+        .unwrap_or(message);
     if message == "duplicate key" {
-        return twice(place, text, line, written);
+        return twice(place, text, line, without_comment(written), &part);
     }
-    let remedy = if message.starts_with("string values must be quoted") {
-        "a value is a number, true, false, a list in [ ], a table in { } or text in quotes, such as \"2 mm\""
+    if message.starts_with("string values must be quoted") {
+        let problem = if part.is_empty() {
+            "not TOML: a value is missing".to_owned()
+        } else {
+            format!("not TOML: {part} is no value")
+        };
+        let remedy = "a value is a number, true, false, a list in [ ], a table in { } or text in quotes, such as \"2 mm\"";
+        return Diagnostic::input(place, problem, remedy);
+    }
+    if message.ends_with("string, expected `\"`") || message.ends_with("string, expected `'`") {
+        let remedy = "end it with the quote that it begins with";
+        return Diagnostic::input(place, "not TOML: a text has no closing quote", remedy);
+    }
+    let remedy = if message.contains("escape") || message.contains("unicode") {
+        r"write \\ for a backslash, or 'single quotes' around the text"
     } else {
         "correct this line, or the end of the one before"
     };
@@ -180,31 +198,26 @@ fn not_toml(name: &str, text: &str, lines: &[usize], error: &Error) -> Diagnosti
 }
 
 /// A table or a key that stands twice: TOML knows no second of the same name.
-fn twice(place: String, text: &str, line: usize, written: &str) -> Diagnostic {
-    let written = written.split('#').next().unwrap_or_default().trim();
-    if written.starts_with('[') {
-        let first = text
-            .lines()
-            .position(|other| other.split('#').next().unwrap_or_default().trim() == written)
-            .map(|at| at + 1)
-            .filter(|first| *first < line);
-        let first = first.map_or_else(String::new, |first| format!(", first on line {first}"));
-        return Diagnostic::input(
-            place,
-            format!(
-                "the table {} is given twice{first}",
-                shortened(written, SHOWN_OPTION)
-            ),
-            "names are unique within their table: rename or remove one",
-        );
+fn twice(place: String, text: &str, line: usize, written: &str, key: &str) -> Diagnostic {
+    if !written.starts_with('[') {
+        let problem = format!("the key {key} is given twice in its table");
+        return Diagnostic::input(place, problem, "remove one");
     }
-    let key = written.split('=').next().unwrap_or_default().trim();
+    let first = text
+        .lines()
+        .take(line - 1)
+        .position(|other| without_comment(other) == written)
+        .map_or_else(String::new, |at| format!(", first on line {}", at + 1));
     Diagnostic::input(
         place,
         format!(
-            "the key {} is given twice in its table",
-            shortened(key, SHOWN_OPTION)
+            "the table {} is given twice{first}",
+            shortened(written, SHOWN_OPTION)
         ),
-        "remove one",
+        "names are unique within their table: rename or remove one",
     )
+}
+
+fn without_comment(line: &str) -> &str {
+    line.split('#').next().unwrap_or_default().trim()
 }

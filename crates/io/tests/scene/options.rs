@@ -15,7 +15,7 @@ material = "clay"
 
 fn with(options: &[&str]) -> Result<Scene, String> {
     let options: Vec<String> = options.iter().map(|text| (*text).to_owned()).collect();
-    scene_from_text(SCENE, "bar.toml", &options).map_err(|error| error.to_string())
+    scene_from_text(SCENE, "scenes/bar.toml", &options).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -50,7 +50,9 @@ fn options_add_keys_and_tables() {
     .unwrap();
     assert_eq!(scene.bonds["weak"].young_modulus_pa, 1e6);
     assert_eq!(scene.bonds["weak"].failure.tension_pa, Some(1e3));
-    assert!(scene.output.is_some());
+    // What is typed in a shell is meant from there.
+    let folder = scene.output.unwrap().folder;
+    assert_eq!(folder, Some("elsewhere".into()));
     let file = &scene.bodies["other"].source;
     assert_eq!(*file, BodySource::File("a=b.vtp".into()));
 }
@@ -72,11 +74,11 @@ fn bad_options_are_refused_by_name() {
         ),
         (
             "run.end_time=5 mm",
-            "--set run.end_time=5 mm: run.end_time is \"5 mm\": unknown unit 'mm' of time; use one of ns, us, ms, s, min, h",
+            "--set run.end_time=5 mm: run.end_time: '5 mm' is not a time: unknown unit 'mm'; use one of ns, us, ms, s, min, h",
         ),
         (
             "run.end_time=",
-            "--set run.end_time=: run.end_time is \"\": '' is not a time; write a number with a unit, such as 5 ms",
+            "--set run.end_time=: run.end_time: '' is not a time; write a number with a unit, such as 5 ms",
         ),
         (
             "run.end_time",

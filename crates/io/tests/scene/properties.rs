@@ -56,7 +56,7 @@ fn boundary(text: &str, at: usize) -> usize {
 fn word(text: &str, at: usize) -> (usize, usize) {
     let inside = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.');
     let bytes = text.as_bytes();
-    let at = at.min(bytes.len());
+    let at = boundary(text, at);
     let start = at - bytes[..at].iter().rev().take_while(|b| inside(b)).count();
     let end = at + bytes[at..].iter().take_while(|b| inside(b)).count();
     (start, end)
@@ -101,7 +101,7 @@ fn assert_one_message(text: &str, options: &[String]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn changed_scenes(changes in prop::collection::vec(change(), 1..5)) {
