@@ -69,6 +69,19 @@ pub(crate) struct Parts {
 }
 
 impl Body {
+    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and as thick as the smaller of their spheres.
+    ///
+    /// # Errors
+    /// Not a body by [`Body::check`].
+    pub fn from_spheres(spheres: &[[f64; 4]], bonds: &[[u32; 2]]) -> Result<Self> {
+        Self::from_parts(Parts {
+            positions: spheres.iter().map(|&[x, y, z, _]| [x, y, z]).collect(),
+            radii: spheres.iter().map(|sphere| sphere[3]).collect(),
+            bonds: bonds.to_vec(),
+            ..Parts::default()
+        })
+    }
+
     /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,
     /// a bond is as thick as the smaller of its particles and as long as they are apart.
     ///

@@ -1,43 +1,287 @@
 //! The command line of dem-run: arguments as typed, and what is done with them.
 
-use std::path::PathBuf;
+mod check;
 
-use clap::Parser;
+use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
+use dem_io::checkpoint::read_checkpoint;
+use dem_io::results::{Existing, ResultsFolder};
 use dem_io::safe_write::write_standard_output;
-use dem_io::{Diagnostic, Result};
+use dem_io::scene::{BodySource, Scene};
+use dem_io::{Body, Diagnostic, Result, read_scene};
+use indicatif::{ProgressBar, ProgressStyle};
 
-/// Reads a body of bonded particles and says what it holds.
+use crate::plan::plan;
+use crate::run::{RunSettings, run as run_plan};
+use crate::snapshot::Snapshot;
+
+/// Runs scenes with bonded bodies.
 #[derive(Debug, Parser)]
 #[command(
     version,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 failed while running, 2 bad input.\n\
-                  Example: dem-pack cake.stl --diameter 2mm..3mm | dem-run --body -"
+    after_help = "Exit codes: 0 done, 1 failed while running or interrupted, 2 bad input, 3 unstable.\n\
+                  Examples:\n  \
+                  dem-run data/scenes/cantilever.toml\n  \
+                  dem-run spinning-bar.toml --set run.end_time=0.5 --out spin\n  \
+                  dem-pack cake.stl --diameter 2mm..3mm | dem-run clamped.toml --body -"
 )]
 pub struct Arguments {
-    /// The body: .vtp, .data (LAMMPS), .csv, .txt, or - for a .vtp on standard input
-    #[arg(value_name = "BODY", required_unless_present = "body")]
-    pub file: Option<PathBuf>,
-    /// The same as BODY
-    #[arg(long, value_name = "BODY", conflicts_with = "file")]
-    pub body: Option<PathBuf>,
-    /// Say it as JSON
-    #[arg(long)]
-    pub json: bool,
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    run: RunArguments,
 }
 
-/// Does what was asked for.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Say what a scene will do: time step and why, stages, memory, predicted run time; nothing is run
+    Check {
+        #[command(flatten)]
+        scene: SceneArguments,
+    },
+}
+
+#[derive(Debug, Args)]
+struct SceneArguments {
+    /// The scene (.toml); or a body (.vtp, .data, .csv, .txt) to say what it holds
+    #[arg(value_name = "SCENE", required_unless_present = "body")]
+    file: Option<PathBuf>,
+    /// File of a body, in place of the scene's; - is a .vtp on standard input. NAME= may be left out where there is one body
+    #[arg(long, value_name = "[NAME=]FILE")]
+    body: Vec<String>,
+    /// Set a value of the scene, such as run.end_time=0.5 or "bonds.bar.young_modulus=20 MPa"
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Take the scene's time step even if it is above the largest stable one
+    #[arg(long)]
+    force_step: bool,
+    /// Threads; all cores unless given. The results are the same for any number
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Say it as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct RunArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Folder for the results
+    #[arg(long, short, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Replace the results that are in the folder
+    #[arg(long, conflicts_with = "resume")]
+    force: bool,
+    /// Go on with the run whose checkpoint is in the folder
+    #[arg(long)]
+    resume: bool,
+    /// Say nothing unless something is wrong: no progress, no summary; --json is printed all the same
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Does what was asked for. `interrupted` is set when the run is to stop.
 ///
 /// # Errors
-/// The body cannot be read, or standard output cannot be written to. A reader that closes standard output early is no error.
-pub fn run(arguments: &Arguments) -> Result<()> {
-    let path = arguments.body.as_ref().or(arguments.file.as_ref());
+/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. A reader that closes standard output early is no error.
+pub fn run(arguments: &Arguments, interrupted: &AtomicBool) -> Result<()> {
+    match &arguments.command {
+        Some(Command::Check { scene }) => in_pool(scene, |threads| {
+            let (scene_data, bodies) = scene.read()?;
+            check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
+        }),
+        None if arguments.run.scene.names_a_scene() => in_pool(&arguments.run.scene, |threads| {
+            run_scene(&arguments.run, threads, interrupted)
+        }),
+        None => body_information(&arguments.run.scene),
+    }
+}
+
+fn in_pool(scene: &SceneArguments, work: impl FnOnce(usize) -> Result<()> + Send) -> Result<()> {
+    if let Some(threads @ (0 | 1025..)) = scene.threads {
+        return Err(Diagnostic::input(
+            "--threads",
+            format!("{threads} is not between 1 and 1024"),
+            "leave it out for all cores",
+        ));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(scene.threads.unwrap_or(0))
+        .build()
+        .map_err(|error| {
+            Diagnostic::failed(
+                "--threads",
+                format!("the threads cannot be started: {error}"),
+                "ask for fewer",
+            )
+        })?;
+    let threads = pool.current_num_threads();
+    pool.install(|| work(threads))
+}
+
+impl SceneArguments {
+    fn names_a_scene(&self) -> bool {
+        let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
+        self.file.as_ref().is_some_and(is_scene)
+    }
+
+    /// The scene and all its bodies.
+    fn read(&self) -> Result<(Scene, BTreeMap<String, Body>)> {
+        let file = self.file.as_deref().unwrap_or(Path::new(""));
+        let mut scene = read_scene(file, &self.overrides)?;
+        for option in &self.body {
+            set_body(&mut scene, option)?;
+        }
+        let mut bodies = BTreeMap::new();
+        for (name, entry) in &scene.bodies {
+            let body = match &entry.source {
+                BodySource::File(path) => read_body(path)
+                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?,
+                BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds)
+                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?,
+            };
+            bodies.insert(name.clone(), body);
+        }
+        Ok((scene, bodies))
+    }
+}
+
+/// Takes a body's file from an option `[NAME=]FILE`.
+fn set_body(scene: &mut Scene, option: &str) -> Result<()> {
+    let (name, file) = match option.split_once('=') {
+        Some((name, file)) => (Some(name.to_owned()), file),
+        None => (None, option),
+    };
+    let names: Vec<String> = scene.bodies.keys().cloned().collect();
+    let name = match (name, names.as_slice()) {
+        (Some(name), _) => name,
+        (None, [only]) => only.clone(),
+        (None, _) => {
+            return Err(Diagnostic::input(
+                format!("--body {option}"),
+                format!("the scene has {} bodies", names.len()),
+                format!(
+                    "say which: --body NAME={file} with one of {}",
+                    names.join(", ")
+                ),
+            ));
+        }
+    };
+    let Some(entry) = scene.bodies.get_mut(&name) else {
+        return Err(Diagnostic::input(
+            format!("--body {option}"),
+            format!("the scene has no body '{name}'"),
+            format!("use one of {}", names.join(", ")),
+        ));
+    };
+    entry.source = BodySource::File(PathBuf::from(file));
+    let from_input = |entry: &&dem_io::scene::BodyEntry| matches!(&entry.source, BodySource::File(path) if path == Path::new("-"));
+    if scene.bodies.values().filter(from_input).count() > 1 {
+        return Err(Diagnostic::input(
+            format!("--body {option}"),
+            "standard input can be read for one body only",
+            "write the others to files",
+        ));
+    }
+    Ok(())
+}
+
+fn run_scene(arguments: &RunArguments, threads: usize, interrupted: &AtomicBool) -> Result<()> {
+    let (scene, bodies) = arguments.scene.read()?;
+    let folder = match results_path(arguments, &scene) {
+        Some(path) => {
+            let existing = match (arguments.force, arguments.resume) {
+                (true, _) => Existing::Replace,
+                (_, true) => Existing::Continue,
+                _ => Existing::Refuse,
+            };
+            Some((path, existing))
+        }
+        None if arguments.resume => {
+            return Err(Diagnostic::input(
+                "--resume",
+                "no folder of results is named",
+                "add --out FOLDER",
+            ));
+        }
+        None => None,
+    };
+    let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
+    let folder = folder
+        .map(|(path, existing)| ResultsFolder::create(&path, existing))
+        .transpose()?;
+    let resume = match &folder {
+        Some(folder) if arguments.resume => {
+            let path = folder.checkpoint();
+            let within = |error: Diagnostic| error.within(&path.display().to_string());
+            Some(Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)?)
+        }
+        _ => None,
+    };
+    let bar = if arguments.quiet || !std::io::stderr().is_terminal() {
+        ProgressBar::hidden()
+    } else {
+        progress_bar()
+    };
+    let settings = RunSettings {
+        folder: folder.as_ref(),
+        resume,
+        threads,
+        interrupted,
+    };
+    let summary = run_plan(plan, &scene, settings, &|share| {
+        bar.set_position((1000.0 * share) as u64);
+    });
+    bar.finish_and_clear();
+    let summary = summary?;
+    if arguments.scene.json {
+        write_standard_output(|out| {
+            serde_json::to_writer_pretty(&mut *out, &summary)?;
+            writeln!(out)
+        })
+    } else if arguments.quiet {
+        Ok(())
+    } else {
+        write_standard_output(|out| write!(out, "{summary}"))
+    }
+}
+
+/// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
+fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
+    if let Some(out) = &arguments.out {
+        return Some(out.clone());
+    }
+    let output = scene.output.as_ref()?;
+    let stem = Path::new(&scene.source).file_stem().unwrap_or_default();
+    let by_name = || PathBuf::from(format!("{}-out", stem.to_string_lossy()));
+    Some(output.folder.clone().unwrap_or_else(by_name))
+}
+
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("run [{bar:40}] {percent:>3} %  {eta} left") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+fn body_information(arguments: &SceneArguments) -> Result<()> {
+    let given = arguments.body.first().map(PathBuf::from);
+    let path = arguments.file.as_ref().or(given.as_ref());
     let path = path.ok_or_else(|| {
         Diagnostic::input(
             "",
-            "no body was given",
-            "name a file, or - for standard input",
+            "no scene and no body was given",
+            "name a scene (.toml) or a body, or - for a body on standard input",
         )
     })?;
     let summary = body_summary(&read_body(path)?);

@@ -1,9 +1,14 @@
-//! Runs scenes with bonded bodies. So far: reads a body and says what it holds.
+//! Runs scenes with bonded bodies: TOML scene -> [`plan`] -> [`state`] -> [`step`], step, ... -> results.
 
 pub mod check;
 pub mod cli;
 pub mod clock;
+pub mod measure;
+pub mod output;
 pub mod physics;
+pub mod plan;
+pub mod run;
+pub mod snapshot;
 pub mod stages;
 pub mod state;
 pub mod step;

@@ -24,6 +24,8 @@ pub struct Ledger {
     opening_j: f64,
     /// Largest energy and work seen, J.
     scale_j: f64,
+    /// Energy of all bonds stretched by a millionth: less is rounding, J.
+    floor_j: f64,
     /// The centre of mass at the start, about which moments are taken, m.
     about_m: [f64; 3],
     mass_kg: f64,
@@ -105,8 +107,14 @@ impl Ledger {
             ..Self::default()
         };
         let elastic = elastic_energy(state).total();
+        let bonds = &state.bonds;
+        let stretched = |at: usize| {
+            let stretch = 1e-6 * bonds.initial_length_m(at);
+            0.5 * bonds.normal[at] * stretch * stretch
+        };
+        ledger.floor_j = ordered_sum(bonds.len(), stretched);
         ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic;
-        ledger.scale_j = ledger.opening_j;
+        ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
         let (momentum, scales) = momenta(p, about_m);
         [ledger.momentum, ledger.angular_momentum] = momentum;
         [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
@@ -132,6 +140,18 @@ impl Ledger {
             time_s,
         );
         self.work.add(&powers, 0.5 * step_before_s);
+    }
+
+    /// Energy of all bonds stretched by a millionth: less is rounding, J.
+    pub fn floor_j(&self) -> f64 {
+        self.floor_j
+    }
+
+    /// What a run could have in energy at most: that of the start, what loads, supports and gravity gave, J.
+    pub fn put_in_j(&self, gravity_m_s2: [f64; 3]) -> f64 {
+        let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
+        let given = self.work.loads.abs() + self.work.supports.abs() + fallen.abs();
+        self.opening_j.abs() + given + self.floor_j
     }
 
     fn settle(&mut self) {

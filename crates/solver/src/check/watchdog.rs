@@ -1,19 +1,129 @@
 //! Stops a run that goes unstable.
 
-use crate::check::ledger::Balance;
+use dem_io::{Diagnostic, Result};
 
-/// Largest energy error over energy that a stable run can show when its step is this share of the limit.
-///
-/// Leapfrog keeps an energy close to the true one; for the fastest mode the two differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
-pub fn allowed_energy_error(share_of_limit: f64) -> f64 {
-    if share_of_limit < 1.0 {
-        2.0 / (1.0 - share_of_limit * share_of_limit)
-    } else {
-        1.0
+use super::ledger::Balance;
+use crate::physics::bond::pair::frequencies;
+use crate::stages::motion::ordered_sum;
+use crate::state::State;
+
+/// Steps between two looks at the kinetic energy.
+const EVERY: u64 = 64;
+
+/// Watches the energy of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Watchdog {
+    /// Energy that may appear from nowhere, over what was put in.
+    allowed: f64,
+    /// Elastic energy when it was last looked at, J.
+    pub last_elastic_j: f64,
+}
+
+impl Watchdog {
+    /// For a run whose step is this share of the limit.
+    ///
+    /// Leapfrog keeps an energy close to the true one; for the fastest mode the two differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
+    pub fn new(share_of_limit: f64) -> Self {
+        let square = share_of_limit * share_of_limit;
+        Self {
+            allowed: if square < 1.0 {
+                2.0 / (1.0 - square)
+            } else {
+                1.0
+            },
+            last_elastic_j: 0.0,
+        }
+    }
+
+    /// Whether the kinetic energy says that the ledger should be looked at. Cheap; to be asked after every kick.
+    pub fn is_due(&self, state: &State) -> bool {
+        if !state.steps.is_multiple_of(EVERY) {
+            return false;
+        }
+        let p = &state.particles;
+        let kinetic = ordered_sum(p.len(), |i| {
+            let motion = &p.motions[i];
+            let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
+            0.5 * (square(&motion.velocity_m_s) / p.inverse_masses[i]
+                + square(&motion.spin_rad_s) / p.inverse_inertias[i])
+        });
+        // Not a number is due as well.
+        let quiet = kinetic <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2);
+        !quiet
+    }
+
+    /// Looks at the ledger.
+    ///
+    /// # Errors
+    /// Energy is no number, or more has appeared from nowhere than a stable run can show.
+    pub fn look(&mut self, state: &State, balance: &Balance) -> Result<()> {
+        self.last_elastic_j = balance.elastic_j();
+        let put_in = state.ledger.put_in_j(state.gravity_m_s2);
+        if balance.energy_error_j <= self.allowed * put_in {
+            return Ok(());
+        }
+        Err(unstable(state, balance))
     }
 }
 
-/// Whether a run has gone unstable: its energy is no number, or more than `allowed` times what was put in has appeared.
-pub fn is_unstable(balance: &Balance, put_in_j: f64, allowed: f64) -> bool {
-    !balance.energy_error_j.is_finite() || balance.energy_error_j > allowed * put_in_j
+fn unstable(state: &State, balance: &Balance) -> Diagnostic {
+    let mut problem = format!(
+        "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere",
+        state.steps, state.time_s, balance.energy_error_j
+    );
+    let mut remedy = "take a smaller time step, or time_step = \"auto\"".to_owned();
+    if let Some((at, own_step_s)) = culprit(state) {
+        let [a, b] = state.bonds.ends[at];
+        let places = [a, b].map(|end| state.particles.poses[end as usize].place());
+        let middle = 0.5 * (places[0] + places[1]);
+        let where_ = if middle.iter().all(|x| x.is_finite()) {
+            format!(
+                " at ({:.4e}, {:.4e}, {:.4e}) m",
+                middle.x, middle.y, middle.z
+            )
+        } else {
+            String::new()
+        };
+        problem += &format!(
+            "; most of it in bond {at}{where_}, whose two particles alone need a step below {own_step_s:.4e} s (taken: {:.4e} s)",
+            state.time_step_s
+        );
+        remedy += "; the last checkpoint is kept";
+    }
+    Diagnostic::unstable("", problem, remedy)
+}
+
+/// The bond with the largest energy and the critical step of its two particles alone, s. Where energies are no numbers: the bond with the smallest step.
+fn culprit(state: &State) -> Option<(usize, f64)> {
+    let own_step = |at: usize| {
+        let ends = state.bonds.ends[at].map(|end| end as usize);
+        let p = &state.particles;
+        frequencies(
+            &state.bonds.stiffness(at),
+            ends.map(|end| p.inverse_masses[end]),
+            ends.map(|end| p.inverse_inertias[end]),
+        )
+        .critical_step_s()
+    };
+    let mut worst: Option<(usize, f64, f64)> = None;
+    for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
+        let energy = state
+            .bonds
+            .forces(at, &state.particles.poses)
+            .energy
+            .total();
+        let (energy, step) = (
+            if energy.is_finite() {
+                energy
+            } else {
+                f64::INFINITY
+            },
+            own_step(at),
+        );
+        let is_worse = worst.is_none_or(|(_, e, s)| energy > e || (energy == e && step < s));
+        if is_worse {
+            worst = Some((at, energy, step));
+        }
+    }
+    worst.map(|(at, _, step)| (at, step))
 }

@@ -35,7 +35,13 @@ pub(crate) fn bonds(
             end_radii_m: radii,
         };
         let stiffness = stiffness(model, &shape, young_modulus_pa, 0.3);
-        bonds.push([a, b], apart.normalize().into(), shape.radius_m, &stiffness, 0);
+        bonds.push(
+            [a, b],
+            apart.normalize().into(),
+            shape.radius_m,
+            &stiffness,
+            0,
+        );
     }
     bonds
 }

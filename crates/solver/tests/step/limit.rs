@@ -10,7 +10,11 @@ fn smoke() {
     let found = limit(&mut state);
     eprintln!("{found:?}");
     for (i, motion) in state.particles.motions.iter_mut().enumerate() {
-        motion.velocity_m_s = [0.0, 20.0 * (i as f64 - 5.0), if i % 2 == 0 { 3.0 } else { -2.0 }];
+        motion.velocity_m_s = [
+            0.0,
+            20.0 * (i as f64 - 5.0),
+            if i % 2 == 0 { 3.0 } else { -2.0 },
+        ];
         motion.spin_rad_s = [30.0, 5.0, 50.0];
     }
     state.ledger = dem_run::check::ledger::Ledger::opened(&state);

@@ -1,0 +1,150 @@
+//! `dem-run check`: what a scene will do.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use dem_io::safe_write::write_standard_output;
+use dem_io::scene::Scene;
+use dem_io::units::significant;
+use dem_io::{Body, Result};
+use serde_json::json;
+
+use crate::plan::{Plan, plan};
+use crate::state::State;
+use crate::step::step;
+
+/// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
+const TRIAL: (u32, f64) = (2000, 0.5);
+
+/// Plans the scene and says what came of it, as text or as JSON.
+pub(super) fn check(
+    scene: &Scene,
+    bodies: BTreeMap<String, Body>,
+    threads: usize,
+    force_step: bool,
+    as_json: bool,
+) -> Result<()> {
+    let plan = plan(scene, bodies, threads, force_step)?;
+    let steps = (scene.run.end_time_s / plan.step.step_s).round();
+    let bytes = memory_bytes(&plan.state);
+    let per_step_s = trial_s(&plan.state);
+    write_standard_output(|out| {
+        if as_json {
+            let value = json!({
+                "scene": scene.source,
+                "particles": plan.state.particles.len(),
+                "bonds": plan.state.bonds.len(),
+                "time_step_s": plan.step.step_s,
+                "limit_s": plan.step.limit.step_s,
+                "limit_undamped_s": plan.step.limit.undamped_step_s,
+                "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
+                "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
+                "steps": steps,
+                "stages": plan.stages.iter().filter(|s| s.needed).map(|s| s.name).collect::<Vec<_>>(),
+                "left_out": plan.stages.iter().filter(|s| !s.needed).map(|s| s.name).collect::<Vec<_>>(),
+                "memory_bytes": bytes,
+                "predicted_run_time_s": steps * per_step_s,
+            });
+            serde_json::to_writer_pretty(&mut *out, &value)?;
+            writeln!(out)
+        } else {
+            write!(
+                out,
+                "{}\n{}",
+                scene.describe(),
+                text(&plan, steps, bytes, per_step_s)
+            )
+        }
+    })
+}
+
+fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
+    let state = &plan.state;
+    let choice = &plan.step;
+    let mut text = String::new();
+    let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
+    line(
+        "holds",
+        format!(
+            "{} particles, {} bonds",
+            state.particles.len(),
+            state.bonds.len()
+        ),
+    );
+    let why = if choice.given { "given" } else { "chosen" };
+    line(
+        "time step",
+        format!(
+            "{} s {why}: {} of the largest stable one, {} s ({} Lanczos steps)",
+            significant(choice.step_s, 5),
+            significant(choice.share_of_limit(), 3),
+            significant(choice.limit.step_s, 5),
+            choice.limit.iterations,
+        ),
+    );
+    if choice.limit.damping_1_s > 0.0 {
+        line(
+            "",
+            format!(
+                "without damping the largest would be {} s",
+                significant(choice.limit.undamped_step_s, 5)
+            ),
+        );
+    }
+    let beside = |name: &str, step_s: f64| {
+        if step_s.is_finite() {
+            let share = significant(step_s / choice.limit.step_s, 3);
+            format!("{name} {} s, {share} of the limit", significant(step_s, 5))
+        } else {
+            format!("{name} unknown: no elastic modulus of a material is given")
+        }
+    };
+    line("", beside("Rayleigh's estimate", choice.rayleigh_s));
+    line("", beside("20 % of it", 0.2 * choice.rayleigh_s));
+    if choice.thesis_s.is_finite() {
+        line("", beside("0.17 sqrt(m/K)", choice.thesis_s));
+    }
+    line("steps", format!("{steps}"));
+    for stage in &plan.stages {
+        let name = if stage.needed { "does" } else { "leaves out" };
+        line(name, format!("{}: {}", stage.name, stage.why));
+    }
+    line(
+        "memory",
+        format!("about {} MB", significant(bytes as f64 * 1e-6, 3)),
+    );
+    line(
+        "run time",
+        format!(
+            "about {} s, if this machine stays as it is",
+            significant(steps * per_step_s, 2)
+        ),
+    );
+    text
+}
+
+/// What the arrays of a state take, bytes.
+fn memory_bytes(state: &State) -> usize {
+    let p = &state.particles;
+    let b = &state.bonds;
+    let per_particle = 64 + 48 + 64 + 3 * 8;
+    let per_bond = 8 + 10 * 8;
+    p.len() * per_particle
+        + b.len() * per_bond
+        + 64 * (state.bond_resistance.len() + state.particle_resistance.len())
+        + 8 * b.strength_factors.len()
+        + 32 * b.damping.len()
+        + 48 * b.histories.len()
+}
+
+/// Time of a step, tried on a copy, s.
+fn trial_s(state: &State) -> f64 {
+    let mut copy = state.clone();
+    let clock = Instant::now();
+    let mut done = 0;
+    while done < TRIAL.0 && (done < 3 || clock.elapsed().as_secs_f64() < TRIAL.1) {
+        step(&mut copy);
+        done += 1;
+    }
+    clock.elapsed().as_secs_f64() / f64::from(done)
+}

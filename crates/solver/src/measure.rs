@@ -1,0 +1,245 @@
+//! Measures: named quantities of sets of particles, followed through a run.
+
+use dem_io::scene::{At, Measure, Quantity};
+use serde::{Deserialize, Serialize};
+
+use crate::check::ledger::{Balance, synchronous_motions};
+use crate::physics::bond::failure::{stresses, utilisation};
+use crate::physics::rigid::rotation_vector;
+use crate::plan::Plan;
+use crate::state::State;
+use crate::state::particles::Motion;
+
+/// A measure and the particles that it is of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gauge {
+    /// Its name in the scene.
+    pub name: String,
+    /// What is asked.
+    pub measure: Measure,
+    particles: Vec<u32>,
+    /// Whether those are all there are.
+    of_all: bool,
+    /// Mean position at the start, m. Length 3.
+    start_m: [f64; 3],
+    /// What it has shown.
+    pub history: History,
+}
+
+/// What a measure has shown so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct History {
+    last: Option<(f64, f64)>,
+    largest: Option<f64>,
+    smallest: Option<f64>,
+    integral: f64,
+    duration_s: f64,
+}
+
+/// Result of a measure.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// Its name in the scene.
+    pub name: String,
+    /// In `unit`.
+    pub value: f64,
+    /// SI unit; empty for plain numbers.
+    pub unit: String,
+    /// What it should be.
+    pub reference: Option<f64>,
+    /// (value - reference) / |reference|; the plain difference for a reference of 0.
+    pub error: Option<f64>,
+    /// Largest error for the run to be called good.
+    pub tolerance: Option<f64>,
+}
+
+impl Measured {
+    /// Whether the error is within the tolerance; true without one.
+    pub fn is_good(&self) -> bool {
+        match (self.error, self.tolerance) {
+            (Some(error), Some(tolerance)) => error.abs() <= tolerance,
+            _ => true,
+        }
+    }
+}
+
+/// The gauges of a plan that has not been stepped.
+pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
+    scene
+        .measures
+        .iter()
+        .map(|(name, measure)| {
+            let particles = plan.sets.get(&measure.of).cloned().unwrap_or_default();
+            Gauge {
+                name: name.clone(),
+                measure: measure.clone(),
+                of_all: particles.len() == plan.state.particles.len(),
+                start_m: mean_position(&plan.state, &particles),
+                particles,
+                history: History::default(),
+            }
+        })
+        .collect()
+}
+
+/// Reads all gauges between a kick and the drift after it, and notes what they show. One value for each.
+pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Vec<f64> {
+    let needs_motions = |g: &Gauge| {
+        matches!(
+            g.measure.quantity,
+            Quantity::Velocity(_) | Quantity::AngularVelocity(_) | Quantity::KineticEnergy
+        )
+    };
+    let motions = if gauges.iter().any(needs_motions) {
+        synchronous_motions(state)
+    } else {
+        Vec::new()
+    };
+    gauges
+        .iter_mut()
+        .map(|gauge| {
+            let value = gauge.read(state, &motions, balance);
+            gauge.history.note(state.time_s, value);
+            value
+        })
+        .collect()
+}
+
+impl Gauge {
+    fn read(&self, state: &State, motions: &[Motion], balance: &Balance) -> f64 {
+        let p = &state.particles;
+        let count = self.particles.len() as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| {
+            self.particles.iter().map(|&i| of(i as usize)).sum::<f64>() / count
+        };
+        let reactions = |k: usize| {
+            let held = state.supports.iter().flat_map(|support| &support.held);
+            held.filter(|held| self.particles.binary_search(&held.particle).is_ok())
+                .map(|held| held.reaction[k])
+                .sum::<f64>()
+        };
+        match self.measure.quantity {
+            Quantity::Position(k) => mean(&|i| p.poses[i].position_m[k as usize]),
+            Quantity::Displacement(k) => {
+                mean(&|i| p.poses[i].position_m[k as usize] - self.start_m[k as usize])
+            }
+            Quantity::Velocity(k) => mean(&|i| motions[i].velocity_m_s[k as usize]),
+            Quantity::Rotation(k) => mean(&|i| rotation_vector(p.poses[i].turned)[k as usize]),
+            Quantity::AngularVelocity(k) => mean(&|i| motions[i].spin_rad_s[k as usize]),
+            Quantity::Reaction(k) => reactions(k as usize),
+            Quantity::ReactionTorque(k) => reactions(3 + k as usize),
+            Quantity::KineticEnergy if self.of_all => balance.kinetic_j,
+            Quantity::KineticEnergy => self
+                .particles
+                .iter()
+                .map(|&i| kinetic(state, motions, i as usize))
+                .sum(),
+            Quantity::ElasticEnergy if self.of_all => balance.elastic_j(),
+            Quantity::ElasticEnergy => self.over_bonds(state, 0.0, |sum, at, ends_in| {
+                if state.bonds.is_broken(at) {
+                    return sum;
+                }
+                sum + 0.5 * ends_in * state.bonds.forces(at, &p.poses).energy.total()
+            }),
+            Quantity::BrokenBonds => self.over_bonds(state, 0.0, |sum, at, _| {
+                sum + f64::from(u8::from(state.bonds.is_broken(at)))
+            }),
+            Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
+                largest.max(bond_utilisation(state, at))
+            }),
+        }
+    }
+
+    /// Goes through the bonds that have an end in the set, with the number of ends in it.
+    fn over_bonds(&self, state: &State, start: f64, next: impl Fn(f64, usize, f64) -> f64) -> f64 {
+        let mut is_in = vec![self.of_all; state.particles.len()];
+        for &i in &self.particles {
+            is_in[i as usize] = true;
+        }
+        let mut value = start;
+        for (at, ends) in state.bonds.ends.iter().enumerate() {
+            let ends_in = ends.iter().filter(|&&end| is_in[end as usize]).count();
+            if ends_in > 0 {
+                value = next(value, at, ends_in as f64);
+            }
+        }
+        value
+    }
+
+    /// What it comes to at the end of a run.
+    pub fn result(&self) -> Measured {
+        let history = &self.history;
+        let last = history.last.map_or(f64::NAN, |(_, value)| value);
+        let value = match self.measure.at {
+            At::End => last,
+            At::Largest => history.largest.unwrap_or(f64::NAN),
+            At::Smallest => history.smallest.unwrap_or(f64::NAN),
+            At::Mean if history.duration_s > 0.0 => history.integral / history.duration_s,
+            At::Mean => last,
+        };
+        let error = self.measure.reference.map(|reference| {
+            let off = value - reference;
+            if reference == 0.0 {
+                off
+            } else {
+                off / reference.abs()
+            }
+        });
+        Measured {
+            name: self.name.clone(),
+            value,
+            unit: self.unit().to_owned(),
+            reference: self.measure.reference,
+            error,
+            tolerance: self.measure.tolerance,
+        }
+    }
+
+    /// SI unit of its quantity; empty for plain numbers.
+    pub fn unit(&self) -> &'static str {
+        self.measure.quantity.dimension().si
+    }
+}
+
+impl History {
+    fn note(&mut self, time_s: f64, value: f64) {
+        if let Some((before_s, before)) = self.last {
+            self.integral += 0.5 * (value + before) * (time_s - before_s);
+            self.duration_s += time_s - before_s;
+        }
+        self.last = Some((time_s, value));
+        self.largest = Some(self.largest.map_or(value, |l| l.max(value)));
+        self.smallest = Some(self.smallest.map_or(value, |s| s.min(value)));
+    }
+}
+
+/// Stress over strength of a bond, before any strengthening by rate; 0 for one that is broken or cannot break.
+pub fn bond_utilisation(state: &State, at: usize) -> f64 {
+    let bonds = &state.bonds;
+    let Some(criteria) = &bonds.rules[bonds.rule_of(at)].criteria else {
+        return 0.0;
+    };
+    if bonds.is_broken(at) {
+        return 0.0;
+    }
+    let load = bonds.forces(at, &state.particles.poses).load;
+    let stresses = stresses(&load, bonds.radii_m[at]);
+    utilisation(criteria, &stresses, bonds.strength_factor(at))
+}
+
+fn kinetic(state: &State, motions: &[Motion], i: usize) -> f64 {
+    let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
+    let p = &state.particles;
+    0.5 * (square(&motions[i].velocity_m_s) / p.inverse_masses[i]
+        + square(&motions[i].spin_rad_s) / p.inverse_inertias[i])
+}
+
+fn mean_position(state: &State, particles: &[u32]) -> [f64; 3] {
+    let count = particles.len().max(1) as f64;
+    [0, 1, 2].map(|k| {
+        let places = particles
+            .iter()
+            .map(|&i| state.particles.poses[i as usize].position_m[k]);
+        places.sum::<f64>() / count
+    })
+}

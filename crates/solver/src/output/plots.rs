@@ -1,0 +1,94 @@
+//! Plots of the time series: energies together, errors together, every measure by itself.
+
+use dem_io::Result;
+use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
+
+use crate::measure::Gauge;
+
+/// Draws the time series of a finished run into its folder.
+///
+/// # Errors
+/// Those of the files.
+pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
+    let series = read_series(&folder.series())?;
+    let energies = [
+        "kinetic_energy_j",
+        "elastic_energy_j",
+        "gravity_energy_j",
+        "load_work_j",
+        "support_work_j",
+        "bond_damping_j",
+        "particle_damping_j",
+        "released_j",
+    ];
+    let changing: Vec<&str> = energies
+        .into_iter()
+        .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
+        .collect();
+    folder.write_plot(
+        "energy",
+        &plot(&series, "Energy", "energy (J)", &changing, "_j"),
+    )?;
+    let mut errors = plot(
+        &series,
+        "Errors of the ledgers",
+        "relative error",
+        &["energy_error", "momentum_error", "angular_momentum_error"],
+        "_error",
+    );
+    for point in errors.lines.iter_mut().flat_map(|line| &mut line.points) {
+        point[1] = point[1].abs().max(1e-17);
+    }
+    errors.y.log = true;
+    folder.write_plot("errors", &errors)?;
+    if column(&series, "broken_bonds").iter().any(|v| *v != 0.0) {
+        let broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
+        folder.write_plot("broken_bonds", &broken)?;
+    }
+    let first = series.columns.len() - gauges.len();
+    for (gauge, name) in gauges.iter().zip(&series.columns[first..]) {
+        let quantity = gauge.measure.quantity.name().replace('_', " ");
+        let label = match gauge.unit() {
+            "" => quantity,
+            unit => format!("{quantity} ({unit})"),
+        };
+        let mut one = plot(&series, &gauge.name, &label, &[name], "");
+        one.reference = gauge
+            .measure
+            .reference
+            .map(|value| (value, "reference".to_owned()));
+        folder.write_plot(&gauge.name, &one)?;
+    }
+    Ok(())
+}
+
+fn column<'a>(series: &'a Series, name: &str) -> &'a [f64] {
+    let at = series.columns.iter().position(|column| column == name);
+    at.map_or(&[], |at| &series.values[at])
+}
+
+fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -> Plot {
+    let line = |name: &&str| Line {
+        name: name.trim_end_matches(suffix).replace('_', " "),
+        points: series
+            .times_s
+            .iter()
+            .zip(column(series, name))
+            .map(|(&t, &v)| [t, v])
+            .collect(),
+        dashed: false,
+    };
+    Plot {
+        title: title.to_owned(),
+        x: Axis {
+            label: "time (s)".to_owned(),
+            log: false,
+        },
+        y: Axis {
+            label: y.to_owned(),
+            log: false,
+        },
+        lines: columns.iter().map(line).collect(),
+        reference: None,
+    }
+}

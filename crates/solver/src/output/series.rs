@@ -1,0 +1,58 @@
+//! Columns of the time series: energies, errors, broken bonds, every measure.
+
+use crate::check::ledger::Balance;
+use crate::measure::Gauge;
+
+/// Names of the columns after the time.
+const ALWAYS: [&str; 13] = [
+    "kinetic_energy_j",
+    "elastic_energy_j",
+    "gravity_energy_j",
+    "load_work_j",
+    "support_work_j",
+    "bond_damping_j",
+    "particle_damping_j",
+    "released_j",
+    "energy_error",
+    "momentum_error",
+    "angular_momentum_error",
+    "broken_bonds",
+    "time_step_s",
+];
+
+/// Names of all columns after the time, with units.
+pub fn columns(gauges: &[Gauge]) -> Vec<String> {
+    let measures = gauges.iter().map(|gauge| match gauge.unit() {
+        "" => gauge.name.clone(),
+        unit => format!(
+            "{}_{}",
+            gauge.name,
+            unit.to_lowercase().replace(['/', ' '], "_")
+        ),
+    });
+    ALWAYS
+        .iter()
+        .map(|&name| name.to_owned())
+        .chain(measures)
+        .collect()
+}
+
+/// A row in the order of [`columns`].
+pub fn row(balance: &Balance, broken: u64, time_step_s: f64, measured: &[f64]) -> Vec<f64> {
+    let always = [
+        balance.kinetic_j,
+        balance.elastic_j(),
+        balance.gravity_j,
+        balance.load_work_j,
+        balance.support_work_j,
+        balance.bond_damping_j,
+        balance.particle_damping_j,
+        balance.released_j,
+        balance.energy_error,
+        balance.momentum_error,
+        balance.angular_momentum_error,
+        broken as f64,
+        time_step_s,
+    ];
+    always.into_iter().chain(measured.iter().copied()).collect()
+}

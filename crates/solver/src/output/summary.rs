@@ -1,0 +1,166 @@
+//! The summary of a run: what came of it, how far to trust it, where the time went.
+
+use std::fmt;
+
+use dem_io::units::significant;
+use serde::Serialize;
+
+use crate::check::ledger::Balance;
+use crate::measure::Measured;
+
+/// Energy errors above this share are worth a word.
+const LARGE_ENERGY_ERROR: f64 = 0.01;
+
+/// What came of a run. SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Why it ended: "end time" or "rest".
+    pub ended_by: String,
+    /// Simulated, s.
+    pub simulated_s: f64,
+    /// Needed for it, s; of the part since the last checkpoint for a run that was resumed.
+    pub wall_s: f64,
+    /// Threads.
+    pub threads: usize,
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of bonds at the start.
+    pub bonds: usize,
+    /// Bonds that broke.
+    pub broken_bonds: u64,
+    /// Steps from the start.
+    pub steps: u64,
+    /// Last step, s.
+    pub time_step_s: f64,
+    /// Largest stable step, s.
+    pub limit_s: f64,
+    /// Step over limit.
+    pub share_of_limit: f64,
+    /// Steps per second of wall time.
+    pub steps_per_s: f64,
+    /// Bonds times steps per second of wall time.
+    pub bond_steps_per_s: f64,
+    /// Largest relative energy error of the run.
+    pub energy_error: f64,
+    /// Largest relative momentum error of the run.
+    pub momentum_error: f64,
+    /// Largest relative angular momentum error of the run.
+    pub angular_momentum_error: f64,
+    /// The ledger at the end.
+    pub ledger: Balance,
+    /// What was measured.
+    pub measures: Vec<Measured>,
+    /// Share of each stage in the time of a step.
+    pub time_by_stage: Vec<(String, f64)>,
+    /// Stages that the scene does not need.
+    pub left_out: Vec<String>,
+    /// Folder of the results.
+    pub results: Option<String>,
+}
+
+impl Summary {
+    /// What speaks against trusting the result. Empty: nothing.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        if self.energy_error > LARGE_ENERGY_ERROR {
+            doubts.push(format!(
+                "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
+                significant(self.energy_error, 2)
+            ));
+        }
+        if self.share_of_limit > 1.0 {
+            doubts.push("the step is above the largest stable one".to_owned());
+        }
+        for measure in self.measures.iter().filter(|m| !m.is_good()) {
+            doubts.push(format!("{} is outside its tolerance", measure.name));
+        }
+        doubts
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let results = self
+            .results
+            .as_ref()
+            .map_or(String::new(), |r| format!(" -> {r}"));
+        writeln!(
+            f,
+            "{}: {} s simulated in {} s on {} thread{}{results}",
+            self.scene,
+            significant(self.simulated_s, 6),
+            significant(self.wall_s, 3),
+            self.threads,
+            if self.threads == 1 { "" } else { "s" },
+        )?;
+        for measure in &self.measures {
+            writeln!(f, "{}", measure_text(measure))?;
+        }
+        writeln!(
+            f,
+            "error        energy {}   momentum {}   angular momentum {}",
+            significant(self.energy_error, 2),
+            significant(self.momentum_error, 2),
+            significant(self.angular_momentum_error, 2),
+        )?;
+        writeln!(
+            f,
+            "steps        {} of {} s, {} of the limit; ended by {}",
+            self.steps,
+            significant(self.time_step_s, 4),
+            significant(self.share_of_limit, 3),
+            self.ended_by,
+        )?;
+        writeln!(
+            f,
+            "speed        {} steps/s, {} million bond-steps/s",
+            significant(self.steps_per_s, 3),
+            significant(self.bond_steps_per_s * 1e-6, 3),
+        )?;
+        let shares: Vec<String> = self
+            .time_by_stage
+            .iter()
+            .filter(|(_, share)| *share >= 0.005)
+            .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
+            .collect();
+        writeln!(f, "time         {}", shares.join("   "))?;
+        if self.bonds > 0 {
+            writeln!(
+                f,
+                "broken       {} of {} bonds",
+                self.broken_bonds, self.bonds
+            )?;
+        }
+        writeln!(f, "left out     {}", self.left_out.join(", "))?;
+        let doubts = self.doubts();
+        let verdict = if doubts.is_empty() {
+            "sound: nothing to mind".to_owned()
+        } else {
+            doubts.join("; ")
+        };
+        writeln!(f, "verdict      {verdict}")
+    }
+}
+
+/// One line for a measure: value, and reference and error where there is one.
+fn measure_text(measure: &Measured) -> String {
+    let show = |value: f64| match measure.unit.as_str() {
+        "m" if value.abs() < 1.0 => format!("{} mm", significant(value * 1e3, 6)),
+        unit => format!("{} {unit}", significant(value, 6))
+            .trim_end()
+            .to_owned(),
+    };
+    let mut text = format!("{:12} {}", measure.name, show(measure.value));
+    if let (Some(reference), Some(error)) = (measure.reference, measure.error) {
+        text += &format!(
+            "   theory {}   error {}",
+            show(reference),
+            significant(error, 3)
+        );
+    }
+    text
+}

@@ -1,0 +1,258 @@
+//! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs and why each other is left out.
+
+pub mod bodies;
+pub mod sets;
+pub mod time_step;
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{Formulation, Pick, Scene};
+use dem_io::{Body, Diagnostic, Result};
+
+use crate::stages::loads::SetLoad;
+use crate::stages::supports::{Held, SetSupport};
+use crate::state::State;
+use crate::state::particles::Wrench;
+
+use self::bodies::{PlacedBody, place_bodies};
+use self::sets::resolve_sets;
+use self::time_step::{StepChoice, choose_step};
+
+/// A simulation that is ready to step, and what its parts are called.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Before the first step.
+    pub state: State,
+    /// Bodies in the order of their names.
+    pub bodies: Vec<PlacedBody>,
+    /// Particles (numbers in the state, rising) of every set, every body and `all`.
+    pub sets: BTreeMap<String, Vec<u32>>,
+    /// The time step and why.
+    pub step: StepChoice,
+    /// The stages of a step.
+    pub stages: Vec<PlannedStage>,
+}
+
+/// A stage of the step: done or left out, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedStage {
+    /// What it does.
+    pub name: &'static str,
+    /// Whether the scene needs it.
+    pub needed: bool,
+    /// Why, or why not.
+    pub why: String,
+}
+
+/// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
+///
+/// # Errors
+/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom,
+/// a time step above the limit.
+pub fn plan(
+    scene: &Scene,
+    read: BTreeMap<String, Body>,
+    threads: usize,
+    allow_any_step: bool,
+) -> Result<Plan> {
+    let (particles, bonds, bodies) = place_bodies(scene, read)?;
+    let sets = resolve_sets(scene, &bodies, &particles)?;
+    let mut state = State::new(particles, bonds, 1.0, threads);
+    state.gravity_m_s2 = scene.run.gravity_m_s2;
+    state.particle_damping = scene.run.particle_damping;
+    if state.particle_damping > 0.0 {
+        state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+    }
+    state.supports = supports(scene, &sets)?;
+    state.loads = loads(scene, &sets, &state.supports)?;
+    let step = choose_step(scene, &mut state, allow_any_step)?;
+    state.time_step_s = step.step_s;
+    let stages = stages(scene, &state);
+    Ok(Plan {
+        state,
+        bodies,
+        sets,
+        step,
+        stages,
+    })
+}
+
+fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetSupport>> {
+    let mut held_by: BTreeMap<(u32, usize), &str> = BTreeMap::new();
+    let mut supports = Vec::new();
+    for (name, support) in &scene.supports {
+        let particles = particles_of(sets, &support.of);
+        for &particle in particles {
+            for (k, _) in support
+                .holds
+                .iter()
+                .enumerate()
+                .filter(|(_, h)| h.is_some())
+            {
+                if let Some(other) = held_by.insert((particle, k), name) {
+                    return Err(Diagnostic::input(
+                        format!("{}: [supports.{name}]", scene.source),
+                        format!(
+                            "{} of a particle of '{}' is already held by [supports.{other}]",
+                            FREEDOMS[k], support.of
+                        ),
+                        "hold each freedom of a particle once",
+                    ));
+                }
+            }
+        }
+        supports.push(SetSupport {
+            holds: support.holds,
+            factor: support.factor.clone(),
+            held: particles
+                .iter()
+                .map(|&particle| Held {
+                    particle,
+                    ..Held::default()
+                })
+                .collect(),
+        });
+    }
+    Ok(supports)
+}
+
+const FREEDOMS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+fn loads(
+    scene: &Scene,
+    sets: &BTreeMap<String, Vec<u32>>,
+    supports: &[SetSupport],
+) -> Result<Vec<SetLoad>> {
+    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
+    for support in supports {
+        for one in &support.held {
+            let entry = held.entry(one.particle).or_default();
+            for (held, hold) in entry.iter_mut().zip(&support.holds) {
+                *held |= hold.is_some();
+            }
+        }
+    }
+    let mut loads = Vec::new();
+    for (name, load) in &scene.loads {
+        let particles = particles_of(sets, &load.of);
+        let share = 1.0 / particles.len() as f64;
+        let six: Vec<f64> = load.force_n.into_iter().chain(load.torque_n_m).collect();
+        for particle in particles {
+            let Some(held) = held.get(particle) else {
+                continue;
+            };
+            if let Some(k) = (0..6).find(|&k| held[k] && six[k] != 0.0) {
+                return Err(Diagnostic::input(
+                    format!("{}: [loads.{name}]", scene.source),
+                    format!(
+                        "the load of {} along {} acts on a particle of '{}' that a support holds there",
+                        six[k], FREEDOMS[k], load.of
+                    ),
+                    "load particles that can move, or free them",
+                ));
+            }
+        }
+        loads.push(SetLoad {
+            particles: particles.to_vec(),
+            force_n: load.force_n.map(|f| f * share),
+            torque_n_m: load.torque_n_m.map(|t| t * share),
+            factor: load.factor.clone(),
+        });
+    }
+    Ok(loads)
+}
+
+/// The particles of a set that the scene is known to have.
+fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
+    sets.get(name).map_or(&[], Vec::as_slice)
+}
+
+/// What a step consists of, and what is left out.
+fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
+    let bonds = state.bonds.len();
+    let rules = &state.bonds.rules;
+    let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
+    let stage = |name, needed, yes: String, no: &str| PlannedStage {
+        name,
+        needed,
+        why: if needed { yes } else { no.to_owned() },
+    };
+    let incremental = scene
+        .bonds
+        .values()
+        .any(|kind| kind.formulation == Formulation::Incremental);
+    let scattered = !state.bonds.strength_factors.is_empty();
+    vec![
+        stage(
+            "bond forces",
+            bonds > 0,
+            format!("{bonds} bonds"),
+            "no body has bonds",
+        ),
+        stage(
+            "bond history",
+            incremental && bonds > 0,
+            "bonds of the incremental formulation".to_owned(),
+            "every bond has the total formulation",
+        ),
+        stage(
+            "failure",
+            any(&|rule| rule.criteria.is_some()),
+            "bonds have strengths".to_owned(),
+            "no bond has a strength",
+        ),
+        stage(
+            "strength by rate",
+            any(&|rule| rule.strengthening_from_1_s.is_some()),
+            "only for bonds that would break without it".to_owned(),
+            "no rate strengthening asked for",
+        ),
+        stage(
+            "scattered strength",
+            scattered,
+            "a factor for each bond".to_owned(),
+            "no Weibull modulus given",
+        ),
+        stage(
+            "bond damping",
+            !state.bond_resistance.is_empty(),
+            "bonds are damped".to_owned(),
+            "no bond is damped: no relative velocities",
+        ),
+        stage(
+            "particle damping",
+            state.particle_damping > 0.0,
+            format!("gamma {}", state.particle_damping),
+            "not asked for",
+        ),
+        stage(
+            "loads",
+            !state.loads.is_empty(),
+            format!(
+                "on {} particles",
+                state.loads.iter().map(|l| l.particles.len()).sum::<usize>()
+            ),
+            "no loads",
+        ),
+        stage(
+            "supports",
+            !state.supports.is_empty(),
+            format!(
+                "on {} particles",
+                state.supports.iter().map(|s| s.held.len()).sum::<usize>()
+            ),
+            "no supports",
+        ),
+        stage(
+            "gravity",
+            state.gravity_m_s2 != [0.0; 3],
+            format!("{:?} m/s2", state.gravity_m_s2),
+            "no gravity",
+        ),
+    ]
+}
+
+/// Whether a set picks particles by their numbers in the body's file.
+fn picks_numbers(pick: &Pick) -> bool {
+    matches!(pick, Pick::Particles(_))
+}

@@ -1,0 +1,267 @@
+//! Bodies of a scene, put where they start.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{BodyEntry, BondKind, BondModel as SceneModel, Formulation, Scene};
+use dem_io::{Body, Diagnostic, Result};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::physics::bond::damping::{chen, chen_by_mode, platzer, reduced};
+use crate::physics::bond::failure::Criteria;
+use crate::physics::bond::incremental::History;
+use crate::physics::bond::scatter::strength_factor;
+use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use crate::state::bonds::{BondRule, Bonds};
+use crate::state::order::spatial_order;
+use crate::state::particles::Particles;
+
+/// A length in a file is taken as that of the bond at rest where it stands if the two differ by less than this part.
+const SAME_LENGTH: f64 = 1e-9;
+
+/// Which particles and bonds of the state are those of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedBody {
+    /// Its name in the scene.
+    pub name: String,
+    /// First of its particles in the state.
+    pub first_particle: usize,
+    /// For each particle of the body's file, in order: its number in the state.
+    pub particles: Vec<u32>,
+    /// First of its bonds in the state.
+    pub first_bond: usize,
+    /// For each bond of the body in the state, in order: its number in the body's file.
+    pub bonds: Vec<u32>,
+}
+
+/// Particles and bonds of all bodies of a scene, where they start.
+///
+/// # Errors
+/// Bonds without a kind; no density.
+pub fn place_bodies(
+    scene: &Scene,
+    mut read: BTreeMap<String, Body>,
+) -> Result<(Particles, Bonds, Vec<PlacedBody>)> {
+    let mut particles = Particles::default();
+    let mut bonds = Bonds::default();
+    let mut placed = Vec::new();
+    let kinds: Vec<&String> = scene.bonds.keys().collect();
+    bonds.rules = scene.bonds.values().map(rule).collect();
+    for (number, (name, entry)) in scene.bodies.iter().enumerate() {
+        let Some(body) = read.remove(name) else {
+            continue;
+        };
+        let mut one = place_particles(scene, name, entry, &body, &mut particles)?;
+        let kind_number = entry
+            .bond_kind
+            .as_ref()
+            .and_then(|kind| kinds.iter().position(|k| *k == kind));
+        match kind_number {
+            Some(rule) => {
+                let kind = &scene.bonds[kinds[rule]];
+                one.first_bond = bonds.len();
+                let seed = (scene.run.seed, number as u64);
+                place_bonds(&body, kind, rule, seed, &particles, &mut one, &mut bonds);
+            }
+            None if !body.bonds.is_empty() => {
+                return Err(Diagnostic::input(
+                    format!("{}: [bodies.{name}]", scene.source),
+                    format!(
+                        "the body has {} bonds, and no kind of bonds is named",
+                        body.bonds.len()
+                    ),
+                    "add bonds = \"NAME\" and a table [bonds.NAME]",
+                ));
+            }
+            None => {}
+        }
+        placed.push(one);
+    }
+    Ok((particles, bonds, placed))
+}
+
+fn place_particles(
+    scene: &Scene,
+    name: &str,
+    entry: &BodyEntry,
+    body: &Body,
+    particles: &mut Particles,
+) -> Result<PlacedBody> {
+    let density = scene
+        .materials
+        .get(&entry.material)
+        .and_then(|material| material.density_kg_m3)
+        .or(body.about.particle_density_kg_m3)
+        .ok_or_else(|| {
+            Diagnostic::input(
+                format!("{}: [materials.{}]", scene.source, entry.material),
+                format!("no density, and the file of body '{name}' names none"),
+                "add density = \"2050 kg/m3\"",
+            )
+        })?;
+    let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
+    let turned = entry.rotation_rad != [0.0; 3];
+    let shift = Vector3::from(entry.position_m);
+    let places: Vec<[f64; 3]> = body
+        .positions
+        .iter()
+        .map(|&place| {
+            let place = Vector3::from(place);
+            let place = if turned { rotation * place } else { place };
+            (place + shift).into()
+        })
+        .collect();
+    let order = spatial_order(&places);
+    let first_particle = particles.len();
+    let mut numbers = vec![0_u32; order.len()];
+    for (at, &original) in order.iter().enumerate() {
+        numbers[original as usize] = (first_particle + at) as u32;
+        let original = original as usize;
+        particles.push_sphere(places[original], body.radii[original], density);
+    }
+    set_moving(entry, particles, first_particle);
+    Ok(PlacedBody {
+        name: name.to_owned(),
+        first_particle,
+        particles: numbers,
+        first_bond: 0,
+        bonds: Vec::new(),
+    })
+}
+
+/// Velocities of the particles from `first` on, which move as one rigid body.
+fn set_moving(entry: &BodyEntry, particles: &mut Particles, first: usize) {
+    let spin = Vector3::from(entry.angular_velocity_rad_s);
+    let velocity = Vector3::from(entry.velocity_m_s);
+    let mut moment = Vector3::zeros();
+    let mut mass = 0.0;
+    for i in first..particles.len() {
+        let one = 1.0 / particles.inverse_masses[i];
+        moment += one * particles.poses[i].place();
+        mass += one;
+    }
+    let centre = moment / mass;
+    for i in first..particles.len() {
+        let arm = particles.poses[i].place() - centre;
+        let motion = &mut particles.motions[i];
+        motion.velocity_m_s = (velocity + spin.cross(&arm)).into();
+        motion.spin_rad_s = spin.into();
+    }
+}
+
+fn place_bonds(
+    body: &Body,
+    kind: &BondKind,
+    rule: usize,
+    (seed, number): (u64, u64),
+    particles: &Particles,
+    placed: &mut PlacedBody,
+    bonds: &mut Bonds,
+) {
+    let mut sorted: Vec<([u32; 2], u32)> = (0..)
+        .zip(&body.bonds)
+        .map(|(original, ends)| {
+            let [a, b] = ends.map(|end| placed.particles[end as usize]);
+            ([a.min(b), a.max(b)], original)
+        })
+        .collect();
+    sorted.sort_unstable();
+    let damped = bonds.rules.iter().any(|rule| rule.damped);
+    let incremental = bonds.rules.iter().any(|rule| rule.incremental);
+    for (ends, original) in sorted {
+        placed.bonds.push(original);
+        let original = original as usize;
+        let [a, b] = ends.map(|end| end as usize);
+        let radii = [a, b].map(|end| particles.radii_m[end]);
+        let apart = particles.poses[b].place() - particles.poses[a].place();
+        let distance = apart.norm();
+        let given = body.bond_lengths[original];
+        let at_rest = (given - distance).abs() <= SAME_LENGTH * distance;
+        let shape = BondShape {
+            length_m: if at_rest { distance } else { given },
+            radius_m: match kind.radius_factor {
+                Some(factor) => factor * radii[0].min(radii[1]),
+                None => body.bond_radii[original],
+            },
+            end_radii_m: radii,
+        };
+        let answer = stiffness(
+            model(kind.model),
+            &shape,
+            kind.young_modulus_pa,
+            kind.poisson_ratio,
+        );
+        bonds.push(
+            ends,
+            (apart / distance).into(),
+            shape.radius_m,
+            &answer,
+            rule,
+        );
+        if damped {
+            bonds.damping.resize(bonds.len() - 1, [0.0; 4]);
+            bonds
+                .damping
+                .push(damping(kind, &answer, particles, [a, b]));
+        }
+        if let Some(modulus) = kind.failure.weibull_modulus {
+            bonds.strength_factors.resize(bonds.len() - 1, 1.0);
+            let pair = body.bonds[original].map(u64::from);
+            bonds
+                .strength_factors
+                .push(strength_factor(seed, number, pair, modulus));
+        } else if !bonds.strength_factors.is_empty() {
+            bonds.strength_factors.push(1.0);
+        }
+    }
+    if incremental {
+        bonds.histories.resize(bonds.len(), History::default());
+    }
+}
+
+fn model(model: SceneModel) -> BondModel {
+    match model {
+        SceneModel::Parallel { kappa } => BondModel::Parallel { kappa },
+        SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
+        SceneModel::Timoshenko => BondModel::Timoshenko,
+        SceneModel::ElasticSolid => BondModel::ElasticSolid,
+        SceneModel::ShearCoefficient { alpha } => BondModel::ShearCoefficient { alpha },
+    }
+}
+
+fn rule(kind: &BondKind) -> BondRule {
+    let failure = &kind.failure;
+    let strengths = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
+    let [tension_pa, shear_pa, von_mises_pa] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
+    let damping = &kind.damping;
+    BondRule {
+        incremental: kind.formulation == Formulation::Incremental,
+        damped: damping.viscous > 0.0 || damping.force_n_s_m > 0.0 || damping.torque > 0.0,
+        criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
+            tension_pa,
+            shear_pa,
+            von_mises_pa,
+            compressive: failure.compressive,
+        }),
+        strengthening_from_1_s: failure.rate_strengthening_from_1_s,
+    }
+}
+
+fn damping(
+    kind: &BondKind,
+    answer: &Stiffness,
+    particles: &Particles,
+    ends: [usize; 2],
+) -> [f64; 4] {
+    let damping = &kind.damping;
+    let reduced = reduced(
+        ends.map(|end| particles.inverse_masses[end]),
+        ends.map(|end| particles.inverse_inertias[end]),
+    );
+    let by_chen = if damping.each_mode {
+        chen_by_mode(answer, &reduced, damping.viscous)
+    } else {
+        chen(answer, &reduced, damping.viscous)
+    };
+    let all = by_chen + platzer(answer, &reduced, damping.force_n_s_m, damping.torque);
+    [all.normal, all.shear, all.torsion, all.bending]
+}

@@ -1,0 +1,107 @@
+//! Which particles the names in a scene stand for.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{ParticleSet, Pick, Scene};
+use dem_io::{Diagnostic, Result};
+
+use super::bodies::PlacedBody;
+use super::picks_numbers;
+use crate::state::particles::Particles;
+
+/// Particles (numbers in the state, rising) of every set, every body and `all`.
+///
+/// # Errors
+/// A set that picks nothing, or a number that the body does not have.
+pub fn resolve_sets(
+    scene: &Scene,
+    bodies: &[PlacedBody],
+    particles: &Particles,
+) -> Result<BTreeMap<String, Vec<u32>>> {
+    let mut sets = BTreeMap::new();
+    sets.insert("all".to_owned(), (0..particles.len() as u32).collect());
+    for body in bodies {
+        let mut numbers = body.particles.clone();
+        numbers.sort_unstable();
+        sets.insert(body.name.clone(), numbers);
+    }
+    for (name, set) in &scene.sets {
+        let place = format!("{}: [sets.{name}]", scene.source);
+        let mut picked = if picks_numbers(&set.pick) {
+            by_number(&place, set, bodies)?
+        } else {
+            let of = set.body.as_deref().unwrap_or("all");
+            let candidates = sets.get(of).map_or(&[][..], Vec::as_slice);
+            candidates
+                .iter()
+                .copied()
+                .filter(|&i| is_in(&set.pick, &particles.poses[i as usize].place().into()))
+                .collect()
+        };
+        if picked.is_empty() {
+            return Err(Diagnostic::input(
+                place,
+                "no particle's centre lies in it",
+                format!("the bodies reach from {}", extent(particles)),
+            ));
+        }
+        picked.sort_unstable();
+        sets.insert(name.clone(), picked);
+    }
+    Ok(sets)
+}
+
+fn by_number(place: &str, set: &ParticleSet, bodies: &[PlacedBody]) -> Result<Vec<u32>> {
+    let Pick::Particles(numbers) = &set.pick else {
+        return Ok(Vec::new());
+    };
+    let body = bodies.iter().find(|b| Some(&b.name) == set.body.as_ref());
+    let particles = body.map_or(&[][..], |b| b.particles.as_slice());
+    numbers
+        .iter()
+        .map(|&number| {
+            particles.get(number as usize).copied().ok_or_else(|| {
+                Diagnostic::input(
+                    place,
+                    format!(
+                        "particle {number} does not exist: the body has {} particles",
+                        particles.len()
+                    ),
+                    format!(
+                        "use numbers from 0 to {}",
+                        particles.len().saturating_sub(1)
+                    ),
+                )
+            })
+        })
+        .collect()
+}
+
+fn is_in(pick: &Pick, place: &[f64; 3]) -> bool {
+    match pick {
+        Pick::All => true,
+        Pick::Particles(_) => false,
+        Pick::Box { min, max } => (0..3).all(|k| min[k] <= place[k] && place[k] <= max[k]),
+        Pick::Sphere { centre, radius } => {
+            let square: f64 = (0..3).map(|k| (place[k] - centre[k]).powi(2)).sum();
+            square <= radius * radius
+        }
+    }
+}
+
+/// Where the centres of all particles are, for a person.
+fn extent(particles: &Particles) -> String {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for pose in &particles.poses {
+        for k in 0..3 {
+            low[k] = low[k].min(pose.position_m[k]);
+            high[k] = high[k].max(pose.position_m[k]);
+        }
+    }
+    let show = |p: [f64; 3]| {
+        let [x, y, z] = p.map(dem_io::units::show_length);
+        format!("({x}, {y}, {z})")
+    };
+    format!("{} to {}", show(low), show(high))
+}

@@ -1,0 +1,181 @@
+//! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say is read again when it goes on.
+
+use dem_io::{Diagnostic, Result};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::check::ledger::Ledger;
+use crate::measure;
+use crate::physics::bond::incremental::History;
+use crate::run::Progress;
+use crate::state::State;
+use crate::state::particles::{Motion, Pose};
+
+/// A run between two steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    fingerprint: u64,
+    steps: u64,
+    time_s: f64,
+    time_step_s: f64,
+    previous_time_step_s: f64,
+    broken_count: u64,
+    /// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z.
+    particles: Vec<([f64; 3], [f64; 4], [f64; 3], [f64; 3])>,
+    broken: Vec<u32>,
+    histories: Vec<[f64; 6]>,
+    ledger: Ledger,
+    /// What the gauges have shown.
+    pub measures: Vec<measure::History>,
+    /// Where the output stands.
+    pub progress: Progress,
+}
+
+impl Snapshot {
+    /// Of a run between two steps.
+    pub fn taken(
+        state: &State,
+        fingerprint: u64,
+        measures: Vec<measure::History>,
+        progress: Progress,
+    ) -> Self {
+        let p = &state.particles;
+        Self {
+            fingerprint,
+            steps: state.steps,
+            time_s: state.time_s,
+            time_step_s: state.time_step_s,
+            previous_time_step_s: state.previous_time_step_s,
+            broken_count: state.broken_count,
+            particles: p
+                .poses
+                .iter()
+                .zip(&p.motions)
+                .map(|(pose, motion)| {
+                    let [x, y, z, _] = pose.position_m;
+                    (
+                        [x, y, z],
+                        pose.turned,
+                        motion.velocity_m_s,
+                        motion.spin_rad_s,
+                    )
+                })
+                .collect(),
+            broken: (0..state.bonds.len())
+                .filter(|&at| state.bonds.is_broken(at))
+                .map(|at| at as u32)
+                .collect(),
+            histories: state
+                .bonds
+                .histories
+                .iter()
+                .map(|h| {
+                    let [fx, fy, fz]: [f64; 3] = h.shear_force.into();
+                    let [mx, my, mz]: [f64; 3] = h.moment.into();
+                    [fx, fy, fz, mx, my, mz]
+                })
+                .collect(),
+            ledger: state.ledger,
+            measures,
+            progress,
+        }
+    }
+
+    /// As bytes.
+    ///
+    /// # Errors
+    /// None in practice (exit code 1).
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        postcard::to_stdvec(self).map_err(|error| {
+            Diagnostic::failed(
+                "checkpoint",
+                error.to_string(),
+                "this is a fault of the program",
+            )
+        })
+    }
+
+    /// From the bytes of a checkpoint.
+    ///
+    /// # Errors
+    /// It holds something else.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        postcard::from_bytes(bytes).map_err(|error| {
+            Diagnostic::input(
+                "",
+                format!("this checkpoint does not hold a run of this program: {error}"),
+                "start the run again, without --resume",
+            )
+        })
+    }
+
+    /// Puts a state that has been planned from the same scene where the run stood.
+    ///
+    /// # Errors
+    /// The scene's bodies or bonds are others than those of the run.
+    pub fn restore(&self, state: &mut State) -> Result<()> {
+        if self.fingerprint != fingerprint(state) || self.particles.len() != state.particles.len() {
+            return Err(Diagnostic::input(
+                "",
+                "this checkpoint belongs to a run with other bodies or bonds than the scene has now",
+                "give the scene and the bodies that the run began with, or start again without --resume",
+            ));
+        }
+        let p = &mut state.particles;
+        for (i, &([x, y, z], turned, velocity_m_s, spin_rad_s)) in self.particles.iter().enumerate()
+        {
+            p.poses[i] = Pose {
+                position_m: [x, y, z, 0.0],
+                turned,
+            };
+            p.motions[i] = Motion {
+                velocity_m_s,
+                spin_rad_s,
+            };
+        }
+        for &at in &self.broken {
+            state.bonds.set_broken(at as usize);
+        }
+        let history = |&[fx, fy, fz, mx, my, mz]: &[f64; 6]| History {
+            shear_force: Vector3::new(fx, fy, fz),
+            moment: Vector3::new(mx, my, mz),
+        };
+        state.bonds.histories = self.histories.iter().map(history).collect();
+        state.ledger = self.ledger;
+        state.steps = self.steps;
+        state.time_s = self.time_s;
+        state.time_step_s = self.time_step_s;
+        state.previous_time_step_s = self.previous_time_step_s;
+        state.broken_count = self.broken_count;
+        Ok(())
+    }
+}
+
+/// A hash (FNV-1a) of what a state is made of: particles and bonds as planned, before the first step.
+pub fn fingerprint(state: &State) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |word: u64| {
+        for byte in word.to_le_bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    let (p, b) = (&state.particles, &state.bonds);
+    for numbers in [
+        &p.radii_m,
+        &p.inverse_masses,
+        &b.normal,
+        &b.bending,
+        &b.radii_m,
+        &b.strength_factors,
+    ] {
+        add(numbers.len() as u64);
+        numbers.iter().for_each(|n| add(n.to_bits()));
+    }
+    for pose in &p.poses {
+        pose.position_m.iter().for_each(|x| add(x.to_bits()));
+    }
+    for &[a, c] in &b.ends {
+        add(u64::from(a) << 32 | u64::from(c));
+    }
+    hash
+}
