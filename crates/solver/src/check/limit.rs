@@ -32,6 +32,8 @@ pub struct Limit {
 
 /// The limit of kick-drift-kick for the state as it stands: dt <= (-c + sqrt(c^2 + 4 k))/k, with k and c the largest eigenvalues of M^-1 K and M^-1 C.
 ///
+/// Particle damping makes a force that brakes larger by its share gamma: it counts as a stiffness larger by that, k (1 + gamma).
+///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. The wrenches of the state are overwritten.
 pub fn limit(state: &mut State) -> Limit {
     let (k, iterations) = largest_eigenvalue(state, stiffness_times);
@@ -40,8 +42,9 @@ pub fn limit(state: &mut State) -> Limit {
     } else {
         largest_eigenvalue(state, damping_times).0
     };
+    let braked = k * (1.0 + state.particle_damping);
     Limit {
-        step_s: damped_step(k, c),
+        step_s: damped_step(braked, c),
         undamped_step_s: damped_step(k, 0.0),
         omega_rad_s: k.sqrt(),
         damping_1_s: c,
