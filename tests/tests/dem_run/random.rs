@@ -1,0 +1,152 @@
+//! Small scenes of random values, sensible and senseless: never a panic, always one of the exit codes, one message if it is not 0.
+
+use proptest::prelude::*;
+
+use super::{Bench, dem_run};
+
+/// A number as a scene may have it: most often near what makes sense, sometimes far off.
+fn number(usual: f64) -> impl Strategy<Value = f64> {
+    prop_oneof![
+        8 => (0.3..3.0_f64).prop_map(move |f| f * usual),
+        1 => Just(0.0),
+        1 => (-3.0..3.0_f64).prop_map(move |f| f * usual),
+        1 => (-300.0..300.0_f64).prop_map(|e| 10_f64.powf(e)),
+        1 => (-30.0..30.0_f64).prop_map(move |e| usual * 10_f64.powf(e)),
+    ]
+}
+
+prop_compose! {
+    fn particles()(list in prop::collection::vec((0..4_i32, 0..3_i32, 0..2_i32, number(1e-3)), 1..6)) -> String {
+        let rows: Vec<String> = list
+            .iter()
+            .map(|(x, y, z, radius)| format!("[{}, {}, {}, {radius:e}]", 2e-3 * f64::from(*x), 2e-3 * f64::from(*y), 2e-3 * f64::from(*z)))
+            .collect();
+        format!("particles = [{}]\n", rows.join(", "))
+    }
+}
+
+prop_compose! {
+    fn bonds()(pairs in prop::collection::vec((0..5_u32, 0..5_u32), 0..6)) -> String {
+        let pairs: Vec<String> = pairs.iter().filter(|(a, b)| a != b).map(|(a, b)| format!("[{a}, {b}]")).collect();
+        if pairs.is_empty() { String::new() } else { format!("bond_list = [{}]\nbonds = \"k\"\n", pairs.join(", ")) }
+    }
+}
+
+fn word(words: &'static [&'static str]) -> impl Strategy<Value = &'static str> {
+    prop::sample::select(words)
+}
+
+prop_compose! {
+    fn extras()(
+        support in prop::option::of((0..6_u32, word(&["fixed = true", "fixed = [\"x\", \"rz\"]", "velocity = { x = 1 }", "displacement = { y = 1e-3 }\nramp = 1e-4"]))),
+        load in prop::option::of((0..6_u32, number(1.0))),
+        gravity in prop::option::of(number(9.81)),
+        damping in prop::option::of(number(0.2)),
+        spin in prop::option::of(number(100.0)),
+        measure in prop::option::of(word(&["displacement_x", "rotation_z", "reaction_y", "largest_utilisation", "elastic_energy"])),
+    ) -> String {
+        let mut text = String::new();
+        if let Some(spin) = spin { text += &format!("angular_velocity = [0, {spin:e}, 1]\n"); }
+        if let Some((at, how)) = support { text += &format!("[sets.s]\nparticles = [{at}]\n[supports.s]\nof = \"s\"\n{how}\n"); }
+        if let Some((at, force)) = load { text += &format!("[sets.l]\nparticles = [{at}]\n[loads.l]\nof = \"l\"\nforce = [{force:e}, 0, 1]\n"); }
+        if let Some(what) = measure { text += &format!("[measures.m]\nquantity = \"{what}\"\n"); }
+        let mut run = String::new();
+        if let Some(g) = gravity { run += &format!("run.gravity = [0, 0, {g:e}]\n"); }
+        if let Some(gamma) = damping { run += &format!("run.particle_damping = {gamma:e}\n"); }
+        format!("{run}#BODY\n{text}")
+    }
+}
+
+prop_compose! {
+    fn scene()(
+        steps in 1.0..300.0_f64,
+        end in number(2e-3),
+        density in number(2000.0),
+        modulus in number(1e7),
+        poisson in prop_oneof![6 => -0.5..0.49_f64, 1 => -2.0..2.0_f64],
+        model in word(&["parallel", "euler-bernoulli", "timoshenko", "elastic-solid", "shear-coefficient"]),
+        formulation in word(&["total", "incremental"]),
+        viscous in prop::option::of(number(0.1)),
+        strength in prop::option::of(number(1e5)),
+        weibull in prop::option::of(number(5.0)),
+        particles in particles(),
+        bonds in bonds(),
+        extras in extras(),
+        given in any::<bool>(),
+    ) -> String {
+        let (run, rest) = extras.split_once("#BODY\n").unwrap();
+        let mut text = format!("version = 1\nrun.end_time = {end:e}\n{run}materials.m.density = {density:e}\n");
+        // A given step bounds the time that a case can take.
+        if given || !(1e-5..1e-2).contains(&end) { text += &format!("run.time_step = {:e}\n", end / steps); }
+        text += &format!("[bonds.k]\nmodel = \"{model}\"\nformulation = \"{formulation}\"\nyoung_modulus = {modulus:e}\npoisson_ratio = {poisson:e}\n");
+        if let Some(eta) = viscous { text += &format!("damping = {{ viscous = {eta:e} }}\n"); }
+        if let Some(strength) = strength {
+            let scatter = weibull.map_or(String::new(), |m| format!(", weibull_modulus = {m:e}"));
+            text += &format!("failure = {{ tension = {strength:e}, shear = {strength:e}{scatter} }}\n");
+        }
+        text + "[bodies.b]\nmaterial = \"m\"\n" + &particles + &bonds + rest
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, max_shrink_iters: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn never_a_panic(scene in scene(), forced in any::<bool>()) {
+        let bench = Bench::new();
+        let path = bench.write("scene.toml", &scene);
+        let mut command = bench.command(&path, &["--threads", "1", "--out", "out"]);
+        if forced {
+            command.arg("--force-step");
+        }
+        let (output, was_stopped) = bounded(&mut command);
+        // What takes longer than a moment is stopped, and says so.
+        let said = String::from_utf8(output.stderr).unwrap();
+        match output.status.code() {
+            Some(0) => prop_assert_eq!(said, ""),
+            Some(code @ 1..=3) => {
+                prop_assert!(said.starts_with("error: ") && said.matches('\n').count() == 1, "{}\n{}", scene, said);
+                prop_assert!(code != 1 || was_stopped, "{}\n{}", scene, said);
+                prop_assert!(code == 2 || bench.path("out/series.csv").exists());
+            }
+            other => prop_assert!(false, "{:?}\n{}\n{}", other, scene, said),
+        }
+    }
+}
+
+/// Runs a program for half a second at most, then asks it to stop.
+fn bounded(command: &mut std::process::Command) -> (std::process::Output, bool) {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let since = Instant::now();
+    let mut stopped = false;
+    while child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(2));
+        if !stopped && since.elapsed() > Duration::from_millis(500) {
+            Command::new("kill")
+                .args(["-INT", &child.id().to_string()])
+                .status()
+                .unwrap();
+            stopped = true;
+        }
+        assert!(since.elapsed() < Duration::from_secs(20), "it hangs");
+    }
+    (child.wait_with_output().unwrap(), stopped)
+}
+
+#[test]
+fn the_program_is_built() {
+    assert!(
+        dem_run()
+            .arg("--version")
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+}
