@@ -3,11 +3,13 @@
 //! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
 //! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::physics::bond::failure::{Criteria, stresses, utilisation};
+use crate::physics::bond::BondLoad;
+use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{End, bond_forces};
 use crate::state::bonds::Bonds;
@@ -16,6 +18,12 @@ use crate::state::shares::{Batch, Share, Which};
 
 /// Bonds in a block.
 const BLOCK: usize = 32;
+
+/// Bonds computed at once, at least.
+const LANES: usize = 4;
+
+/// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
+const NEARLY: f64 = 1.0 - 1e-9;
 
 /// One number of each bond of a block.
 type Column = [f64; BLOCK];
@@ -71,11 +79,12 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
             if rule.incremental {
                 continue;
             }
+            let screen = rule.criteria.as_ref().map(Screen::new);
             match which {
                 Which::Border(list) => {
                     for some in list.chunks(BLOCK) {
                         block.gather_some(self.bonds, some, self.poses);
-                        block.compute();
+                        block.compute(some.len());
                         let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
                         block.add_to_second(ends, self.wrenches, particles.start);
                     }
@@ -85,11 +94,11 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                     while first < range.end {
                         let run = first..(first + BLOCK).min(range.end);
                         block.gather_run(self.bonds, run.clone(), self.poses);
-                        block.compute();
+                        block.compute(run.len());
                         let ends = &self.bonds.ends[run.clone()];
                         block.add_to_both(ends, self.wrenches, particles);
-                        if let Some(criteria) = &rule.criteria {
-                            block.check(criteria, self.bonds, run, failing);
+                        if let Some(screen) = &screen {
+                            block.check(screen, self.bonds, run, failing);
                         }
                         first += BLOCK;
                     }
@@ -183,10 +192,10 @@ impl Block {
         }
     }
 
-    /// Forces, torques and loads. What is left of an earlier block at the end of a shorter one does no harm.
+    /// Forces, torques and loads of the first `count` bonds. A few more are computed to the full number of lanes, of what an earlier block left there: it does no harm.
     #[inline(always)]
-    fn compute(&mut self) {
-        for i in 0..BLOCK {
+    fn compute(&mut self, count: usize) {
+        for i in 0..count.next_multiple_of(LANES).min(BLOCK) {
             let turned = |q: &[f64; 4]| {
                 UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
             };
@@ -256,28 +265,33 @@ impl Block {
         }
     }
 
-    /// Lists the bonds that have reached their strength, before any strengthening by rate.
+    /// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
     #[inline(always)]
-    fn check(
-        &mut self,
-        criteria: &Criteria,
-        bonds: &Bonds,
-        run: Range<usize>,
-        failing: &mut Vec<u32>,
-    ) {
-        let mut used = [0.0; BLOCK];
+    fn check(&self, screen: &Screen, bonds: &Bonds, run: Range<usize>, failing: &mut Vec<u32>) {
+        let mut beyond: Column = [0.0; BLOCK];
         for i in 0..BLOCK {
-            let load = crate::physics::bond::BondLoad {
+            let load = BondLoad {
                 normal_n: self.load[0][i],
                 shear_n: self.load[1][i],
                 torsion_n_m: self.load[2][i],
                 bending_n_m: self.load[3][i],
             };
-            used[i] = utilisation(criteria, &stresses(&load, self.radius[i]), 1.0);
+            let [used, factor] = screen.used_and_factor(&load, self.radius[i]);
+            beyond[i] = used - NEARLY * factor;
         }
-        for (i, at) in (0..BLOCK).zip(run) {
-            if used[i] >= bonds.strength_factor(at) {
-                failing.push(at as u32);
+        if bonds.strength_factors.is_empty() {
+            for (beyond, at) in beyond.iter().zip(run) {
+                if *beyond >= 0.0 {
+                    failing.push(at as u32);
+                }
+            }
+        } else {
+            for (i, at) in (0..BLOCK).zip(run) {
+                let volume = PI * self.radius[i].powi(3);
+                let strengthened = bonds.strength_factors[at].powi(2) - 1.0;
+                if beyond[i] >= NEARLY * volume * volume * strengthened {
+                    failing.push(at as u32);
+                }
             }
         }
     }
