@@ -134,7 +134,10 @@ fn options_exist() {
     .map(|arguments| program("dem-pack").args(arguments).output().unwrap())
     .chain([
         program("dem-run").arg("--help").output().unwrap(),
-        program("dem-run").args(["check", "--help"]).output().unwrap(),
+        program("dem-run")
+            .args(["check", "--help"])
+            .output()
+            .unwrap(),
     ])
     .map(|output| String::from_utf8(output.stdout).unwrap())
     .collect();

@@ -273,7 +273,7 @@ pub fn balance(state: &mut State) -> Balance {
     let (present, scales) = momenta(p, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
-    let gravity: f64 = -(0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
+    let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
     let gone = work.bond_damping + work.particle_damping + ledger.released_j;

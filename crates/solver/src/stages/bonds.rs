@@ -1,7 +1,4 @@
 //! Forces of the bonds on the particles, total formulation.
-//!
-//! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
-//! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -12,23 +9,13 @@ use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{End, bond_forces};
+use crate::stages::blocks::{BLOCK, Column, Effects, Rows, full_lanes};
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
-/// Bonds in a block.
-const BLOCK: usize = 32;
-
-/// Bonds computed at once, at least.
-const LANES: usize = 4;
-
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
-
-/// One number of each bond of a block.
-type Column = [f64; BLOCK];
-/// Four numbers of each bond of a block.
-type Rows = [[f64; 4]; BLOCK];
 
 /// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
@@ -86,7 +73,9 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                         block.gather_some(self.bonds, some, self.poses);
                         block.compute(some.len());
                         let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
-                        block.add_to_second(ends, self.wrenches, particles.start);
+                        block
+                            .effects
+                            .add_to_second(ends, self.wrenches, particles.start);
                     }
                 }
                 Which::Run(range) => {
@@ -96,7 +85,7 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                         block.gather_run(self.bonds, run.clone(), self.poses);
                         block.compute(run.len());
                         let ends = &self.bonds.ends[run.clone()];
-                        block.add_to_both(ends, self.wrenches, particles);
+                        block.effects.add_to_both(ends, self.wrenches, particles);
                         if let Some(screen) = &screen {
                             block.check(screen, self.bonds, run, failing);
                         }
@@ -119,8 +108,7 @@ struct Block {
     torsion: Column,
     bending: Column,
     radius: Column,
-    force_on_b: Rows,
-    torques: [Rows; 2],
+    effects: Effects,
     /// Normal, shear, torsion, bending.
     load: [Column; 4],
 }
@@ -139,8 +127,7 @@ impl Block {
             torsion: column,
             bending: column,
             radius: [1.0; BLOCK],
-            force_on_b: rows,
-            torques: [rows; 2],
+            effects: Effects::new(),
             load: [column; 4],
         }
     }
@@ -192,10 +179,10 @@ impl Block {
         }
     }
 
-    /// Forces, torques and loads of the first `count` bonds. A few more are computed to the full number of lanes, of what an earlier block left there: it does no harm.
+    /// Forces, torques and loads of the first `count` bonds.
     #[inline(always)]
     fn compute(&mut self, count: usize) {
-        for i in 0..count.next_multiple_of(LANES).min(BLOCK) {
+        for i in full_lanes(count) {
             let turned = |q: &[f64; 4]| {
                 UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
             };
@@ -220,48 +207,11 @@ impl Block {
             let [x, y, z] = &self.direction;
             let direction = Vector3::new(x[i], y[i], z[i]);
             let forces = bond_forces(&stiffness, &direction, &ends);
-            let row = |v: &Vector3<f64>| [v.x, v.y, v.z, 0.0];
-            self.force_on_b[i] = row(&forces.force_on_b);
-            self.torques[0][i] = row(&forces.torques[0]);
-            self.torques[1][i] = row(&forces.torques[1]);
+            self.effects.set(i, &forces.force_on_b, &forces.torques);
             self.load[0][i] = forces.load.normal_n;
             self.load[1][i] = forces.load.shear_n;
             self.load[2][i] = forces.load.torsion_n_m;
             self.load[3][i] = forces.load.bending_n_m;
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_both(&self, ends: &[[u32; 2]], wrenches: &mut [Wrench], particles: &Range<usize>) {
-        for (i, &[a, b]) in (0..BLOCK).zip(ends) {
-            let a = &mut wrenches[a as usize - particles.start];
-            for k in 0..4 {
-                a.force_n[k] -= self.force_on_b[i][k];
-                a.torque_n_m[k] += self.torques[0][i][k];
-            }
-            if (b as usize) < particles.end {
-                self.add_to_b(i, &mut wrenches[b as usize - particles.start]);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_second(
-        &self,
-        ends: impl Iterator<Item = [u32; 2]>,
-        wrenches: &mut [Wrench],
-        start: usize,
-    ) {
-        for (i, [_, b]) in (0..BLOCK).zip(ends) {
-            self.add_to_b(i, &mut wrenches[b as usize - start]);
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_b(&self, i: usize, b: &mut Wrench) {
-        for k in 0..4 {
-            b.force_n[k] += self.force_on_b[i][k];
-            b.torque_n_m[k] += self.torques[1][i][k];
         }
     }
 
