@@ -5,7 +5,6 @@ mod check;
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
@@ -16,6 +15,7 @@ use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::interrupt::Interrupt;
 use crate::plan::plan;
 use crate::run::{RunSettings, run as run_plan};
 use crate::snapshot::Snapshot;
@@ -89,20 +89,28 @@ struct RunArguments {
     quiet: bool,
 }
 
-/// Does what was asked for. `interrupted` is set when the run is to stop.
+/// Does what was asked for. `interrupt` tells a run to stop.
 ///
 /// # Errors
 /// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. A reader that closes standard output early is no error.
-pub fn run(arguments: &Arguments, interrupted: &AtomicBool) -> Result<()> {
+pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     match &arguments.command {
+        Some(Command::Check { scene }) if !scene.names_a_scene() => Err(Diagnostic::input(
+            scene.place(),
+            "this is no scene (.toml)",
+            "name one; what a body holds, dem-run says without check",
+        )),
         Some(Command::Check { scene }) => in_pool(scene, |threads| {
             let (scene_data, bodies) = scene.read()?;
             check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
         }),
         None if arguments.run.scene.names_a_scene() => in_pool(&arguments.run.scene, |threads| {
-            run_scene(&arguments.run, threads, interrupted)
+            run_scene(&arguments.run, threads, interrupt)
         }),
-        None => body_information(&arguments.run.scene),
+        None => {
+            arguments.run.refuse_scene_options()?;
+            body_information(&arguments.run.scene)
+        }
     }
 }
 
@@ -128,7 +136,34 @@ fn in_pool(scene: &SceneArguments, work: impl FnOnce(usize) -> Result<()> + Send
     pool.install(|| work(threads))
 }
 
+impl RunArguments {
+    /// Refuses what means nothing where no scene is run.
+    fn refuse_scene_options(&self) -> Result<()> {
+        let given = [
+            ("--out", self.out.is_some()),
+            ("--force", self.force),
+            ("--resume", self.resume),
+            ("--set", !self.scene.overrides.is_empty()),
+            ("--force-step", self.scene.force_step),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Diagnostic::input(
+                *option,
+                format!("it is for scenes, and {} is none", self.scene.place()),
+                "name a scene (.toml), or leave the option out",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
 impl SceneArguments {
+    /// What is named, for a person.
+    fn place(&self) -> String {
+        let named = self.file.as_ref().map(|path| path.display().to_string());
+        named.unwrap_or_else(|| "--body without a scene".to_owned())
+    }
+
     fn names_a_scene(&self) -> bool {
         let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
         self.file.as_ref().is_some_and(is_scene)
@@ -163,6 +198,13 @@ fn set_body(scene: &mut Scene, option: &str) -> Result<()> {
     };
     let names: Vec<String> = scene.bodies.keys().cloned().collect();
     let name = match (name, names.as_slice()) {
+        _ if file.is_empty() => {
+            return Err(Diagnostic::input(
+                format!("--body {option}"),
+                "no file is named",
+                "write --body FILE, or --body NAME=FILE",
+            ));
+        }
         (Some(name), _) => name,
         (None, [only]) => only.clone(),
         (None, _) => {
@@ -195,7 +237,7 @@ fn set_body(scene: &mut Scene, option: &str) -> Result<()> {
     Ok(())
 }
 
-fn run_scene(arguments: &RunArguments, threads: usize, interrupted: &AtomicBool) -> Result<()> {
+fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
     let folder = match results_path(arguments, &scene) {
         Some(path) => {
@@ -232,14 +274,16 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupted: &AtomicBool)
     } else {
         progress_bar()
     };
-    let settings = RunSettings {
-        folder: folder.as_ref(),
-        resume,
-        threads,
-        interrupted,
-    };
-    let summary = run_plan(plan, &scene, settings, &|share| {
-        bar.set_position((1000.0 * share) as u64);
+    let summary = interrupt.heeded_by(|interrupted| {
+        let settings = RunSettings {
+            folder: folder.as_ref(),
+            resume,
+            threads,
+            interrupted,
+        };
+        run_plan(plan, &scene, settings, &|share| {
+            bar.set_position((1000.0 * share) as u64);
+        })
     });
     bar.finish_and_clear();
     let summary = summary?;

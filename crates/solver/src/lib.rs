@@ -3,6 +3,7 @@
 pub mod check;
 pub mod cli;
 pub mod clock;
+pub mod interrupt;
 pub mod measure;
 pub mod output;
 pub mod physics;

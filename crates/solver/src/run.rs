@@ -1,15 +1,17 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
+mod events;
+mod progress;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use dem_io::checkpoint::write_checkpoint;
-use dem_io::results::{Event, EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
-use serde::{Deserialize, Serialize};
 
-use crate::check::ledger::{Balance, balance};
+use crate::check::ledger::balance;
 use crate::check::limit::limit;
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
@@ -18,33 +20,19 @@ use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
 use crate::output::summary::Summary;
-use crate::physics::bond::failure::Cause;
 use crate::plan::Plan;
 use crate::snapshot::{Snapshot, fingerprint};
 use crate::state::State;
 use crate::step::{act, move_on};
 
+use self::events::{change_step, follow_limit, new_step, write_breaks};
+pub use self::progress::Progress;
+use self::progress::{Rhythm, due, next};
+
 /// Steps between two looks at the limit of the step, while bonds are strained.
 const LIMIT_EVERY: u64 = 20_000;
 /// Elastic energy over that of all bonds stretched by 1e-6, above which the limit may have fallen: a mean strain of 1e-3.
 const STRAINED: f64 = 1e6;
-/// Rows of the time series unless asked otherwise.
-const ROWS: f64 = 1000.0;
-
-/// Where the output of a run stands.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
-    next_row: u64,
-    next_frame: u64,
-    next_checkpoint: u64,
-    series_bytes: u64,
-    events_bytes: u64,
-    frame_times_s: Vec<f64>,
-    largest_errors: [f64; 3],
-    /// Since when the kinetic energy has been small against the elastic, s.
-    calm_since_s: Option<f64>,
-}
-
 /// How a run is told to go.
 #[derive(Debug)]
 pub struct RunSettings<'a> {
@@ -87,13 +75,17 @@ pub fn run(
     } = plan;
     let fingerprint = fingerprint(&state);
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
-    let mut progress = Progress::default();
+    let rhythm = Rhythm::of(scene);
+    let mut progress = Progress::new(rhythm, choice.limit.step_s);
+    let mut changed_step = None;
     if let Some(snapshot) = &settings.resume {
         snapshot.restore(&mut state)?;
         progress = snapshot.progress.clone();
+        progress.go_on(&state, rhythm, scene)?;
         for (gauge, history) in gauges.iter_mut().zip(&snapshot.measures) {
             gauge.history = *history;
         }
+        changed_step = change_step(&mut state, &choice);
     }
     let columns = series::columns(&gauges);
     let mut files = match (settings.folder, order) {
@@ -119,33 +111,44 @@ pub fn run(
         _ => None,
     };
 
-    let output = scene.output.clone().unwrap_or_default();
+    if let (Some(detail), Some(files)) = (&changed_step, &mut files) {
+        files
+            .events
+            .append(&[new_step(&state, "resumed", detail)])?;
+    }
+
     let end_s = scene.run.end_time_s;
-    let row_s = output.series_s.unwrap_or(end_s / ROWS);
-    let mut watchdog = Watchdog::new(choice.share_of_limit());
-    let mut limit_s = choice.limit.step_s;
+    let watchdog = Watchdog::new(choice.share_of_limit());
     let first_step = state.steps;
     let clock = Instant::now();
     let (ended_by, last) = loop {
         act(&mut state);
         if let Some(files) = &mut files {
-            write_breaks(&state, &bodies_bonds(&bodies), files)?;
+            write_breaks(&state, &bodies, files)?;
         }
         let ends = state.time_s + 0.5 * state.time_step_s >= end_s;
-        let row_due = ends || due(&state, row_s, progress.next_row);
+        let row_due = ends || due(&state, rhythm.row_s, progress.next_row);
         let frame_due = ends
-            || output
-                .frames_s
+            || rhythm
+                .frame_s
                 .map_or(state.steps == 0, |s| due(&state, s, progress.next_frame));
+        let checkpoint_due = rhythm
+            .checkpoint_s
+            .is_some_and(|s| due(&state, s, progress.next_checkpoint));
+        let mut rests = false;
         let mut balanced = None;
-        if row_due || watchdog.is_due(&state) {
+        // A checkpoint of a run that has gone unstable would be worth nothing.
+        if row_due || checkpoint_due || watchdog.is_due(&state) {
             let balance = balance(&mut state);
-            watchdog.look(&state, &balance)?;
-            progress.note(&state, &balance, scene.run.rest);
+            if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
+                return Err(with_checkpoint(problem, files.as_ref()));
+            }
+            progress.note(&state, &balance, rhythm.rest);
+            rests = progress.has_rested(&state);
             balanced = Some(balance);
         }
-        if let (true, Some(balance)) = (row_due, &balanced) {
-            progress.next_row = next(&state, row_s);
+        if let (true, Some(balance)) = (row_due || rests, &balanced) {
+            progress.next_row = next(&state, rhythm.row_s);
             let values = read_gauges(&mut gauges, &state, balance);
             if let Some(files) = &mut files {
                 let row = series::row(balance, state.broken_count, state.time_step_s, &values);
@@ -153,32 +156,31 @@ pub fn run(
             }
             tell((state.time_s / end_s).min(1.0));
         }
-        let rests = progress.has_rested(&state);
         if let (true, Some(files)) = (frame_due || rests, &mut files) {
-            progress.next_frame = output.frames_s.map_or(0, |s| next(&state, s));
+            progress.next_frame = rhythm.frame_s.map_or(0, |s| next(&state, s));
             files.order.write(&state, &mut files.frames)?;
         }
+        if checkpoint_due {
+            progress.next_checkpoint = rhythm.checkpoint_s.map_or(0, |s| next(&state, s));
+        }
         if let (true, Some(balance)) = (ends || rests, balanced) {
+            progress.rested = !ends;
             break (if ends { "end time" } else { "rest" }, balance);
         }
         move_on(&mut state);
 
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
-        let checkpoint_due = output
-            .checkpoint_s
-            .is_some_and(|s| due(&state, s, progress.next_checkpoint));
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
-            progress.next_checkpoint = output.checkpoint_s.map_or(0, |s| next(&state, s));
             save(&state, fingerprint, &gauges, &mut progress, files)?;
         }
         if interrupted {
             return Err(interruption(&state, files.as_ref()));
         }
         if state.steps.is_multiple_of(LIMIT_EVERY)
-            && watchdog.last_elastic_j > STRAINED * state.ledger.floor_j()
+            && progress.elastic_j > STRAINED * state.ledger.floor_j()
         {
-            limit_s = limit(&mut state).step_s;
-            follow_limit(&mut state, limit_s, scene, files.as_mut())?;
+            progress.limit_s = limit(&mut state).step_s;
+            follow_limit(&mut state, progress.limit_s, scene, files.as_mut())?;
         }
     };
     let wall_s = clock.elapsed().as_secs_f64();
@@ -201,8 +203,8 @@ pub fn run(
         broken_bonds: state.broken_count,
         steps: state.steps,
         time_step_s: state.time_step_s,
-        limit_s,
-        share_of_limit: state.time_step_s / limit_s,
+        limit_s: progress.limit_s,
+        share_of_limit: state.time_step_s / progress.limit_s,
         steps_per_s,
         bond_steps_per_s: steps_per_s * state.bonds.len() as f64,
         energy_error: progress.largest_errors[0],
@@ -222,6 +224,7 @@ pub fn run(
         results: settings
             .folder
             .map(|folder| folder.path().display().to_string()),
+        resumed_with: changed_step,
     };
     if let Some(files) = &files {
         files.series.sync()?;
@@ -230,82 +233,6 @@ pub fn run(
         write_plots(files.folder, &gauges)?;
     }
     Ok(summary)
-}
-
-/// Whether the next of the times 0, `every_s`, 2 `every_s`, ... has been reached.
-fn due(state: &State, every_s: f64, next: u64) -> bool {
-    state.time_s + 0.5 * state.time_step_s >= next as f64 * every_s
-}
-
-/// Number of the first of those times that is still to come.
-fn next(state: &State, every_s: f64) -> u64 {
-    ((state.time_s + 0.5 * state.time_step_s) / every_s).floor() as u64 + 1
-}
-
-impl Progress {
-    fn note(&mut self, state: &State, balance: &Balance, rest: Option<f64>) {
-        let errors = [
-            balance.energy_error,
-            balance.momentum_error,
-            balance.angular_momentum_error,
-        ];
-        for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
-            *largest = largest.max(error.abs());
-        }
-        if let Some(share) = rest {
-            let calm = balance.kinetic_j <= share * balance.elastic_j();
-            self.calm_since_s = calm.then(|| self.calm_since_s.unwrap_or(state.time_s));
-        }
-    }
-
-    /// Whether it has been calm during the last fifth of the run.
-    fn has_rested(&self, state: &State) -> bool {
-        self.calm_since_s.is_some_and(|since_s| {
-            state.time_s > 0.0 && state.time_s - since_s >= 0.2 * state.time_s
-        })
-    }
-}
-
-/// For each bond of the state, its number in the body's file.
-fn bodies_bonds(bodies: &[crate::plan::bodies::PlacedBody]) -> impl Fn(usize) -> u64 + '_ {
-    move |at| {
-        let body = bodies
-            .iter()
-            .find(|b| b.first_bond <= at && at < b.first_bond + b.bonds.len());
-        body.map_or(0, |b| u64::from(b.bonds[at - b.first_bond]))
-    }
-}
-
-fn write_breaks(
-    state: &State,
-    number_of: &dyn Fn(usize) -> u64,
-    files: &mut Files<'_>,
-) -> Result<()> {
-    let events: Vec<Event<'_>> = state
-        .broken
-        .iter()
-        .map(|broken| {
-            let [a, b] = state.bonds.ends[broken.bond as usize];
-            Event {
-                step: state.steps,
-                time_s: state.time_s,
-                kind: "bond_broken",
-                bond: Some(number_of(broken.bond as usize)),
-                particle_a: Some(files.order.number_of(a)),
-                particle_b: Some(files.order.number_of(b)),
-                position_m: Some(broken.place_m),
-                cause: match broken.cause {
-                    Cause::Tension => "tension",
-                    Cause::Compression => "compression",
-                    Cause::Shear => "shear",
-                    Cause::VonMises => "von_mises",
-                },
-                energy_j: Some(broken.released_j),
-                detail: "",
-            }
-        })
-        .collect();
-    files.events.append(&events)
 }
 
 fn save(
@@ -325,6 +252,18 @@ fn save(
     write_checkpoint(&files.folder.checkpoint(), &snapshot.to_bytes()?)
 }
 
+/// Says that the run can be taken up again where it has left a checkpoint.
+fn with_checkpoint(mut problem: Diagnostic, files: Option<&Files<'_>>) -> Diagnostic {
+    let checkpoint = files.map(|files| files.folder.checkpoint());
+    if let Some(path) = checkpoint.filter(|path| path.is_file()) {
+        problem.remedy += &format!(
+            "; --resume takes it up from '{}' with that step",
+            path.display()
+        );
+    }
+    problem
+}
+
 fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
     let remedy = match files {
         Some(files) => format!(
@@ -341,34 +280,4 @@ fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
         ),
         remedy,
     )
-}
-
-/// Takes a smaller step where the limit has fallen below the one that was taken, and notes it.
-fn follow_limit(
-    state: &mut State,
-    limit_s: f64,
-    scene: &Scene,
-    files: Option<&mut Files<'_>>,
-) -> Result<()> {
-    let largest = scene.run.safety * limit_s;
-    if scene.run.time_step_s.is_some() || state.time_step_s <= largest {
-        return Ok(());
-    }
-    let detail = format!("time step {:.4e} s -> {largest:.4e} s", state.time_step_s);
-    state.time_step_s = largest;
-    let Some(files) = files else {
-        return Ok(());
-    };
-    files.events.append(&[Event {
-        step: state.steps,
-        time_s: state.time_s,
-        kind: "time_step",
-        bond: None,
-        particle_a: None,
-        particle_b: None,
-        position_m: None,
-        cause: "limit",
-        energy_j: None,
-        detail: &detail,
-    }])
 }

@@ -114,7 +114,12 @@ impl Snapshot {
     /// # Errors
     /// The scene's bodies or bonds are others than those of the run.
     pub fn restore(&self, state: &mut State) -> Result<()> {
-        if self.fingerprint != fingerprint(state) || self.particles.len() != state.particles.len() {
+        let bonds = state.bonds.len();
+        if self.fingerprint != fingerprint(state)
+            || self.particles.len() != state.particles.len()
+            || self.histories.len() != state.bonds.histories.len()
+            || self.broken.iter().any(|&at| at as usize >= bonds)
+        {
             return Err(Diagnostic::input(
                 "",
                 "this checkpoint belongs to a run with other bodies or bonds than the scene has now",
@@ -164,7 +169,11 @@ pub fn fingerprint(state: &State) -> u64 {
         &p.radii_m,
         &p.inverse_masses,
         &b.normal,
+        &b.shear,
+        &b.torsion,
         &b.bending,
+        &b.levers_m[0],
+        &b.levers_m[1],
         &b.radii_m,
         &b.strength_factors,
     ] {
@@ -173,6 +182,10 @@ pub fn fingerprint(state: &State) -> u64 {
     }
     for pose in &p.poses {
         pose.position_m.iter().for_each(|x| add(x.to_bits()));
+    }
+    for &(end, rule) in &b.stretches {
+        add(end as u64);
+        add(u64::from(b.rules[rule].incremental));
     }
     for &[a, c] in &b.ends {
         add(u64::from(a) << 32 | u64::from(c));

@@ -1,6 +1,7 @@
 //! A scene from its text: the order in which the tables are read, and what holds between them.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::names::suggestion;
@@ -34,9 +35,17 @@ const KEYS: [&str; 10] = [
 /// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
-        let remedy = "check the name and its permissions";
-        Diagnostic::input(&name, format!("cannot be read: {error}"), remedy)
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => {
+            Diagnostic::input(&name, "there is no such file", "check its name and folder")
+        }
+        ErrorKind::IsADirectory => {
+            Diagnostic::input(&name, "this is a folder", "name a scene in it")
+        }
+        _ => {
+            let remedy = "check the name and its permissions";
+            Diagnostic::input(&name, format!("cannot be read: {error}"), remedy)
+        }
     })?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];

@@ -4,6 +4,7 @@ use dem_io::{Diagnostic, Result};
 
 use super::ledger::Balance;
 use crate::physics::bond::pair::frequencies;
+use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::stages::motion::ordered_sum;
 use crate::state::State;
 
@@ -15,8 +16,6 @@ const EVERY: u64 = 64;
 pub struct Watchdog {
     /// Energy that may appear from nowhere, over what was put in.
     allowed: f64,
-    /// Elastic energy when it was last looked at, J.
-    pub last_elastic_j: f64,
 }
 
 impl Watchdog {
@@ -31,7 +30,6 @@ impl Watchdog {
             } else {
                 1.0
             },
-            last_elastic_j: 0.0,
         }
     }
 
@@ -56,22 +54,20 @@ impl Watchdog {
     ///
     /// # Errors
     /// Energy is no number, or more has appeared from nowhere than a stable run can show.
-    pub fn look(&mut self, state: &State, balance: &Balance) -> Result<()> {
-        self.last_elastic_j = balance.elastic_j();
+    pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
         let put_in = state.ledger.put_in_j(state.gravity_m_s2);
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }
-        Err(unstable(state, balance))
+        Err(unstable(state, balance, bodies))
     }
 }
 
-fn unstable(state: &State, balance: &Balance) -> Diagnostic {
+fn unstable(state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Diagnostic {
     let mut problem = format!(
         "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere",
         state.steps, state.time_s, balance.energy_error_j
     );
-    let mut remedy = "take a smaller time step, or time_step = \"auto\"".to_owned();
     if let Some((at, own_step_s)) = culprit(state) {
         let [a, b] = state.bonds.ends[at];
         let places = [a, b].map(|end| state.particles.poses[end as usize].place());
@@ -84,13 +80,19 @@ fn unstable(state: &State, balance: &Balance) -> Diagnostic {
         } else {
             String::new()
         };
+        let which = bond_of_file(bodies, at).map_or(String::new(), |(body, number)| {
+            format!(" {number} of body '{}'", body.name)
+        });
         problem += &format!(
-            "; most of it in bond {at}{where_}, whose two particles alone need a step below {own_step_s:.4e} s (taken: {:.4e} s)",
+            "; most of it in bond{which}{where_}, whose two particles alone need a step below {own_step_s:.4e} s (taken: {:.4e} s)",
             state.time_step_s
         );
-        remedy += "; the last checkpoint is kept";
     }
-    Diagnostic::unstable("", problem, remedy)
+    Diagnostic::unstable(
+        "",
+        problem,
+        "take a smaller run.time_step, or \"auto\" for one below the limit",
+    )
 }
 
 /// The bond with the largest energy and the critical step of its two particles alone, s. Where energies are no numbers: the bond with the smallest step.

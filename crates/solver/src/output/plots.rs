@@ -5,6 +5,12 @@ use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
 
 use crate::measure::Gauge;
 
+/// Plots that every run has or may have, which no measure may overwrite.
+const OVERALL: [&str; 3] = [ENERGY, ERRORS, BROKEN];
+const ENERGY: &str = "energy";
+const ERRORS: &str = "errors";
+const BROKEN: &str = "broken_bonds";
+
 /// Draws the time series of a finished run into its folder.
 ///
 /// # Errors
@@ -26,12 +32,12 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
         .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
         .collect();
     folder.write_plot(
-        "energy",
+        ENERGY,
         &plot(&series, "Energy", "energy (J)", &changing, "_j"),
     )?;
     let mut errors = plot(
         &series,
-        "Errors of the ledgers",
+        "Errors of energy and momentum",
         "relative error",
         &["energy_error", "momentum_error", "angular_momentum_error"],
         "_error",
@@ -40,10 +46,10 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
         point[1] = point[1].abs().max(1e-17);
     }
     errors.y.log = true;
-    folder.write_plot("errors", &errors)?;
+    folder.write_plot(ERRORS, &errors)?;
     if column(&series, "broken_bonds").iter().any(|v| *v != 0.0) {
         let broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
-        folder.write_plot("broken_bonds", &broken)?;
+        folder.write_plot(BROKEN, &broken)?;
     }
     let first = series.columns.len() - gauges.len();
     for (gauge, name) in gauges.iter().zip(&series.columns[first..]) {
@@ -52,12 +58,15 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
             "" => quantity,
             unit => format!("{quantity} ({unit})"),
         };
-        let mut one = plot(&series, &gauge.name, &label, &[name], "");
+        let title = gauge.name.replace('_', " ");
+        let mut one = plot(&series, &title, &label, &[name], "");
         one.reference = gauge
             .measure
             .reference
             .map(|value| (value, "reference".to_owned()));
-        folder.write_plot(&gauge.name, &one)?;
+        let is_taken = OVERALL.contains(&gauge.name.to_lowercase().as_str());
+        let prefix = if is_taken { "measured_" } else { "" };
+        folder.write_plot(&format!("{prefix}{}", gauge.name), &one)?;
     }
     Ok(())
 }

@@ -20,21 +20,24 @@ const ALWAYS: [&str; 13] = [
     "time_step_s",
 ];
 
-/// Names of all columns after the time, with units.
+/// Names of all columns after the time, with units, no two alike.
 pub fn columns(gauges: &[Gauge]) -> Vec<String> {
-    let measures = gauges.iter().map(|gauge| match gauge.unit() {
-        "" => gauge.name.clone(),
-        unit => format!(
-            "{}_{}",
-            gauge.name,
-            unit.to_lowercase().replace(['/', ' '], "_")
-        ),
-    });
-    ALWAYS
-        .iter()
-        .map(|&name| name.to_owned())
-        .chain(measures)
-        .collect()
+    let mut columns: Vec<String> = ALWAYS.iter().map(|&name| name.to_owned()).collect();
+    for gauge in gauges {
+        let mut name = match gauge.unit() {
+            "" => gauge.name.clone(),
+            unit => format!(
+                "{}_{}",
+                gauge.name,
+                unit.to_lowercase().replace(['/', ' '], "_")
+            ),
+        };
+        while name == "time_s" || columns.contains(&name) {
+            name.insert_str(0, "measured_");
+        }
+        columns.push(name);
+    }
+    columns
 }
 
 /// A row in the order of [`columns`].
@@ -54,5 +57,7 @@ pub fn row(balance: &Balance, broken: u64, time_step_s: f64, measured: &[f64]) -
         broken as f64,
         time_step_s,
     ];
-    always.into_iter().chain(measured.iter().copied()).collect()
+    // Adding 0 takes the sign from a zero.
+    let values = always.into_iter().chain(measured.iter().copied());
+    values.map(|value| value + 0.0).collect()
 }

@@ -60,6 +60,9 @@ pub struct Summary {
     pub left_out: Vec<String>,
     /// Folder of the results.
     pub results: Option<String>,
+    /// The change of the time step, where it went on from a checkpoint with another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resumed_with: Option<String>,
 }
 
 impl Summary {
@@ -97,8 +100,10 @@ impl fmt::Display for Summary {
             self.threads,
             if self.threads == 1 { "" } else { "s" },
         )?;
+        let names = self.measures.iter().map(|m| m.name.chars().count());
+        let width = names.max().unwrap_or(0).max(12);
         for measure in &self.measures {
-            writeln!(f, "{}", measure_text(measure))?;
+            writeln!(f, "{}", measure_text(measure, width))?;
         }
         writeln!(
             f,
@@ -115,6 +120,9 @@ impl fmt::Display for Summary {
             significant(self.share_of_limit, 3),
             self.ended_by,
         )?;
+        if let Some(change) = &self.resumed_with {
+            writeln!(f, "resumed      {change}")?;
+        }
         writeln!(
             f,
             "speed        {} steps/s, {} million bond-steps/s",
@@ -147,14 +155,14 @@ impl fmt::Display for Summary {
 }
 
 /// One line for a measure: value, and reference and error where there is one.
-fn measure_text(measure: &Measured) -> String {
+fn measure_text(measure: &Measured, width: usize) -> String {
     let show = |value: f64| match measure.unit.as_str() {
         "m" if value.abs() < 1.0 => format!("{} mm", significant(value * 1e3, 6)),
         unit => format!("{} {unit}", significant(value, 6))
             .trim_end()
             .to_owned(),
     };
-    let mut text = format!("{:12} {}", measure.name, show(measure.value));
+    let mut text = format!("{:width$} {}", measure.name, show(measure.value));
     if let (Some(reference), Some(error)) = (measure.reference, measure.error) {
         text += &format!(
             "   theory {}   error {}",

@@ -9,6 +9,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::physics::bond::damping::{chen, chen_by_mode, platzer, reduced};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
+use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::strength_factor;
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::state::bonds::{BondRule, Bonds};
@@ -33,10 +34,18 @@ pub struct PlacedBody {
     pub bonds: Vec<u32>,
 }
 
+/// The body of a bond of the state, and the bond's number in that body's file.
+pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u32)> {
+    bodies.iter().find_map(|body| {
+        let number = body.bonds.get(at.checked_sub(body.first_bond)?)?;
+        Some((body, *number))
+    })
+}
+
 /// Particles and bonds of all bodies of a scene, where they start.
 ///
 /// # Errors
-/// Bonds without a kind; no density.
+/// Bonds without a kind; no density; a bond without length; masses or stiffnesses beyond all numbers.
 pub fn place_bodies(
     scene: &Scene,
     mut read: BTreeMap<String, Body>,
@@ -60,7 +69,8 @@ pub fn place_bodies(
                 let kind = &scene.bonds[kinds[rule]];
                 one.first_bond = bonds.len();
                 let seed = (scene.run.seed, number as u64);
-                place_bonds(&body, kind, rule, seed, &particles, &mut one, &mut bonds);
+                place_bonds(&body, kind, rule, seed, &particles, &mut one, &mut bonds)
+                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?;
             }
             None if !body.bonds.is_empty() => {
                 return Err(Diagnostic::input(
@@ -117,6 +127,9 @@ fn place_particles(
         numbers[original as usize] = (first_particle + at) as u32;
         let original = original as usize;
         particles.push_sphere(places[original], body.radii[original], density);
+        let i = first_particle + at;
+        check_particle(original, particles, i)
+            .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?;
     }
     set_moving(entry, particles, first_particle);
     Ok(PlacedBody {
@@ -126,6 +139,24 @@ fn place_particles(
         first_bond: 0,
         bonds: Vec::new(),
     })
+}
+
+/// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold them.
+fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> {
+    let inert = [particles.inverse_masses[i], particles.inverse_inertias[i]];
+    let is_placed = particles.poses[i].position_m.iter().all(|x| x.is_finite());
+    if is_placed && inert.into_iter().all(f64::is_normal) {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("particle {number}"),
+        format!(
+            "with a radius of {:.3e} m and a mass of {:.3e} kg it is nothing that a program can reckon with",
+            particles.radii_m[i],
+            1.0 / inert[0]
+        ),
+        "check the units of places, radii and density",
+    ))
 }
 
 /// Velocities of the particles from `first` on, which move as one rigid body.
@@ -156,7 +187,7 @@ fn place_bonds(
     particles: &Particles,
     placed: &mut PlacedBody,
     bonds: &mut Bonds,
-) {
+) -> Result<()> {
     let mut sorted: Vec<([u32; 2], u32)> = (0..)
         .zip(&body.bonds)
         .map(|(original, ends)| {
@@ -190,6 +221,7 @@ fn place_bonds(
             kind.young_modulus_pa,
             kind.poisson_ratio,
         );
+        check_bond(original, distance, &answer, particles, [a, b])?;
         bonds.push(
             ends,
             (apart / distance).into(),
@@ -216,6 +248,45 @@ fn place_bonds(
     if incremental {
         bonds.histories.resize(bonds.len(), History::default());
     }
+    Ok(())
+}
+
+/// Whether a bond of a body's file has a direction, and swings at a rate that numbers can hold.
+fn check_bond(
+    number: usize,
+    distance_m: f64,
+    answer: &Stiffness,
+    particles: &Particles,
+    ends: [usize; 2],
+) -> Result<()> {
+    if distance_m == 0.0 {
+        return Err(Diagnostic::input(
+            format!("bond {number}"),
+            "its two particles stand at the same place",
+            "move one of them, or remove the bond",
+        ));
+    }
+    let step_s = frequencies(
+        answer,
+        ends.map(|end| particles.inverse_masses[end]),
+        ends.map(|end| particles.inverse_inertias[end]),
+    )
+    .critical_step_s();
+    let is_usable = |x: f64| x.is_normal() && x > 0.0;
+    if [distance_m, step_s, answer.normal]
+        .into_iter()
+        .all(is_usable)
+    {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("bond {number}"),
+        format!(
+            "{distance_m:.3e} m long and {:.3e} N/m stiff, it would take a time step of {step_s:.3e} s, with which no program can reckon",
+            answer.normal
+        ),
+        "check the units of places, radii, density and modulus",
+    ))
 }
 
 fn model(model: SceneModel) -> BondModel {

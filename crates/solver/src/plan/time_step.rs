@@ -35,6 +35,13 @@ impl StepChoice {
 pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
     let run = &scene.run;
     let limit = limit(state);
+    if limit.step_s.is_nan() || limit.step_s <= 0.0 {
+        return Err(Diagnostic::input(
+            scene.source.clone(),
+            format!("the largest stable time step is {} s", limit.step_s),
+            "check the units of places, radii, density, modulus and damping",
+        ));
+    }
     let step_s = match run.time_step_s {
         Some(given) => {
             if given > limit.step_s && !allow_any_step {

@@ -1,0 +1,96 @@
+//! What is written to the table of events.
+
+use dem_io::Result;
+use dem_io::results::Event;
+use dem_io::scene::Scene;
+
+use super::Files;
+use crate::physics::bond::failure::Cause;
+use crate::plan::bodies::{PlacedBody, bond_of_file};
+use crate::plan::time_step::StepChoice;
+use crate::state::State;
+
+/// The bonds that broke in this step, by the numbers of the body's file.
+pub(super) fn write_breaks(
+    state: &State,
+    bodies: &[PlacedBody],
+    files: &mut Files<'_>,
+) -> Result<()> {
+    for broken in &state.broken {
+        let ends = state.bonds.ends[broken.bond as usize];
+        let found = bond_of_file(bodies, broken.bond as usize);
+        let first = found.map_or(0, |(body, _)| body.first_particle as u64);
+        let mut ends = ends.map(|end| files.order.number_of(end) - first);
+        ends.sort_unstable();
+        let event = Event {
+            step: state.steps,
+            time_s: state.time_s,
+            kind: "bond_broken",
+            bond: found.map(|(_, number)| u64::from(number)),
+            particle_a: Some(ends[0]),
+            particle_b: Some(ends[1]),
+            position_m: Some(broken.place_m),
+            cause: match broken.cause {
+                Cause::Tension => "tension",
+                Cause::Compression => "compression",
+                Cause::Shear => "shear",
+                Cause::VonMises => "von_mises",
+            },
+            energy_j: Some(broken.released_j),
+            detail: found.map_or("", |(body, _)| &body.name),
+        };
+        files.events.append(&[event])?;
+    }
+    Ok(())
+}
+
+/// Takes a smaller step where the limit has fallen below the one that was taken, and notes it.
+pub(super) fn follow_limit(
+    state: &mut State,
+    limit_s: f64,
+    scene: &Scene,
+    files: Option<&mut Files<'_>>,
+) -> Result<()> {
+    let largest = scene.run.safety * limit_s;
+    if scene.run.time_step_s.is_some() || state.time_step_s <= largest {
+        return Ok(());
+    }
+    let detail = change(state.time_step_s, largest);
+    state.time_step_s = largest;
+    match files {
+        Some(files) => files.events.append(&[new_step(state, "limit", &detail)]),
+        None => Ok(()),
+    }
+}
+
+/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.
+pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<String> {
+    let before_s = state.time_step_s;
+    let step_s = if choice.given {
+        choice.step_s
+    } else {
+        choice.step_s.min(before_s)
+    };
+    state.time_step_s = step_s;
+    (step_s != before_s).then(|| change(before_s, step_s))
+}
+
+fn change(before_s: f64, after_s: f64) -> String {
+    format!("time step {before_s:.4e} s -> {after_s:.4e} s")
+}
+
+/// The event of a new time step.
+pub(super) fn new_step<'a>(state: &State, cause: &'a str, detail: &'a str) -> Event<'a> {
+    Event {
+        step: state.steps,
+        time_s: state.time_s,
+        kind: "time_step",
+        bond: None,
+        particle_a: None,
+        particle_b: None,
+        position_m: None,
+        cause,
+        energy_j: None,
+        detail,
+    }
+}

@@ -1,0 +1,139 @@
+//! Where a run stands besides its state: what is written next, and what has been seen.
+
+use dem_io::scene::Scene;
+use dem_io::{Diagnostic, Result};
+use serde::{Deserialize, Serialize};
+
+use crate::check::ledger::Balance;
+use crate::state::State;
+
+/// Rows of the time series unless asked otherwise.
+const ROWS: f64 = 1000.0;
+
+/// Where the output of a run stands, and what it watches.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    rhythm: Rhythm,
+    pub(super) next_row: u64,
+    pub(super) next_frame: u64,
+    pub(super) next_checkpoint: u64,
+    pub(super) series_bytes: u64,
+    pub(super) events_bytes: u64,
+    pub(super) frame_times_s: Vec<f64>,
+    pub(super) largest_errors: [f64; 3],
+    /// Largest stable step when it was last looked for, s.
+    pub(super) limit_s: f64,
+    /// Elastic energy when the ledger was last looked at, J.
+    pub(super) elastic_j: f64,
+    /// Since when the kinetic energy has been small against the elastic, s.
+    pub(super) calm_since_s: Option<f64>,
+    /// Whether it has ended at rest.
+    pub(super) rested: bool,
+}
+
+/// How often a run writes, s, and what it takes for rest.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Rhythm {
+    pub(super) row_s: f64,
+    pub(super) frame_s: Option<f64>,
+    pub(super) checkpoint_s: Option<f64>,
+    pub(super) rest: Option<f64>,
+}
+
+/// Whether the next of the times 0, `every_s`, 2 `every_s`, ... has been reached.
+pub(super) fn due(state: &State, every_s: f64, next: u64) -> bool {
+    state.time_s + 0.5 * state.time_step_s >= next as f64 * every_s
+}
+
+/// Number of the first of those times that is still to come.
+pub(super) fn next(state: &State, every_s: f64) -> u64 {
+    (((state.time_s + 0.5 * state.time_step_s) / every_s).floor() as u64).saturating_add(1)
+}
+
+impl Rhythm {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let output = scene.output.clone().unwrap_or_default();
+        Self {
+            row_s: output.series_s.unwrap_or(scene.run.end_time_s / ROWS),
+            frame_s: output.frames_s,
+            checkpoint_s: output.checkpoint_s,
+            rest: scene.run.rest,
+        }
+    }
+}
+
+impl Progress {
+    /// Of a run that has not begun.
+    pub(super) fn new(rhythm: Rhythm, limit_s: f64) -> Self {
+        Self {
+            rhythm,
+            limit_s,
+            ..Self::default()
+        }
+    }
+
+    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another rhythm.
+    ///
+    /// # Errors
+    /// The run is over.
+    pub(super) fn go_on(&mut self, state: &State, rhythm: Rhythm, scene: &Scene) -> Result<()> {
+        let over = |problem: String, remedy: &str| {
+            Err(Diagnostic::input(
+                "--resume",
+                problem,
+                format!("nothing is left to be done; to take it further, {remedy}"),
+            ))
+        };
+        let before_s = state.time_s - 0.5 * state.previous_time_step_s;
+        if before_s >= scene.run.end_time_s {
+            return over(
+                format!(
+                    "this run has reached {before_s:.6e} s, and run.end_time is {:.6e} s",
+                    scene.run.end_time_s
+                ),
+                "set a later end: --set run.end_time=...",
+            );
+        }
+        if rhythm.rest != self.rhythm.rest {
+            self.calm_since_s = None;
+        } else if self.rested {
+            return over(
+                format!("this run has come to rest at {before_s:.6e} s"),
+                "set a smaller run.rest",
+            );
+        }
+        self.rested = false;
+        if rhythm != self.rhythm {
+            // The first time that has not been reached half a step ago.
+            let first = |every_s: f64| ((before_s / every_s).floor() as u64).saturating_add(1);
+            self.next_row = first(rhythm.row_s);
+            self.next_frame = rhythm.frame_s.map_or(0, first);
+            self.next_checkpoint = rhythm.checkpoint_s.map_or(0, first);
+            self.rhythm = rhythm;
+        }
+        Ok(())
+    }
+
+    pub(super) fn note(&mut self, state: &State, balance: &Balance, rest: Option<f64>) {
+        let errors = [
+            balance.energy_error,
+            balance.momentum_error,
+            balance.angular_momentum_error,
+        ];
+        self.elastic_j = balance.elastic_j();
+        for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
+            *largest = largest.max(error.abs());
+        }
+        if let Some(share) = rest {
+            let calm = balance.kinetic_j <= share * balance.elastic_j();
+            self.calm_since_s = calm.then(|| self.calm_since_s.unwrap_or(state.time_s));
+        }
+    }
+
+    /// Whether it has been calm during the last fifth of the run.
+    pub(super) fn has_rested(&self, state: &State) -> bool {
+        self.calm_since_s.is_some_and(|since_s| {
+            state.time_s > 0.0 && state.time_s - since_s >= 0.2 * state.time_s
+        })
+    }
+}
