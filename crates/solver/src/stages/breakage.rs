@@ -32,19 +32,20 @@ pub fn break_bonds(
     half_kick_s: f64,
     broken: &mut Vec<Break>,
 ) {
-    for share in shares {
-        for &at in &share.failing {
-            let forces = bonds.forces(at as usize, &particles.poses);
-            if let Some(cause) = fails(bonds, at as usize, particles, &forces) {
-                broken.push(remove(
-                    bonds,
-                    particles,
-                    at as usize,
-                    &forces,
-                    cause,
-                    half_kick_s,
-                ));
-            }
+    // A share lists its bonds of the total formulation before those of the incremental one.
+    let mut failing: Vec<u32> = shares.iter().flat_map(|s| &s.failing).copied().collect();
+    failing.sort_unstable();
+    for at in failing {
+        let forces = bonds.forces(at as usize, &particles.poses);
+        if let Some(cause) = fails(bonds, at as usize, particles, &forces) {
+            broken.push(remove(
+                bonds,
+                particles,
+                at as usize,
+                &forces,
+                cause,
+                half_kick_s,
+            ));
         }
     }
 }
