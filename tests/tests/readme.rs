@@ -48,6 +48,12 @@ fn commands_run_as_pasted() {
         )
         .unwrap();
     }
+    let scenes = folder.path().join("data/scenes");
+    fs::create_dir_all(&scenes).unwrap();
+    for scene in fs::read_dir(root().join("data/scenes")).unwrap() {
+        let scene = scene.unwrap();
+        fs::copy(scene.path(), scenes.join(scene.file_name())).unwrap();
+    }
     let programs = ["dem-pack", "dem-run"].map(|name| PathBuf::from(program(name).get_program()));
     let path = std::env::join_paths(
         programs
@@ -126,7 +132,13 @@ fn options_exist() {
     ]
     .iter()
     .map(|arguments| program("dem-pack").args(arguments).output().unwrap())
-    .chain([program("dem-run").arg("--help").output().unwrap()])
+    .chain([
+        program("dem-run").arg("--help").output().unwrap(),
+        program("dem-run")
+            .args(["check", "--help"])
+            .output()
+            .unwrap(),
+    ])
     .map(|output| String::from_utf8(output.stdout).unwrap())
     .collect();
     let known = options(&help);

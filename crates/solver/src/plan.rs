@@ -18,6 +18,9 @@ use self::bodies::{PlacedBody, place_bodies};
 use self::sets::resolve_sets;
 use self::time_step::{StepChoice, choose_step};
 
+/// Particles and bonds that are worth a thread of their own.
+const WORTH_A_THREAD: usize = 5000;
+
 /// A simulation that is ready to step, and what its parts are called.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -57,7 +60,8 @@ pub fn plan(
 ) -> Result<Plan> {
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
-    let mut state = State::new(particles, bonds, 1.0, threads);
+    let enough = 1 + (particles.len() + bonds.len()) / WORTH_A_THREAD;
+    let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
     state.gravity_m_s2 = scene.run.gravity_m_s2;
     state.particle_damping = scene.run.particle_damping;
     if state.particle_damping > 0.0 {
@@ -145,8 +149,18 @@ fn loads(
                 return Err(Diagnostic::input(
                     format!("{}: [loads.{name}]", scene.source),
                     format!(
-                        "the load of {} along {} acts on a particle of '{}' that a support holds there",
-                        six[k], FREEDOMS[k], load.of
+                        "{} {} {} acts on a particle of '{}' that a support holds there",
+                        if k < 3 { "a force of" } else { "a torque of" },
+                        six[k],
+                        [
+                            "N along x",
+                            "N along y",
+                            "N along z",
+                            "N m about x",
+                            "N m about y",
+                            "N m about z"
+                        ][k],
+                        load.of
                     ),
                     "load particles that can move, or free them",
                 ));

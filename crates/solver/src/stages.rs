@@ -1,5 +1,6 @@
 //! Physics over the state, in the order of the step.
 
+mod blocks;
 pub mod bonds;
 pub mod breakage;
 pub mod damping;

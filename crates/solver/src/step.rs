@@ -28,6 +28,8 @@ pub fn act(state: &mut State) {
     }
     state.clock.book(Stage::Bonds);
 
+    // Before bonds break: a break gives its ends their half of the kick at once.
+    remember(&mut state.supports, &p.motions);
     state.broken.clear();
     break_bonds(
         &mut state.bonds,
@@ -69,7 +71,6 @@ pub fn act(state: &mut State) {
         state.time_s,
         before_s,
     );
-    remember(&mut state.supports, &p.motions);
     state.clock.book(Stage::Rest);
     let resistance = [&state.bond_resistance[..], &state.particle_resistance];
     kick(p, resistance, state.gravity_m_s2, kick_s);

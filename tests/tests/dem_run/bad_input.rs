@@ -111,6 +111,16 @@ fn options() {
             &[option[0], "row.vtp"],
         );
     }
+    for options in [
+        &["other.vtp", "--body", "row.vtp"][..],
+        &["--body", "row.vtp", "--body", "-"],
+    ] {
+        assert_says(
+            &bench,
+            options,
+            &["--body: there is no scene for it to go into"],
+        );
+    }
 }
 
 #[test]

@@ -41,7 +41,12 @@ fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
 }
 
 /// Sends a signal to a run when its time series has so many rows; what it says, or None if it was faster than the signal.
-pub(super) fn interrupt(command: Command, signal: &str, folder: &Path, rows: usize) -> Option<String> {
+pub(super) fn interrupt(
+    command: Command,
+    signal: &str,
+    folder: &Path,
+    rows: usize,
+) -> Option<String> {
     let mut child = start(command);
     let series = folder.join("series.csv");
     let checkpoint = folder.join("checkpoint.dem");

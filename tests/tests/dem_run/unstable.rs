@@ -24,14 +24,8 @@ fn a_step_above_the_limit_is_refused_unless_forced() {
 #[test]
 fn an_unstable_run_names_body_bond_step_and_remedy() {
     let bench = Bench::new();
-    let scene = good("bodies.toml");
-    let options = [
-        "--set",
-        "run.time_step=60 us",
-        "--set",
-        "run.end_time=60 ms",
-        "--force-step",
-    ];
+    let scene = bench.write("scene.toml", uneven().replace("output", "#"));
+    let options = ["--set", "run.time_step=20 us", "--force-step"];
     // Without a folder there is no checkpoint to speak of.
     let said = bench.bad(&scene, &options, 3);
     assert!(
@@ -55,7 +49,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
         .0
         .parse()
         .unwrap();
-    assert!((1e-5..6e-5).contains(&own), "{said}");
+    assert!((1e-6..2e-5).contains(&own), "{said}");
 }
 
 /// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all others.
@@ -67,7 +61,6 @@ output = { checkpoint = \"0.1 ms\", frames = \"1 ms\" }
 [bonds.cake]
 young_modulus = \"12 MPa\"
 poisson_ratio = 0.3
-damping = { viscous = 0.01 }
 [bodies.even]
 particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3], [4e-3, 0, 0, 1e-3]]
 bond_list = [[0, 1], [1, 2]]
@@ -114,7 +107,7 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     let bench = Bench::new();
     let scene = bench.write("uneven.toml", uneven());
     let limit = limit_of(&bench, &scene);
-    let step = format!("run.time_step={}", 1.02 * limit);
+    let step = format!("run.time_step={}", 1.05 * limit);
     let said = bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
     assert!(
         said.ends_with("--resume takes it up from 'out/checkpoint.dem' with that step"),
@@ -126,7 +119,7 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     assert!(said.contains("resumed      time step "), "{said}");
     // Or with one that is found.
     fs::remove_dir_all(bench.path("out")).unwrap();
-    let step = format!("run.time_step={}", 1.02 * limit);
+    let step = format!("run.time_step={}", 1.05 * limit);
     bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
     let said = bench.good(&scene, &["--out", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");

@@ -6,7 +6,7 @@
 use crate::physics::bond::total::BondEnergy;
 use crate::stages::loads::{SetLoad, add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::{CHUNK, ordered_sum, power_w};
-use crate::stages::supports::reactions_power_w;
+use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use rayon::prelude::*;
@@ -202,17 +202,17 @@ pub fn after_kick(state: &mut State) {
         ..
     } = state;
     let (before_s, after_s) = (state.previous_time_step_s, state.time_step_s);
-    let [power_before, power_after] = reactions_power_w(supports, &particles.motions);
-    ledger.work.supports += 0.5 * before_s * power_before;
-    let mut pending = powers(
+    let supported = reactions_work_j(supports, particles, [before_s, after_s]);
+    ledger.work.supports += supported[0];
+    let pending = powers(
         loads,
         &state.bond_resistance,
         &state.particle_resistance,
         &particles.motions,
         state.time_s,
     );
-    pending.supports = power_after;
     ledger.pending.add(&pending, 0.5 * after_s);
+    ledger.pending.supports = supported[1];
     for broken in &state.broken {
         ledger.released_j += broken.released_j;
     }
@@ -273,7 +273,7 @@ pub fn balance(state: &mut State) -> Balance {
     let (present, scales) = momenta(p, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
-    let gravity: f64 = -(0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
+    let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
     let gone = work.bond_damping + work.particle_damping + ledger.released_j;
@@ -355,16 +355,19 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         .with_min_len(CHUNK)
         .map(back)
         .collect();
+    let steps_s = [state.previous_time_step_s, state.time_step_s];
     for support in &state.supports {
         for held in &support.held {
             let after = &p.motions[held.particle as usize];
             let motion = &mut motions[held.particle as usize];
             for k in 0..3 {
                 if support.holds[k].is_some() {
-                    motion.velocity_m_s[k] = 0.5 * (held.before[k] + after.velocity_m_s[k]);
+                    motion.velocity_m_s[k] =
+                        velocity_at_kick(held.before[k], after.velocity_m_s[k], steps_s);
                 }
                 if support.holds[k + 3].is_some() {
-                    motion.spin_rad_s[k] = 0.5 * (held.before[k + 3] + after.spin_rad_s[k]);
+                    motion.spin_rad_s[k] =
+                        velocity_at_kick(held.before[k + 3], after.spin_rad_s[k], steps_s);
                 }
             }
         }

@@ -1,26 +1,21 @@
 //! Forces of the bonds on the particles, total formulation.
-//!
-//! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
-//! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::physics::bond::failure::{Criteria, stresses, utilisation};
+use crate::physics::bond::BondLoad;
+use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{End, bond_forces};
+use crate::stages::blocks::{BLOCK, Column, Effects, Rows, full_lanes};
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
-/// Bonds in a block.
-const BLOCK: usize = 32;
-
-/// One number of each bond of a block.
-type Column = [f64; BLOCK];
-/// Four numbers of each bond of a block.
-type Rows = [[f64; 4]; BLOCK];
+/// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
+const NEARLY: f64 = 1.0 - 1e-9;
 
 /// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
@@ -71,13 +66,16 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
             if rule.incremental {
                 continue;
             }
+            let screen = rule.criteria.as_ref().map(Screen::new);
             match which {
                 Which::Border(list) => {
                     for some in list.chunks(BLOCK) {
                         block.gather_some(self.bonds, some, self.poses);
-                        block.compute();
+                        block.compute(some.len());
                         let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
-                        block.add_to_second(ends, self.wrenches, particles.start);
+                        block
+                            .effects
+                            .add_to_second(ends, self.wrenches, particles.start);
                     }
                 }
                 Which::Run(range) => {
@@ -85,11 +83,11 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                     while first < range.end {
                         let run = first..(first + BLOCK).min(range.end);
                         block.gather_run(self.bonds, run.clone(), self.poses);
-                        block.compute();
+                        block.compute(run.len());
                         let ends = &self.bonds.ends[run.clone()];
-                        block.add_to_both(ends, self.wrenches, particles);
-                        if let Some(criteria) = &rule.criteria {
-                            block.check(criteria, self.bonds, run, failing);
+                        block.effects.add_to_both(ends, self.wrenches, particles);
+                        if let Some(screen) = &screen {
+                            block.check(screen, self.bonds, run, failing);
                         }
                         first += BLOCK;
                     }
@@ -110,8 +108,7 @@ struct Block {
     torsion: Column,
     bending: Column,
     radius: Column,
-    force_on_b: Rows,
-    torques: [Rows; 2],
+    effects: Effects,
     /// Normal, shear, torsion, bending.
     load: [Column; 4],
 }
@@ -130,8 +127,7 @@ impl Block {
             torsion: column,
             bending: column,
             radius: [1.0; BLOCK],
-            force_on_b: rows,
-            torques: [rows; 2],
+            effects: Effects::new(),
             load: [column; 4],
         }
     }
@@ -183,10 +179,10 @@ impl Block {
         }
     }
 
-    /// Forces, torques and loads. What is left of an earlier block at the end of a shorter one does no harm.
+    /// Forces, torques and loads of the first `count` bonds.
     #[inline(always)]
-    fn compute(&mut self) {
-        for i in 0..BLOCK {
+    fn compute(&mut self, count: usize) {
+        for i in full_lanes(count) {
             let turned = |q: &[f64; 4]| {
                 UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
             };
@@ -211,10 +207,7 @@ impl Block {
             let [x, y, z] = &self.direction;
             let direction = Vector3::new(x[i], y[i], z[i]);
             let forces = bond_forces(&stiffness, &direction, &ends);
-            let row = |v: &Vector3<f64>| [v.x, v.y, v.z, 0.0];
-            self.force_on_b[i] = row(&forces.force_on_b);
-            self.torques[0][i] = row(&forces.torques[0]);
-            self.torques[1][i] = row(&forces.torques[1]);
+            self.effects.set(i, &forces.force_on_b, &forces.torques);
             self.load[0][i] = forces.load.normal_n;
             self.load[1][i] = forces.load.shear_n;
             self.load[2][i] = forces.load.torsion_n_m;
@@ -222,62 +215,33 @@ impl Block {
         }
     }
 
+    /// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
     #[inline(always)]
-    fn add_to_both(&self, ends: &[[u32; 2]], wrenches: &mut [Wrench], particles: &Range<usize>) {
-        for (i, &[a, b]) in (0..BLOCK).zip(ends) {
-            let a = &mut wrenches[a as usize - particles.start];
-            for k in 0..4 {
-                a.force_n[k] -= self.force_on_b[i][k];
-                a.torque_n_m[k] += self.torques[0][i][k];
-            }
-            if (b as usize) < particles.end {
-                self.add_to_b(i, &mut wrenches[b as usize - particles.start]);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_second(
-        &self,
-        ends: impl Iterator<Item = [u32; 2]>,
-        wrenches: &mut [Wrench],
-        start: usize,
-    ) {
-        for (i, [_, b]) in (0..BLOCK).zip(ends) {
-            self.add_to_b(i, &mut wrenches[b as usize - start]);
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_b(&self, i: usize, b: &mut Wrench) {
-        for k in 0..4 {
-            b.force_n[k] += self.force_on_b[i][k];
-            b.torque_n_m[k] += self.torques[1][i][k];
-        }
-    }
-
-    /// Lists the bonds that have reached their strength, before any strengthening by rate.
-    #[inline(always)]
-    fn check(
-        &mut self,
-        criteria: &Criteria,
-        bonds: &Bonds,
-        run: Range<usize>,
-        failing: &mut Vec<u32>,
-    ) {
-        let mut used = [0.0; BLOCK];
+    fn check(&self, screen: &Screen, bonds: &Bonds, run: Range<usize>, failing: &mut Vec<u32>) {
+        let mut beyond: Column = [0.0; BLOCK];
         for i in 0..BLOCK {
-            let load = crate::physics::bond::BondLoad {
+            let load = BondLoad {
                 normal_n: self.load[0][i],
                 shear_n: self.load[1][i],
                 torsion_n_m: self.load[2][i],
                 bending_n_m: self.load[3][i],
             };
-            used[i] = utilisation(criteria, &stresses(&load, self.radius[i]), 1.0);
+            let [used, factor] = screen.used_and_factor(&load, self.radius[i]);
+            beyond[i] = used - NEARLY * factor;
         }
-        for (i, at) in (0..BLOCK).zip(run) {
-            if used[i] >= bonds.strength_factor(at) {
-                failing.push(at as u32);
+        if bonds.strength_factors.is_empty() {
+            for (beyond, at) in beyond.iter().zip(run) {
+                if *beyond >= 0.0 {
+                    failing.push(at as u32);
+                }
+            }
+        } else {
+            for (i, at) in (0..BLOCK).zip(run) {
+                let volume = PI * self.radius[i].powi(3);
+                let strengthened = bonds.strength_factors[at].powi(2) - 1.0;
+                if beyond[i] >= NEARLY * volume * volume * strengthened {
+                    failing.push(at as u32);
+                }
             }
         }
     }

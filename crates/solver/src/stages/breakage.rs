@@ -32,20 +32,20 @@ pub fn break_bonds(
     half_kick_s: f64,
     broken: &mut Vec<Break>,
 ) {
-    for share in shares {
-        for &at in &share.failing {
-            let forces = bonds.forces(at as usize, &particles.poses);
-            if let Some(cause) = fails(bonds, at as usize, particles, &forces) {
-                broken.push(remove(
-                    bonds,
-                    particles,
-                    at as usize,
-                    &forces,
-                    cause,
-                    half_kick_s,
-                ));
-            }
-        }
+    // A share lists its bonds of the total formulation before those of the incremental one.
+    let mut failing: Vec<u32> = shares.iter().flat_map(|s| &s.failing).copied().collect();
+    failing.sort_unstable();
+    // All are looked at before the first is taken away: a break changes the velocities of its ends, and rates of strain come from velocities.
+    let failing: Vec<(usize, BondForces, Cause)> = failing
+        .into_iter()
+        .filter_map(|at| {
+            let at = at as usize;
+            let forces = bonds.forces(at, &particles.poses);
+            fails(bonds, at, particles, &forces).map(|cause| (at, forces, cause))
+        })
+        .collect();
+    for (at, forces, cause) in failing {
+        broken.push(remove(bonds, particles, at, &forces, cause, half_kick_s));
     }
 }
 

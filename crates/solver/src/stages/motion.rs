@@ -116,6 +116,9 @@ pub fn power_w(wrenches: &[Wrench], motions: &[Motion]) -> f64 {
 
 /// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
 pub fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    if count <= CHUNK {
+        return (0..count).map(term).sum();
+    }
     let of_chunk = |chunk: usize| {
         let end = ((chunk + 1) * CHUNK).min(count);
         (chunk * CHUNK..end).map(&term).sum::<f64>()

@@ -81,17 +81,41 @@ pub fn hold(
     }
 }
 
-/// Power of the reactions, W, on the motions before the kick and after it.
-pub fn reactions_power_w(supports: &[SetSupport], motions: &[Motion]) -> [f64; 2] {
-    let mut power = [0.0; 2];
-    for held in supports.iter().flat_map(|support| &support.held) {
-        let after = six(&motions[held.particle as usize]);
-        for k in 0..6 {
-            power[0] += held.reaction[k] * held.before[k];
-            power[1] += held.reaction[k] * after[k];
+/// Velocity of a held freedom at the moment of a kick: what the part of the kick that belongs to the step before leaves of the change.
+///
+/// At the first step that is the velocity before it: a support that moves from the start does so after that moment, with a blow.
+pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
+    let [before_s, after_s] = steps_s;
+    before + (after - before) * before_s / (before_s + after_s)
+}
+
+/// Work of the reactions in the half steps before and after a kick, J: their powers, and what kinetic energy changes by beyond that, as velocities
+/// may be prescribed to jump. So a blow is booked with what it does, not with the velocity after it.
+pub fn reactions_work_j(
+    supports: &[SetSupport],
+    particles: &Particles,
+    steps_s: [f64; 2],
+) -> [f64; 2] {
+    let mut work = [0.0; 2];
+    for SetSupport { holds, held, .. } in supports {
+        for held in held {
+            let i = held.particle as usize;
+            let after = six(&particles.motions[i]);
+            for k in (0..6).filter(|&k| holds[k].is_some()) {
+                let per_inert = if k < 3 {
+                    particles.inverse_masses[i]
+                } else {
+                    particles.inverse_inertias[i]
+                };
+                let now = velocity_at_kick(held.before[k], after[k], steps_s);
+                let jump = |by: f64| 0.5 * by * by / per_inert;
+                let power = |velocity: f64| held.reaction[k] * velocity;
+                work[0] += 0.5 * steps_s[0] * power(held.before[k]) + jump(now - held.before[k]);
+                work[1] += 0.5 * steps_s[1] * power(after[k]) - jump(after[k] - now);
+            }
         }
     }
-    power
+    work
 }
 
 /// Velocity and spin of a particle.

@@ -1,7 +1,10 @@
 //! Breaking of bonds: loads at which a round bar of known strength must fail.
 
 use dem_run::physics::bond::BondLoad;
-use dem_run::physics::bond::failure::{Cause, Criteria, Stresses, cause, stresses, utilisation};
+use dem_run::physics::bond::failure::{
+    Cause, Criteria, Screen, Stresses, cause, stresses, utilisation,
+};
+use proptest::prelude::*;
 use std::f64::consts::PI;
 
 const NONE: Criteria = Criteria {
@@ -189,4 +192,26 @@ fn nothing_breaks_without_a_criterion_or_a_load() {
         utilisation(&strong, &MODES[3], 4.0),
         0.25e6 * 3.0_f64.sqrt(),
     );
+}
+
+proptest! {
+    /// The screen that the step uses is the square of the utilisation.
+    #[test]
+    fn the_screen_finds_what_is_utilised(
+        normal_n in -1e3..1e3,
+        shear_n in 0.0..1e3,
+        torsion_n_m in 0.0..3.0,
+        bending_n_m in 0.0..3.0,
+        radius_m in 1e-4..1e-2,
+        strengths in prop::array::uniform3(prop::option::of(1e4..1e9)),
+        compressive: bool,
+    ) {
+        let [tension_pa, shear_pa, von_mises_pa] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
+        let criteria = Criteria { tension_pa, shear_pa, von_mises_pa, compressive };
+        let load = BondLoad { normal_n, shear_n, torsion_n_m, bending_n_m };
+        let exact = utilisation(&criteria, &stresses(&load, radius_m), 1.0);
+        let [used, factor] = Screen::new(&criteria).used_and_factor(&load, radius_m);
+        let screened = (used / factor).sqrt();
+        prop_assert!((screened - exact).abs() <= 1e-12 * exact, "{screened} {exact}");
+    }
 }

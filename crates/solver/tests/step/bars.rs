@@ -1,9 +1,15 @@
-//! Bodies that the tests run.
+//! Bodies that the tests run, and what they do with them.
 
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_run::check::ledger::{Balance, Ledger, balance};
+use dem_run::physics::bond::damping::{
+    DampingCoefficients, Reduced, chen, chen_by_mode, platzer, reduced,
+};
+use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
-use dem_run::state::particles::Particles;
+use dem_run::state::particles::{Particles, Wrench};
+use dem_run::step::{act, move_on, step};
+use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rule without damping and failure.
 pub(crate) const ELASTIC: BondRule = BondRule {
@@ -13,46 +19,290 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     strengthening_from_1_s: None,
 };
 
-/// Bonds between these pairs, in rest as the particles stand.
-pub(crate) fn bonds(
+/// All bond models, with the names of the reference values, which know no elastic solid bond.
+pub(crate) const MODELS: [(BondModel, &str); 5] = [
+    (BondModel::Parallel { kappa: None }, "PBM"),
+    (BondModel::EulerBernoulli, "EBBM"),
+    (BondModel::Timoshenko, "TBBM"),
+    (BondModel::ShearCoefficient { alpha: 0.9 }, "OBERMAYR"),
+    (BondModel::ElasticSolid, ""),
+];
+
+/// Largest stable step of the bar of Timoshenko bonds, s.
+pub(crate) const BAR_LIMIT_S: f64 = 6.536982689455117e-5;
+
+/// How bonds are damped.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum BondDamping {
+    /// Chen et al. 2022, eqs. 9 and 10.
+    Chen(f64),
+    /// The same with the stiffness of each mode.
+    ChenByMode(f64),
+    /// The thesis: this share of 2 sqrt(k_n m_red) on the velocity, and this factor on the moments.
+    Platzer(f64, f64),
+}
+
+impl BondDamping {
+    fn coefficients(self, k: &Stiffness, ends: &Reduced) -> DampingCoefficients {
+        match self {
+            Self::Chen(eta) => chen(k, ends, eta),
+            Self::ChenByMode(eta) => chen_by_mode(k, ends, eta),
+            Self::Platzer(share, moments) => {
+                let coefficient = 2.0 * share * (k.normal * ends.mass_kg).sqrt();
+                platzer(k, ends, coefficient, moments)
+            }
+        }
+    }
+}
+
+/// What a body is made of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bonding {
+    /// Radius of a bond over that of its smaller end.
+    pub(crate) radius_factor: f64,
+    pub(crate) model: BondModel,
+    pub(crate) young_modulus_pa: f64,
+    pub(crate) rule: BondRule,
+}
+
+/// Adds bonds between these pairs, in rest as the particles stand, that follow the next rule.
+pub(crate) fn add_bonds(
+    bonds: &mut Bonds,
     particles: &Particles,
     pairs: &[[u32; 2]],
-    radius_factor: f64,
-    model: BondModel,
-    young_modulus_pa: f64,
-    rule: BondRule,
-) -> Bonds {
-    let mut bonds = Bonds {
-        rules: vec![rule],
-        ..Bonds::default()
-    };
+    of: &Bonding,
+) {
+    let rule = bonds.rules.len();
+    bonds.rules.push(of.rule);
     for &[a, b] in pairs {
         let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
         let radii = [a, b].map(|end| particles.radii_m[end as usize]);
         let shape = BondShape {
             length_m: apart.norm(),
-            radius_m: radius_factor * radii[0].min(radii[1]),
+            radius_m: of.radius_factor * radii[0].min(radii[1]),
             end_radii_m: radii,
         };
-        let stiffness = stiffness(model, &shape, young_modulus_pa, 0.3);
+        let stiffness = stiffness(of.model, &shape, of.young_modulus_pa, 0.3);
         bonds.push(
             [a, b],
             apart.normalize().into(),
             shape.radius_m,
             &stiffness,
-            0,
+            rule,
         );
     }
-    bonds
+    if of.rule.incremental {
+        bonds.histories.resize(bonds.len(), Default::default());
+    }
+}
+
+/// Particles with bonds of one kind.
+pub(crate) fn body(
+    particles: Particles,
+    pairs: &[[u32; 2]],
+    bonding: &Bonding,
+    time_step_s: f64,
+) -> State {
+    let mut bonds = Bonds::default();
+    add_bonds(&mut bonds, &particles, pairs, bonding);
+    State::new(particles, bonds, time_step_s, 1)
+}
+
+/// Spheres of a bar: this many of radius 0.2 m along x that touch, 7850 kg/m3.
+pub(crate) fn spheres(count: u32) -> (Particles, Vec<[u32; 2]>) {
+    let mut particles = Particles::default();
+    for i in 0..count {
+        particles.push_sphere([0.4 * f64::from(i), 0.0, 0.0], 0.2, 7850.0);
+    }
+    (particles, (0..count - 1).map(|i| [i, i + 1]).collect())
+}
+
+/// Steel bonds as thick as the spheres.
+pub(crate) fn steel(model: BondModel, rule: BondRule) -> Bonding {
+    Bonding {
+        radius_factor: 1.0,
+        model,
+        young_modulus_pa: 200e9,
+        rule,
+    }
 }
 
 /// The bar of case 1 of Chen et al. 2022: 11 spheres of radius 0.2 m along x, density 7850 kg/m3, E = 200 GPa.
 pub(crate) fn bar(model: BondModel, rule: BondRule, time_step_s: f64) -> State {
+    let (particles, pairs) = spheres(11);
+    body(particles, &pairs, &steel(model, rule), time_step_s)
+}
+
+#[derive(serde::Deserialize)]
+struct RandomBody {
+    positions_m: Vec<[f64; 3]>,
+    radii_m: Vec<f64>,
+    pairs: Vec<[u32; 2]>,
+}
+
+/// Spheres and pairs of the random body of the reference values: 500 and 2500.
+pub(crate) fn random_spheres() -> (Particles, Vec<[u32; 2]>) {
+    let read: RandomBody = serde_json::from_str(include_str!("data/random500.json")).unwrap();
     let mut particles = Particles::default();
-    for i in 0..11 {
-        particles.push_sphere([0.4 * f64::from(i), 0.0, 0.0], 0.2, 7850.0);
+    for (position, radius) in read.positions_m.into_iter().zip(read.radii_m) {
+        particles.push_sphere(position, radius, 2050.0);
     }
-    let pairs: Vec<[u32; 2]> = (0..10).map(|i| [i, i + 1]).collect();
-    let bonds = bonds(&particles, &pairs, 1.0, model, 200e9, rule);
-    State::new(particles, bonds, time_step_s, 1)
+    (particles, read.pairs)
+}
+
+/// Bonds of the random body.
+pub(crate) fn soft(model: BondModel, rule: BondRule) -> Bonding {
+    Bonding {
+        young_modulus_pa: 12.05e6,
+        ..steel(model, rule)
+    }
+}
+
+/// The random body of the reference values.
+pub(crate) fn random_body(model: BondModel, rule: BondRule, time_step_s: f64) -> State {
+    let (particles, pairs) = random_spheres();
+    body(particles, &pairs, &soft(model, rule), time_step_s)
+}
+
+/// Damps all bonds.
+pub(crate) fn damp(state: &mut State, damping: BondDamping) {
+    let p = &state.particles;
+    let of_bond = |at: usize| {
+        let ends = state.bonds.ends[at].map(|end| end as usize);
+        let ends = reduced(
+            ends.map(|end| p.inverse_masses[end]),
+            ends.map(|end| p.inverse_inertias[end]),
+        );
+        let d = damping.coefficients(&state.bonds.stiffness(at), &ends);
+        [d.normal, d.shear, d.torsion, d.bending]
+    };
+    state.bonds.damping = (0..state.bonds.len()).map(of_bond).collect();
+    for rule in &mut state.bonds.rules {
+        rule.damped = true;
+    }
+    state.bond_resistance = vec![Wrench::default(); p.len()];
+}
+
+/// Damps all particles with this share of what acts on them.
+pub(crate) fn damp_particles(state: &mut State, gamma: f64) {
+    state.particle_damping = gamma;
+    state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+}
+
+/// Numbers between -1 and 1 that look random, the same on every machine.
+pub(crate) fn scattered() -> impl FnMut() -> f64 {
+    let mut seed = 1_u64;
+    move || {
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Gives every particle a velocity and spin of up to this size, and opens the ledger anew.
+pub(crate) fn shake(state: &mut State, velocity_m_s: f64) {
+    let mut next = scattered();
+    let p = &mut state.particles;
+    for (motion, radius) in p.motions.iter_mut().zip(&p.radii_m) {
+        motion.velocity_m_s = [0; 3].map(|_| velocity_m_s * next());
+        motion.spin_rad_s = [0; 3].map(|_| velocity_m_s / radius * next());
+    }
+    reopen(state);
+}
+
+/// The bar tumbles about all axes and vibrates in its slow modes, as the second case of the reference values' drift: 27.2 MJ, of which the bonds
+/// take up to about 80 kJ.
+pub(crate) fn tumble(state: &mut State) {
+    let spin = Vector3::new(20.0, 30.0, 103.5);
+    let (centre, half) = (2.0, 2.0);
+    for (pose, motion) in state
+        .particles
+        .poses
+        .iter()
+        .zip(&mut state.particles.motions)
+    {
+        let from_centre = pose.place() - Vector3::new(centre, 0.0, 0.0);
+        let x = from_centre.x / half;
+        // The slowest bending mode of a free bar, nearly: its deflection and its slope.
+        let bend = 9.0 * (x * x - 0.4);
+        let slope = 18.0 * x / half;
+        let stretch = 1.5 * x;
+        let velocity = spin.cross(&from_centre) + Vector3::new(stretch, bend, 0.3 * bend);
+        let turn = spin + Vector3::new(6.0 * x, -0.3 * slope, slope);
+        motion.velocity_m_s = velocity.into();
+        motion.spin_rad_s = turn.into();
+    }
+    reopen(state);
+}
+
+/// Opens the ledger anew.
+pub(crate) fn reopen(state: &mut State) {
+    state.ledger = Ledger::opened(state);
+}
+
+/// A step, with the ledger in its middle.
+pub(crate) fn step_and_balance(state: &mut State) -> Balance {
+    act(state);
+    let balance = balance(state);
+    move_on(state);
+    balance
+}
+
+/// The largest errors of a run.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Errors {
+    /// J.
+    pub(crate) energy_j: f64,
+    pub(crate) energy: f64,
+    pub(crate) momentum: f64,
+    pub(crate) angular_momentum: f64,
+    /// Largest elastic energy, J.
+    pub(crate) elastic_j: f64,
+    /// Kinetic energy at the end, J.
+    pub(crate) kinetic_j: f64,
+}
+
+/// Runs this many steps and looks at the ledger in every one of `every`.
+pub(crate) fn run(state: &mut State, steps: u64, every: u64) -> Errors {
+    let mut errors = Errors::default();
+    for at in 1..=steps {
+        if at % every != 0 {
+            step(state);
+            continue;
+        }
+        let b = step_and_balance(state);
+        errors.energy_j = errors.energy_j.max(b.energy_error_j.abs());
+        errors.energy = errors.energy.max(b.energy_error.abs());
+        errors.momentum = errors.momentum.max(b.momentum_error);
+        errors.angular_momentum = errors.angular_momentum.max(b.angular_momentum_error);
+        errors.elastic_j = errors.elastic_j.max(b.elastic_j());
+        errors.kinetic_j = b.kinetic_j;
+    }
+    errors
+}
+
+/// Does something where Rayon has this many threads. With one, nothing is handed over, which small bodies are grateful for.
+pub(crate) fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
+/// Order of a method whose errors at steps each half of the one before are these: one number for each halving.
+pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect()
+}
+
+/// Particles turned about the origin, with their velocities.
+pub(crate) fn turned(particles: &Particles, by: UnitQuaternion<f64>) -> Particles {
+    let mut particles = particles.clone();
+    for pose in &mut particles.poses {
+        let [x, y, z]: [f64; 3] = (by * pose.place()).into();
+        pose.position_m = [x, y, z, 0.0];
+    }
+    for motion in &mut particles.motions {
+        motion.velocity_m_s = (by * Vector3::from(motion.velocity_m_s)).into();
+        motion.spin_rad_s = (by * Vector3::from(motion.spin_rad_s)).into();
+    }
+    particles
 }

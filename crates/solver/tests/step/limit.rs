@@ -1,31 +1,166 @@
-use crate::bars::{ELASTIC, bar};
-use dem_run::check::ledger::balance;
-use dem_run::check::limit::limit;
+//! The largest stable step against an independent eigenvalue solver.
+
+use crate::bars::{
+    BAR_LIMIT_S, BondDamping, ELASTIC, MODELS, bar, body, damp, damp_particles, random_body, soft,
+};
+use dem_run::check::limit::{limit, safe_step};
 use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::step::{act, move_on, step};
+use dem_run::state::State;
+use dem_run::state::particles::Particles;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Of one model and body.
+#[derive(Deserialize)]
+struct Reference {
+    step_s: f64,
+    /// Damped over undamped, by eta.
+    chen: BTreeMap<String, f64>,
+    chen_by_mode: BTreeMap<String, f64>,
+}
+
+type Body = fn(BondModel, dem_run::state::bonds::BondRule, f64) -> State;
+
+fn all() -> Vec<(String, BondModel, Body, Reference)> {
+    let mut read: BTreeMap<String, BTreeMap<String, Reference>> =
+        serde_json::from_str(include_str!("data/critical_step.json")).unwrap();
+    let mut all = Vec::new();
+    for (name, body) in [("bar", bar as Body), ("random500", random_body as Body)] {
+        let mut of_body = read.remove(name).unwrap();
+        for (model, key) in MODELS {
+            if let Some(reference) = of_body.remove(key) {
+                all.push((format!("{name} {key}"), model, body, reference));
+            }
+        }
+        assert!(of_body.is_empty());
+    }
+    assert_eq!(all.len(), 8);
+    all
+}
 
 #[test]
-fn smoke() {
-    let mut state = bar(BondModel::Timoshenko, ELASTIC, 6.53698e-6);
-    let found = limit(&mut state);
-    eprintln!("{found:?}");
-    for (i, motion) in state.particles.motions.iter_mut().enumerate() {
-        motion.velocity_m_s = [
-            0.0,
-            20.0 * (i as f64 - 5.0),
-            if i % 2 == 0 { 3.0 } else { -2.0 },
-        ];
-        motion.spin_rad_s = [30.0, 5.0, 50.0];
+fn undamped_limits_are_those_of_the_reference() {
+    for (name, model, body, reference) in all() {
+        let found = limit(&mut body(model, ELASTIC, 1e-9));
+        let ratio = found.step_s / reference.step_s;
+        eprintln!("{name}: {ratio:.7} after {} iterations", found.iterations);
+        // Never too long, by more than the reference may be wrong.
+        assert!((1.0 - 1e-5..1.0 + 1e-6).contains(&ratio), "{name}: {ratio}");
+        assert_eq!(found.step_s, found.undamped_step_s);
     }
-    state.ledger = dem_run::check::ledger::Ledger::opened(&state);
-    let t = std::time::Instant::now();
-    for _ in 0..5 {
-        for _ in 0..10_000 {
-            step(&mut state);
+}
+
+#[test]
+fn damped_limits_are_those_of_the_reference() {
+    for (name, model, body, reference) in all() {
+        for (eta, shares) in [
+            (BondDamping::Chen as fn(f64) -> BondDamping, &reference.chen),
+            (BondDamping::ChenByMode, &reference.chen_by_mode),
+        ] {
+            for (value, share) in shares {
+                let mut state = body(model, ELASTIC, 1e-9);
+                damp(&mut state, eta(value.parse().unwrap()));
+                let found = limit(&mut state);
+                let ratio = found.step_s / (reference.step_s * share);
+                let k = found.omega_rad_s * found.omega_rad_s;
+                let safe = safe_step(k, found.damping_1_s) / (reference.step_s * share);
+                eprintln!("{name} {value}: {ratio:.5}; from two eigenvalues {safe:.5}");
+                assert!(
+                    (1.0 - 1e-3..1.0 + 1e-6).contains(&ratio),
+                    "{name} {value}: {ratio}"
+                );
+                assert!(safe <= ratio + 1e-12, "{name} {value}: {safe}");
+            }
         }
-        act(&mut state);
-        eprintln!("{:?}", balance(&mut state));
-        move_on(&mut state);
     }
-    eprintln!("{:?} us/step", t.elapsed().as_secs_f64() / 5e4 * 1e6);
+}
+
+/// The elastic solid bond is the beam with a shear coefficient of 1.
+#[test]
+fn the_elastic_solid_bond_has_the_limit_of_the_beam_it_is() {
+    for body in [bar as Body, random_body as Body] {
+        let [solid, beam] = [
+            BondModel::ElasticSolid,
+            BondModel::ShearCoefficient { alpha: 1.0 },
+        ]
+        .map(|model| limit(&mut body(model, ELASTIC, 1e-9)));
+        assert!((solid.step_s / beam.step_s - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn damping_of_particles_stiffens() {
+    let mut state = bar(BondModel::Timoshenko, ELASTIC, 1e-9);
+    damp_particles(&mut state, 0.44);
+    let found = limit(&mut state);
+    assert!((found.step_s * 1.2 / BAR_LIMIT_S - 1.0).abs() < 1e-4);
+    assert!((found.undamped_step_s / BAR_LIMIT_S - 1.0).abs() < 1e-4);
+}
+
+/// Spheres on a cubic grid, each moved a little, bonded to those nearer than the diagonal of a face: about 12 bonds each.
+fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
+    let mut next = crate::bars::scattered();
+    let mut particles = Particles::default();
+    for (x, y, z) in (0..side * side * side).map(|i| (i % side, i / side % side, i / side / side)) {
+        let place = [x, y, z].map(|k| 2.0e-3 * (f64::from(k) + 0.1 * next()));
+        particles.push_sphere(place, 1.0e-3 + 1.0e-4 * next(), 2050.0);
+    }
+    let count = particles.len();
+    let side = side as usize;
+    let mut pairs = Vec::new();
+    for a in 0..count {
+        // The next layer holds all that are near enough.
+        for b in a + 1..count.min(a + side * side + side + 2) {
+            let apart = particles.poses[b].place() - particles.poses[a].place();
+            if apart.norm() < 3.0e-3 {
+                pairs.push([a as u32, b as u32]);
+            }
+        }
+    }
+    (particles, pairs)
+}
+
+/// Iterations hardly grow with the body; and from another start, as the same body with its numbers backwards has it, the same limit is found.
+#[test]
+fn the_limit_of_a_large_body_is_found_from_any_start() {
+    let (particles, pairs) = shaken_grid(18);
+    assert_eq!(particles.len(), 5832);
+    assert!(pairs.len() > 4 * particles.len(), "{}", pairs.len());
+    let last = particles.len() - 1;
+    let mut back = Particles::default();
+    for i in (0..=last).rev() {
+        back.push_sphere(
+            particles.poses[i].place().into(),
+            particles.radii_m[i],
+            2050.0,
+        );
+    }
+    let mut pairs_back: Vec<[u32; 2]> = pairs
+        .iter()
+        .map(|[a, b]| [last as u32 - b, last as u32 - a])
+        .collect();
+    pairs_back.sort_unstable();
+    for (model, name) in MODELS {
+        for damping in [None, Some(BondDamping::Chen(0.1))] {
+            if damping.is_some() && model != BondModel::Timoshenko {
+                continue;
+            }
+            let [found, other] = [(&particles, &pairs), (&back, &pairs_back)].map(|(p, pairs)| {
+                let mut state = body(p.clone(), pairs, &soft(model, ELASTIC), 1e-9);
+                if let Some(damping) = damping {
+                    damp(&mut state, damping);
+                }
+                limit(&mut state)
+            });
+            let apart = found.step_s / other.step_s - 1.0;
+            eprintln!(
+                "{name} {damping:?}: {} and {} iterations, {apart:e}",
+                found.iterations, other.iterations
+            );
+            assert!(found.iterations < 200 && other.iterations < 200, "{name}");
+            // Damped limits end the search within 1e-3.
+            let allowed = if damping.is_some() { 1e-3 } else { 1e-5 };
+            assert!(apart.abs() < allowed, "{name} {damping:?}: {apart:e}");
+        }
+    }
 }

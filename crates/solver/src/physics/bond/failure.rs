@@ -71,6 +71,46 @@ pub fn utilisation(criteria: &Criteria, stresses: &Stresses, strength_factor: f6
     normal.max(shear).max(von_mises) / strength_factor
 }
 
+/// Finds the few bonds that may have reached their strength, without a root or a division.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screen {
+    /// One over the square of each strength: normal, shear, von Mises, 1/Pa2.
+    per_strength_squared: [f64; 3],
+    compressive: bool,
+}
+
+impl Screen {
+    /// For these strengths.
+    pub fn new(criteria: &Criteria) -> Self {
+        let strengths = [
+            criteria.tension_pa,
+            criteria.shear_pa,
+            criteria.von_mises_pa,
+        ];
+        Self {
+            per_strength_squared: strengths.map(|strength| 1.0 / (strength * strength)),
+            compressive: criteria.compressive,
+        }
+    }
+
+    /// Square of the utilisation, but for the factor (pi r^3)^2 that is given beside it: stresses times pi r^3 are F r + 4 M and S r + 2 T.
+    #[inline(always)]
+    pub fn used_and_factor(&self, load: &BondLoad, radius_m: f64) -> [f64; 2] {
+        let (bending, torsion) = (4.0 * load.bending_n_m, 2.0 * load.torsion_n_m);
+        let axial = load.normal_n * radius_m;
+        let counts = self.compressive || axial > 0.0;
+        let normal = if counts { axial.abs() + bending } else { 0.0 };
+        let shear = load.shear_n * radius_m + torsion;
+        let pulled = axial.max(0.0) + bending;
+        let [by_normal, by_shear, by_von_mises] = self.per_strength_squared;
+        let used = (normal * normal * by_normal)
+            .max(shear * shear * by_shear)
+            .max((pulled * pulled + 3.0 * shear * shear) * by_von_mises);
+        let volume = PI * radius_m * radius_m * radius_m;
+        [used, volume * volume]
+    }
+}
+
 /// The criterion of which the largest share is used.
 pub fn cause(criteria: &Criteria, stresses: &Stresses) -> Cause {
     let [normal, shear, von_mises] = shares(criteria, stresses);

@@ -72,13 +72,19 @@ pub fn stiffness(
     match model {
         BondModel::Parallel { kappa } => {
             let shear = normal / kappa.unwrap_or(2.0 * (1.0 + poisson_ratio));
-            let from_a = 0.5 * (length + radius_a - radius_b);
+            // The longer lever first: what is left for the other is then exact, and both together are the length to the last bit.
+            let longer = 0.5 * (length + (radius_a - radius_b).abs());
+            let shorter = length - longer;
             Stiffness {
                 normal,
                 shear,
                 torsion: 0.5 * shear * radius.powi(2),
                 bending,
-                levers_m: [from_a, length - from_a],
+                levers_m: if radius_a >= radius_b {
+                    [longer, shorter]
+                } else {
+                    [shorter, longer]
+                },
             }
         }
         BondModel::EulerBernoulli => Stiffness {

@@ -65,12 +65,15 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
     let apart = b.position_m - a.position_m;
     let length = apart.norm();
     let c = apart / length;
-    let stretch = length - (lever_a + lever_b);
+    let initial = lever_a + lever_b;
+    let stretch = length - initial;
 
+    // s = L0 c + lean: nothing cancels in a lean that is small, and at rest it is 0 to the last bit.
     let (direction_a, direction_b) = (a.turned * direction, b.turned * direction);
-    let s = lever_a * direction_a + lever_b * direction_b;
-    let along = c.dot(&s);
-    let across = s - c * along;
+    let lean = lever_a * (direction_a - c) + lever_b * (direction_b - c);
+    let lean_along = c.dot(&lean);
+    let along = initial + lean_along;
+    let across = lean - c * lean_along;
 
     let relative = b.turned.quaternion() * a.turned.quaternion().conjugate();
     // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.

@@ -1,0 +1,89 @@
+//! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
+//! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::state::particles::Wrench;
+
+/// Bonds in a block.
+pub(super) const BLOCK: usize = 32;
+/// Bonds computed at once, at least.
+const LANES: usize = 4;
+
+/// One number of each bond of a block.
+pub(super) type Column = [f64; BLOCK];
+/// Four numbers of each bond of a block.
+pub(super) type Rows = [[f64; 4]; BLOCK];
+
+/// Bonds to be computed where `count` are wanted: to the full number of lanes. What an earlier block left there does no harm.
+#[inline(always)]
+pub(super) fn full_lanes(count: usize) -> Range<usize> {
+    0..count.next_multiple_of(LANES).min(BLOCK)
+}
+
+/// What the bonds of a block do to their ends.
+pub(super) struct Effects {
+    force_on_b: Rows,
+    torques: [Rows; 2],
+}
+
+impl Effects {
+    pub(super) fn new() -> Self {
+        let rows = [[0.0; 4]; BLOCK];
+        Self {
+            force_on_b: rows,
+            torques: [rows; 2],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, i: usize, force_on_b: &Vector3<f64>, torques: &[Vector3<f64>; 2]) {
+        let row = |v: &Vector3<f64>| [v.x, v.y, v.z, 0.0];
+        self.force_on_b[i] = row(force_on_b);
+        self.torques[0][i] = row(&torques[0]);
+        self.torques[1][i] = row(&torques[1]);
+    }
+
+    /// Adds them to the particles of a share, in which all first ends lie. `wrenches` are those of the share.
+    #[inline(always)]
+    pub(super) fn add_to_both(
+        &self,
+        ends: &[[u32; 2]],
+        wrenches: &mut [Wrench],
+        particles: &Range<usize>,
+    ) {
+        for (i, &[a, b]) in (0..BLOCK).zip(ends) {
+            let a = &mut wrenches[a as usize - particles.start];
+            for k in 0..4 {
+                a.force_n[k] -= self.force_on_b[i][k];
+                a.torque_n_m[k] += self.torques[0][i][k];
+            }
+            if (b as usize) < particles.end {
+                self.add_to_b(i, &mut wrenches[b as usize - particles.start]);
+            }
+        }
+    }
+
+    /// Adds them to the particles of a share, in which all second ends lie and no first.
+    #[inline(always)]
+    pub(super) fn add_to_second(
+        &self,
+        ends: impl Iterator<Item = [u32; 2]>,
+        wrenches: &mut [Wrench],
+        start: usize,
+    ) {
+        for (i, [_, b]) in (0..BLOCK).zip(ends) {
+            self.add_to_b(i, &mut wrenches[b as usize - start]);
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_b(&self, i: usize, b: &mut Wrench) {
+        for k in 0..4 {
+            b.force_n[k] += self.force_on_b[i][k];
+            b.torque_n_m[k] += self.torques[1][i][k];
+        }
+    }
+}

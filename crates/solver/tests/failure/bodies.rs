@@ -1,0 +1,156 @@
+//! Rods that the tests break.
+
+use std::f64::consts::PI;
+
+use dem_io::scene::{Factor, Hold};
+use dem_run::check::limit::limit;
+use dem_run::physics::bond::failure::Criteria;
+use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_run::stages::loads::SetLoad;
+use dem_run::stages::supports::{Held, SetSupport};
+use dem_run::state::State;
+use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::particles::{Particles, Wrench};
+
+/// Radius of spheres and bonds, m.
+pub(crate) const RADIUS_M: f64 = 1e-3;
+/// Length of a bond, m.
+pub(crate) const LENGTH_M: f64 = 2e-3;
+/// Strength in tension; the others are near it, Pa.
+pub(crate) const STRENGTH_PA: f64 = 1e6;
+/// So stiff that the deflected shape does not matter: a force along a rod of five bonds that is bent to its strength changes the moment by about
+/// (stress over stiffness) (length over radius)^2, 1e-5, a tenth of the load's step; less by the shares of the loads. Softer, and it would matter;
+/// stiffer, and the rounding of places would.
+pub(crate) const YOUNG_PA: f64 = 1e13;
+
+/// Strengths that do not matter.
+pub(crate) const NONE: Criteria = Criteria {
+    tension_pa: f64::INFINITY,
+    shear_pa: f64::INFINITY,
+    von_mises_pa: f64::INFINITY,
+    compressive: true,
+};
+/// MUSEN's normal strength.
+pub(crate) const NORMAL: Criteria = Criteria {
+    tension_pa: STRENGTH_PA,
+    ..NONE
+};
+/// MUSEN's shear strength.
+pub(crate) const SHEAR: Criteria = Criteria {
+    shear_pa: 0.6 * STRENGTH_PA,
+    ..NONE
+};
+/// The thesis' equivalent stress.
+pub(crate) const VON_MISES: Criteria = Criteria {
+    von_mises_pa: 1.1 * STRENGTH_PA,
+    ..NONE
+};
+/// All three.
+pub(crate) const ALL: Criteria = Criteria {
+    tension_pa: NORMAL.tension_pa,
+    shear_pa: SHEAR.shear_pa,
+    von_mises_pa: VON_MISES.von_mises_pa,
+    compressive: true,
+};
+
+/// Cross-section of a bond, m2.
+pub(crate) fn area_m2() -> f64 {
+    PI * RADIUS_M * RADIUS_M
+}
+
+/// A row of spheres from the origin along x, with these many bonds, free and at rest. Its step is half of the limit.
+pub(crate) fn rod(bonds: usize, criteria: Criteria, incremental: bool) -> State {
+    let mut particles = Particles::default();
+    for i in 0..=bonds {
+        particles.push_sphere([LENGTH_M * i as f64, 0.0, 0.0], RADIUS_M, 2500.0);
+    }
+    let pairs: Vec<[u32; 2]> = (0..bonds as u32).map(|i| [i, i + 1]).collect();
+    bonded(particles, &pairs, criteria, incremental)
+}
+
+/// These spheres with bonds between these pairs. The step is half of the limit.
+pub(crate) fn bonded(
+    particles: Particles,
+    pairs: &[[u32; 2]],
+    criteria: Criteria,
+    incremental: bool,
+) -> State {
+    let mut bonds = Bonds {
+        rules: vec![BondRule {
+            incremental,
+            damped: false,
+            criteria: Some(criteria),
+            strengthening_from_1_s: None,
+        }],
+        ..Bonds::default()
+    };
+    for &[a, b] in pairs {
+        let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
+        let shape = BondShape {
+            length_m: apart.norm(),
+            radius_m: RADIUS_M,
+            end_radii_m: [RADIUS_M; 2],
+        };
+        let stiffness = stiffness(BondModel::Timoshenko, &shape, YOUNG_PA, 0.3);
+        bonds.push([a, b], apart.normalize().into(), RADIUS_M, &stiffness, 0);
+    }
+    if incremental {
+        bonds.histories = vec![Default::default(); pairs.len()];
+    }
+    let mut state = State::new(particles, bonds, 1e-9, 1);
+    state.time_step_s = 0.5 * limit(&mut state).step_s;
+    state
+}
+
+/// Holds these spheres, except that they move along x at this speed.
+pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, speed_m_s: f64) {
+    let mut holds = [Some(Hold::Fixed); 6];
+    holds[0] = Some(Hold::Velocity(speed_m_s));
+    let held = |particle| Held {
+        particle,
+        ..Held::default()
+    };
+    state.supports.push(SetSupport {
+        holds,
+        factor: Factor::One,
+        held: particles.map(held).collect(),
+    });
+}
+
+/// Steps in which a load of [`push`] comes to its full slope, in twice as many to its value.
+pub(crate) const SOFT_STEPS: u32 = 8000;
+/// What such a load grows by in a step, of its value.
+pub(crate) const LOAD_STEP: f64 = 2.0 / (3.0 * SOFT_STEPS as f64);
+
+/// Loads a sphere so slowly, and from so soft a beginning, that the body does not swing: the slope of the load rises as the square of a sine and then
+/// stays. Swings that this leaves are pi^2 / 2 / (N^2 (omega dt)^3) of the load's step, N = 8000: a fiftieth for a rod of five bonds, whose slowest
+/// omega dt is 0.017.
+pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n_m: [f64; 3]) {
+    let soft = f64::from(SOFT_STEPS);
+    let factor = |step: u32| {
+        let n = f64::from(step);
+        let risen = n.min(soft);
+        // The integral of sin^2.
+        LOAD_STEP * (0.5 * risen - soft / (2.0 * PI) * (PI * risen / soft).sin() + n - risen)
+    };
+    let points =
+        (0..=3 * SOFT_STEPS).map(|step| [f64::from(step) * state.time_step_s, factor(step)]);
+    state.loads.push(SetLoad {
+        particles: vec![particle],
+        force_n,
+        torque_n_m,
+        factor: Factor::Table(points.collect()),
+    });
+}
+
+/// Damps all particles by gamma.
+pub(crate) fn damp(state: &mut State, gamma: f64) {
+    state.particle_damping = gamma;
+    state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+}
+
+/// Runs on one worker thread: handing each step of a small body to another thread takes longer than the step.
+pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(work)
+}

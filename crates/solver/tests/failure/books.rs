@@ -1,0 +1,110 @@
+//! The ledgers of energy and momentum stay closed when bonds break: their errors fall with the square of the time step.
+
+use std::f64::consts::PI;
+
+use dem_io::scene::Factor;
+use dem_run::check::ledger::{Balance, Ledger, balance};
+use dem_run::stages::loads::SetLoad;
+use dem_run::state::State;
+use dem_run::step::{act, move_on};
+
+use crate::bodies::{
+    LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, area_m2, damp, hold, on_one_thread, rod,
+};
+
+/// What acts on a rod besides its bonds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Besides {
+    Nothing,
+    Load,
+    Support,
+    Damping,
+}
+
+/// A rod that is shaken so that its bonds break one after another, or is torn.
+fn shaken(incremental: bool, besides: Besides) -> State {
+    let mut state = rod(6, NORMAL, incremental);
+    let m = 1.0 / state.particles.inverse_masses[0];
+    let speed = STRENGTH_PA * area_m2() / (m * state.bonds.normal[0]).sqrt();
+    for (i, motion) in state.particles.motions.iter_mut().enumerate() {
+        let phase = PI * i as f64 / 6.0;
+        let along = -(phase.cos()) * 2.2 * speed;
+        motion.velocity_m_s = [along, 0.3 * speed * (2.0 * phase).cos(), 0.0];
+        motion.spin_rad_s = [
+            0.5 * speed * phase.cos() / RADIUS_M,
+            0.0,
+            0.1 * speed / RADIUS_M,
+        ];
+    }
+    match besides {
+        Besides::Nothing => {}
+        Besides::Load => state.loads.push(SetLoad {
+            particles: vec![6],
+            force_n: [
+                0.5 * STRENGTH_PA * area_m2(),
+                0.1 * STRENGTH_PA * area_m2(),
+                0.0,
+            ],
+            torque_n_m: [0.0, 0.1 * STRENGTH_PA * area_m2() * LENGTH_M, 0.0],
+            factor: Factor::One,
+        }),
+        Besides::Support => {
+            hold(&mut state, std::iter::once(0), 0.0);
+            hold(&mut state, std::iter::once(6), speed);
+            state.particles.motions[0] = Default::default();
+            state.particles.motions[6] = Default::default();
+            state.particles.motions[6].velocity_m_s[0] = speed;
+        }
+        Besides::Damping => damp(&mut state, 0.2),
+    }
+    state.ledger = Ledger::opened(&state);
+    state
+}
+
+/// Largest errors after the first break within a given time, and the breaks.
+fn errors(mut state: State, part: f64, until_s: f64) -> (f64, f64, u64, Balance) {
+    state.time_step_s *= part;
+    let (mut energy, mut momentum) = (0.0_f64, 0.0_f64);
+    let mut last = Balance::default();
+    while state.time_s < until_s {
+        act(&mut state);
+        if state.broken_count > 0 {
+            last = balance(&mut state);
+            energy = energy.max(last.energy_error.abs());
+            momentum = momentum
+                .max(last.momentum_error)
+                .max(last.angular_momentum_error);
+        }
+        move_on(&mut state);
+    }
+    (energy, momentum, state.broken_count, last)
+}
+
+#[test]
+fn books_stay_closed_through_breaks() {
+    on_one_thread(|| {
+        for besides in [
+            Besides::Nothing,
+            Besides::Load,
+            Besides::Support,
+            Besides::Damping,
+        ] {
+            for incremental in [false, true] {
+                let until_s = 400.0 * shaken(incremental, besides).time_step_s;
+                let found = [0.25, 0.125, 0.0625]
+                    .map(|part| errors(shaken(incremental, besides), part, until_s));
+                let what = format!("{besides:?}, incremental: {incremental}");
+                for (_, momentum, broken, last) in &found {
+                    assert!(*momentum < 1e-12, "{what}: momentum off by {momentum}");
+                    assert!(
+                        *broken >= 3 && last.released_j > 0.0,
+                        "{what}: {broken} breaks"
+                    );
+                }
+                // 16 in the limit of small steps.
+                let falls = found[0].0 / found[2].0;
+                assert!((14.0..20.0).contains(&falls), "{what}: falls by {falls}");
+            }
+        }
+    });
+}

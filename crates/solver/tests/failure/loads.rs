@@ -1,0 +1,248 @@
+//! Rods whose load rises slowly break at the load that the closed form of the criterion says, to the load of one step.
+
+use std::f64::consts::PI;
+
+use dem_run::physics::bond::failure::{Cause, Criteria, stresses, utilisation};
+use dem_run::stages::loads::factor_at;
+use dem_run::state::State;
+use dem_run::step::{act, move_on};
+
+use crate::bodies::{
+    ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES, area_m2, hold,
+    on_one_thread, push, rod,
+};
+
+/// A load at the free end of a rod whose other end is held: force and torque, N and N m, in some proportion.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    name: &'static str,
+    force: [f64; 3],
+    torque: [f64; 3],
+}
+
+/// Largest stresses of a bond: axial, bending, shear, torsion.
+fn closed_form(end: &End, to_contact_m: f64) -> [f64; 4] {
+    let ([fx, fy, fz], [mx, my, mz]) = (end.force, end.torque);
+    let (by, bz) = (my - to_contact_m * fz, mz + to_contact_m * fy);
+    let second_moment = 0.25 * PI * RADIUS_M.powi(4);
+    [
+        fx / area_m2(),
+        by.hypot(bz) * RADIUS_M / second_moment,
+        fy.hypot(fz) / area_m2(),
+        mx.abs() * RADIUS_M / (2.0 * second_moment),
+    ]
+}
+
+/// How much of its strengths such a bond uses (normal, shear, equivalent).
+fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 3] {
+    let normal = if criteria.compressive || axial > 0.0 {
+        axial.abs() + bending
+    } else {
+        0.0
+    };
+    let pulled = axial.max(0.0) + bending;
+    let sheared = shear + torsion;
+    [
+        normal / criteria.tension_pa,
+        sheared / criteria.shear_pa,
+        pulled.hypot(3.0_f64.sqrt() * sheared) / criteria.von_mises_pa,
+    ]
+}
+
+/// A rod held at one end, with a load on the other that slowly grows to `end` and beyond.
+fn loaded(bonds: usize, criteria: Criteria, incremental: bool, end: &End) -> State {
+    let mut state = rod(bonds, criteria, incremental);
+    hold(&mut state, std::iter::once(0), 0.0);
+    push(&mut state, bonds as u32, end.force, end.torque);
+    state
+}
+
+/// The load at this moment, less the whole, in steps of the load.
+fn beyond(state: &State) -> f64 {
+    (factor_at(&state.loads[0].factor, state.time_s) - 1.0) / LOAD_STEP
+}
+
+/// Runs until the first break: how far beyond the whole load, in steps of the load, which bond, and the cause. The bond has not reached its criterion the step before, and has at the break.
+fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
+    let share = |state: &State, at: usize| {
+        let forces = state.bonds.forces(at, &state.particles.poses);
+        let criteria = state.bonds.rules[0].criteria.unwrap();
+        let stresses = stresses(&forces.load, state.bonds.radii_m[at]);
+        utilisation(&criteria, &stresses, state.bonds.strength_factor(at))
+    };
+    let mut before = vec![0.0; state.bonds.len()];
+    while beyond(state) < 100.0 {
+        let whole = state.bonds.clone();
+        act(state);
+        if let Some(&first) = state.broken.first() {
+            let at = first.bond as usize;
+            let bonds = std::mem::replace(&mut state.bonds, whole);
+            // Increments are those of this step, which the bonds had before they broke.
+            if bonds.histories.is_empty() {
+                assert!(share(state, at) >= 1.0, "{at} broke before its strength");
+            }
+            assert!(before[at] < 1.0, "{at} broke after its strength");
+            state.bonds = bonds;
+            return Some((beyond(state), at, first.cause));
+        }
+        for (at, before) in before.iter_mut().enumerate() {
+            *before = share(state, at);
+            assert!(*before < 1.0, "{at} is beyond its strength");
+        }
+        move_on(state);
+    }
+    None
+}
+
+/// Proportions of loads at the end of a rod of this length; the last number of each is a stress.
+fn ends(length_m: f64) -> [End; 8] {
+    let force = STRENGTH_PA * area_m2();
+    let moment = STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
+    // In the middle of the last bond, the moment of the force is taken back.
+    let back = 0.5 * LENGTH_M;
+    let end = |name, force, torque| End {
+        name,
+        force,
+        torque,
+    };
+    [
+        end("tension", [force, 0.0, 0.0], [0.0; 3]),
+        end("compression", [-force, 0.0, 0.0], [0.0; 3]),
+        end("torsion", [0.0; 3], [2.0 * moment, 0.0, 0.0]),
+        end("bending", [0.0; 3], [0.0, 0.8 * moment, 0.6 * moment]),
+        end(
+            "shear without bending in one bond",
+            [0.0, force, 0.0],
+            [0.0, 0.0, -force * back],
+        ),
+        end("cantilever", [0.0, 0.0, moment / length_m], [0.0; 3]),
+        end(
+            "tension and torsion",
+            [0.5 * force, 0.0, 0.0],
+            [moment, 0.0, 0.0],
+        ),
+        end(
+            "all",
+            [
+                0.3 * force,
+                0.2 * moment / length_m,
+                -0.1 * moment / length_m,
+            ],
+            [0.4 * moment, 0.1 * moment, -0.2 * moment],
+        ),
+    ]
+}
+
+/// Breaks rods of this many bonds in every way, by both formulations, one bond being the weakest.
+fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
+    let length = LENGTH_M * bonds as f64;
+    let mut rods = 0;
+    for criteria in [NORMAL, SHEAR, VON_MISES, ALL] {
+        for end in ends(length) {
+            let factors: Vec<f64> = (0..bonds)
+                .map(|at| if at == weakest { 0.9 } else { 1.2 })
+                .collect();
+            let shares: Vec<f64> = (0..bonds)
+                .map(|at| {
+                    let stresses = closed_form(&end, length - LENGTH_M * (at as f64 + 0.5));
+                    used(&criteria, stresses).into_iter().fold(0.0, f64::max) / factors[at]
+                })
+                .collect();
+            let largest = shares.iter().copied().fold(0.0, f64::max);
+            if largest < 1e-6 {
+                continue;
+            }
+            let wanted_bond = shares.iter().position(|&share| share == largest).unwrap();
+            let critical = End {
+                force: end.force.map(|f| f / largest),
+                torque: end.torque.map(|t| t / largest),
+                ..end
+            };
+            for incremental in [false, true] {
+                let mut state = loaded(bonds, criteria, incremental, &critical);
+                state.bonds.strength_factors = factors.clone();
+                let what = format!("{} {criteria:?}, incremental: {incremental}", end.name);
+                let (late, bond, cause) =
+                    first_break(&mut state).unwrap_or_else(|| panic!("{what}: does not break"));
+                assert!((-0.1..1.1).contains(&late), "{what}: {late} steps late");
+                assert_eq!(bond, wanted_bond, "{what}");
+                let stresses = closed_form(&end, length - LENGTH_M * (bond as f64 + 0.5));
+                let [normal, shear, von_mises] = used(&criteria, stresses);
+                let wanted = if normal >= shear.max(von_mises) {
+                    if stresses[0] < 0.0 {
+                        vec![Cause::Compression]
+                    } else if stresses[0] > 0.0 {
+                        vec![Cause::Tension]
+                    } else {
+                        // Neither pulled nor pressed: what rounding makes of it.
+                        vec![Cause::Tension, Cause::Compression]
+                    }
+                } else if shear >= von_mises {
+                    vec![Cause::Shear]
+                } else {
+                    vec![Cause::VonMises]
+                };
+                assert!(wanted.contains(&cause), "{what}: {cause:?}");
+                rods += 1;
+            }
+        }
+    }
+    assert!(rods > 40, "{rods} rods");
+}
+
+#[test]
+fn one_bond_breaks_at_the_closed_form() {
+    on_one_thread(|| breaks_at_the_closed_form(1, 0));
+}
+
+#[test]
+fn a_chain_breaks_at_the_closed_form() {
+    on_one_thread(|| breaks_at_the_closed_form(5, 2));
+}
+
+/// With `compressive = false` normal strength holds while the bond is pulled only, whatever bends it. The equivalent stress always counts
+/// bending, and pressure never.
+#[test]
+fn pressure_breaks_only_where_it_is_asked_to() {
+    let force = 0.1 * STRENGTH_PA * area_m2();
+    let moment = 0.9 * STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
+    let end = |name, force, moment| End {
+        name,
+        force: [force, 0.0, 0.0],
+        torque: [0.0, moment, 0.0],
+    };
+    let pressed = end("pressed", -10.0 * force, 0.0);
+    let pressed_and_bent = end("pressed and bent", -force, moment);
+    let pulled_and_bent = end("pulled and bent", force, moment);
+    let tension_only = Criteria {
+        compressive: false,
+        ..NORMAL
+    };
+    let equivalent = Criteria {
+        von_mises_pa: 0.9 * STRENGTH_PA,
+        ..NONE
+    };
+    let cases = [
+        (pressed, NORMAL, Some(Cause::Compression)),
+        (pressed, tension_only, None),
+        (pressed, equivalent, None),
+        (pressed_and_bent, NORMAL, Some(Cause::Compression)),
+        (pressed_and_bent, tension_only, None),
+        (pressed_and_bent, equivalent, Some(Cause::VonMises)),
+        (pulled_and_bent, NORMAL, Some(Cause::Tension)),
+        (pulled_and_bent, tension_only, Some(Cause::Tension)),
+    ];
+    on_one_thread(|| {
+        for (end, criteria, wanted) in cases {
+            for incremental in [false, true] {
+                let mut state = loaded(1, criteria, incremental, &end);
+                let found = first_break(&mut state);
+                let what = format!("{} {criteria:?}, incremental: {incremental}", end.name);
+                assert_eq!(found.map(|(_, _, cause)| cause), wanted, "{what}");
+                if let Some((late, ..)) = found {
+                    assert!((-0.1..1.1).contains(&late), "{what}: {late} steps late");
+                }
+            }
+        }
+    });
+}

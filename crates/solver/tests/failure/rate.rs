@@ -1,0 +1,126 @@
+//! Bonds pulled at a constant rate break at their strength times the dynamic increase factor.
+
+use dem_run::physics::bond::failure::{Cause, Criteria};
+use dem_run::step::{act, move_on};
+
+use crate::bodies::{
+    LENGTH_M, NORMAL, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
+};
+
+/// Steps until the strain of the static strength is reached.
+const STEPS: f64 = 2000.0;
+
+/// Both ends of a bond are moved apart at this rate (together if negative). What it had of the strain of the static strength when it broke, if it did
+/// before eight times that, and how.
+fn pulled(
+    rate_1_s: f64,
+    criteria: Criteria,
+    from_1_s: Option<f64>,
+    incremental: bool,
+) -> Option<(f64, Cause)> {
+    let mut state = rod(1, criteria, incremental);
+    state.bonds.rules[0].strengthening_from_1_s = from_1_s;
+    let half = 0.5 * rate_1_s * LENGTH_M;
+    hold(&mut state, std::iter::once(0), -half);
+    hold(&mut state, std::iter::once(1), half);
+    state.time_step_s = STRENGTH_PA / YOUNG_PA / rate_1_s.abs() / STEPS;
+    while (state.steps as f64) < 8.0 * STEPS {
+        act(&mut state);
+        if let Some(first) = state.broken.first() {
+            return Some((state.steps as f64 / STEPS, first.cause));
+        }
+        move_on(&mut state);
+    }
+    None
+}
+
+fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what: &str) {
+    let (strain, by) = found.unwrap_or_else(|| panic!("{what}: does not break"));
+    assert_eq!(by, cause, "{what}");
+    // At the first step beyond. Places are rounded by up to 4e-6 of what they move in a step, ten thousand times.
+    let late = (strain - wanted) * STEPS;
+    assert!(
+        (-0.05..1.05).contains(&late),
+        "{what}: breaks at {strain} instead of {wanted}"
+    );
+}
+
+/// Worked by hand from the thesis' eq. 20 with its parentheses.
+const TABLE: [(f64, f64); 9] = [
+    (1e-6, 1.0),
+    (4.64e-6, 1.0),
+    (1e-5, 1.007_499),
+    (1e-3, 1.052_499),
+    (0.09, 1.096_470),
+    (1.0, 1.6),
+    (10.0, 3.5675),
+    (49.999, 5.812_55),
+    (100.0, 5.812_589),
+];
+
+#[test]
+fn strength_rises_with_the_rate() {
+    on_one_thread(|| {
+        for (rate, factor) in TABLE {
+            for incremental in [false, true] {
+                let found = pulled(rate, NORMAL, Some(0.0), incremental);
+                assert_breaks_at(found, factor, Cause::Tension, &format!("{rate}/s"));
+            }
+            let found = pulled(rate, VON_MISES, Some(0.0), false);
+            assert_breaks_at(found, 1.1 * factor, Cause::VonMises, &format!("{rate}/s"));
+        }
+    });
+}
+
+/// lg 1.2 = 0.0791812.
+#[test]
+fn below_the_rate_that_is_set_nothing_is_strengthened() {
+    on_one_thread(|| {
+        for (rate, factor) in [
+            (1e-3, 1.0),
+            (0.09, 1.0),
+            (1.0, 1.0),
+            (1.2, 1.702_381),
+            (10.0, 3.5675),
+        ] {
+            let found = pulled(rate, NORMAL, Some(1.1), false);
+            assert_breaks_at(found, factor, Cause::Tension, &format!("{rate}/s"));
+        }
+        for rate in [1e-3, 1.0, 10.0] {
+            let found = pulled(rate, NORMAL, None, false);
+            assert_breaks_at(found, 1.0, Cause::Tension, &format!("{rate}/s without"));
+        }
+    });
+}
+
+#[test]
+fn pressed_bonds_are_not_strengthened() {
+    on_one_thread(|| {
+        for rate in [-1e-3, -1.0, -10.0] {
+            let found = pulled(rate, NORMAL, Some(0.0), false);
+            assert_breaks_at(found, 1.0, Cause::Compression, &format!("{rate}/s"));
+        }
+        assert_eq!(pulled(1.0, SHEAR, Some(0.0), false), None);
+    });
+}
+
+/// Two bonds in a row reach their strength in the same step, at the same rate, and both break: that one does is no faster pull on the other yet.
+#[test]
+fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
+    on_one_thread(|| {
+        for incremental in [false, true] {
+            let mut state = rod(2, NORMAL, incremental);
+            state.bonds.rules[0].strengthening_from_1_s = Some(0.0);
+            let rate = 1.0;
+            hold(&mut state, std::iter::once(0), -rate * LENGTH_M);
+            hold(&mut state, std::iter::once(2), rate * LENGTH_M);
+            let mut count = 0;
+            while count == 0 && state.steps < 1_000_000 {
+                act(&mut state);
+                count = state.broken.len();
+                move_on(&mut state);
+            }
+            assert_eq!(count, 2);
+        }
+    });
+}

@@ -1,0 +1,154 @@
+//! The same bits for any number of shares and threads, with everything on.
+
+use crate::bars::{
+    BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
+    with_threads,
+};
+use dem_io::scene::{Factor, Hold};
+use dem_run::check::ledger::Balance;
+use dem_run::check::limit::{Limit, limit};
+use dem_run::physics::bond::failure::Criteria;
+use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::stages::breakage::Break;
+use dem_run::stages::loads::SetLoad;
+use dem_run::stages::supports::{Held, SetSupport};
+use dem_run::state::State;
+use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::particles::{Motion, Pose};
+
+const BREAKING: BondRule = BondRule {
+    incremental: false,
+    damped: false,
+    criteria: Some(Criteria {
+        tension_pa: 0.1e6,
+        shear_pa: 0.2e6,
+        von_mises_pa: 0.12e6,
+        compressive: true,
+    }),
+    strengthening_from_1_s: Some(1.1),
+};
+
+/// Three random bodies side by side: incremental, total, incremental; all break.
+fn scene(shares: usize) -> State {
+    let (mut particles, pairs) = random_spheres();
+    let one = particles.clone();
+    for shift in [0.01, 0.02] {
+        for (pose, radius) in one.poses.iter().zip(&one.radii_m) {
+            let [x, y, z] = pose.place().into();
+            particles.push_sphere([x + shift, y, z], *radius, 2050.0);
+        }
+    }
+    let mut bonds = Bonds::default();
+    for (body, incremental) in [(0, true), (1, false), (2, true)] {
+        let first = body * one.len() as u32;
+        let pairs: Vec<[u32; 2]> = pairs
+            .iter()
+            .map(|pair| pair.map(|end| end + first))
+            .collect();
+        let rule = BondRule {
+            incremental,
+            ..BREAKING
+        };
+        add_bonds(
+            &mut bonds,
+            &particles,
+            &pairs,
+            &soft(BondModel::Timoshenko, rule),
+        );
+    }
+    bonds.histories.resize(bonds.len(), Default::default());
+    bonds.strength_factors = (0..bonds.len())
+        .map(|at| 0.8 + 0.01 * (at % 50) as f64)
+        .collect();
+    let mut state = State::new(particles, bonds, 5e-7, shares);
+    damp(&mut state, BondDamping::Chen(0.05));
+    damp_particles(&mut state, 0.1);
+    state.gravity_m_s2 = [1.0, 2.0, -9.81];
+    state.loads = vec![SetLoad {
+        particles: (100..1400).step_by(7).collect(),
+        force_n: [1e-3, 2e-3, 0.0],
+        torque_n_m: [0.0, 1e-7, 0.0],
+        factor: Factor::Ramp { until_s: 1e-4 },
+    }];
+    state.supports = vec![SetSupport {
+        holds: [
+            Some(Hold::Fixed),
+            None,
+            Some(Hold::Velocity(0.2)),
+            None,
+            Some(Hold::Fixed),
+            None,
+        ],
+        factor: Factor::One,
+        held: (0..1500)
+            .step_by(31)
+            .map(|particle| Held {
+                particle,
+                ..Held::default()
+            })
+            .collect(),
+    }];
+    for (pose, motion) in state
+        .particles
+        .poses
+        .iter()
+        .zip(&mut state.particles.motions)
+    {
+        let p = pose.place() * 1500.0;
+        motion.velocity_m_s = [p.y.sin(), p.z.cos(), (p.x + p.y).sin()];
+        motion.spin_rad_s = [1000.0 * p.x.sin(), 0.0, 500.0 * p.y.cos()];
+    }
+    reopen(&mut state);
+    state
+}
+
+/// All that a run leaves.
+#[derive(Debug, PartialEq)]
+struct Left {
+    limit: Limit,
+    poses: Vec<Pose>,
+    motions: Vec<Motion>,
+    balances: Vec<Balance>,
+    broken: Vec<Break>,
+}
+
+fn left(shares: usize, threads: usize) -> Left {
+    with_threads(threads, || {
+        let mut state = scene(shares);
+        let limit = limit(&mut state);
+        let (mut balances, mut broken) = (Vec::new(), Vec::new());
+        for _ in 0..150 {
+            balances.push(step_and_balance(&mut state));
+            assert!(state.broken.is_sorted_by_key(|b| b.bond));
+            broken.extend(&state.broken);
+        }
+        Left {
+            limit,
+            poses: state.particles.poses,
+            motions: state.particles.motions,
+            balances,
+            broken,
+        }
+    })
+}
+
+#[test]
+fn shares_and_threads_do_not_change_a_bit() {
+    let one = left(1, 1);
+    let per_body: Vec<usize> = (0..3)
+        .map(|body| {
+            one.broken
+                .iter()
+                .filter(|b| b.bond as usize / 2500 == body)
+                .count()
+        })
+        .collect();
+    eprintln!("broken {per_body:?}, {:?}", one.balances.last().unwrap());
+    assert!(per_body.iter().all(|&count| count > 10), "{per_body:?}");
+    for (shares, threads) in [(2, 2), (3, 1), (3, 4), (7, 2), (7, 4), (1, 4)] {
+        assert!(
+            left(shares, threads) == one,
+            "{shares} shares, {threads} threads"
+        );
+    }
+}
