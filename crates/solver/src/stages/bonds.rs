@@ -237,7 +237,7 @@ impl Block {
         failing: &mut Vec<u32>,
     ) {
         let mut beyond: Column = [0.0; BLOCK];
-        for i in 0..BLOCK {
+        for (i, beyond) in beyond.iter_mut().enumerate() {
             let load = BondLoad {
                 normal_n: self.load[0][i],
                 shear_n: self.load[1][i],
@@ -245,7 +245,7 @@ impl Block {
                 bending_n_m: self.load[3][i],
             };
             let [used, factor] = screen.used_and_factor(&load, self.radius[i]);
-            beyond[i] = used - NEARLY * factor;
+            *beyond = used - NEARLY * factor;
         }
         if bonds.strength_factors.is_empty() {
             for (beyond, at) in beyond.iter().zip(numbers) {
