@@ -11,8 +11,8 @@ use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::{Motion, Pose};
 
-/// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z.
-type Moving = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
+/// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
+type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
 
 /// A run between two steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,7 +23,7 @@ pub struct Snapshot {
     time_step_s: f64,
     previous_time_step_s: f64,
     broken_count: u64,
-    particles: Vec<Moving>,
+    particles: Vec<PlaceAndMotion>,
     broken: Vec<u32>,
     histories: Vec<[f64; 6]>,
     ledger: Ledger,

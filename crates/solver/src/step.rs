@@ -10,6 +10,10 @@ use crate::stages::motion::{add_particle_damping, drift, kick};
 use crate::stages::supports::{hold, remember};
 use crate::state::State;
 use crate::state::particles::Wrench;
+use crate::state::shares::{Share, divide_anew};
+
+/// The work is divided anew when one in so many of the bonds that are computed is broken.
+const STALE: u64 = 64;
 
 /// First half of a step: what acts on the particles where they are, and how that changes their velocities.
 ///
@@ -39,6 +43,10 @@ pub fn act(state: &mut State) {
         &mut state.broken,
     );
     state.broken_count += state.broken.len() as u64;
+    if !state.broken.is_empty() {
+        leave_out_broken(state);
+    }
+    let p = &mut state.particles;
     add_loads(&state.loads, state.time_s, &mut p.wrenches);
     state.clock.book(Stage::Rest);
 
@@ -95,6 +103,15 @@ pub fn move_on(state: &mut State) {
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
     state.clock.book(Stage::Motion);
+}
+
+/// Divides the work anew once enough bonds have broken since it was divided last.
+fn leave_out_broken(state: &mut State) {
+    let computed: usize = state.shares.iter().map(Share::own_bonds).sum();
+    let whole = state.bonds.len() as u64 - state.broken_count;
+    if (computed as u64 - whole) * STALE >= computed as u64 {
+        divide_anew(&state.bonds, &mut state.shares);
+    }
 }
 
 /// A whole step.

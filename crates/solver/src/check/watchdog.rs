@@ -9,6 +9,8 @@ use crate::stages::loads::loads_power_w;
 use crate::stages::motion::ordered_sum;
 use crate::state::State;
 
+/// Energy that may appear above the limit, over what was put in: there it is a local mode that grows until it saturates, small against a large body.
+const BEYOND_LIMIT: f64 = 1e-4;
 /// Steps between two looks at the kinetic energy.
 const EVERY: u64 = 64;
 
@@ -22,14 +24,14 @@ pub struct Watchdog {
 impl Watchdog {
     /// For a run whose step is this share of the limit.
     ///
-    /// Leapfrog keeps an energy close to the true one; for the fastest mode the two differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
+    /// Leapfrog below the limit keeps an energy close to the true one; for the fastest mode the two differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
     pub fn new(share_of_limit: f64) -> Self {
         let square = share_of_limit * share_of_limit;
         Self {
             allowed: if square < 1.0 {
                 2.0 / (1.0 - square)
             } else {
-                1.0
+                BEYOND_LIMIT
             },
         }
     }

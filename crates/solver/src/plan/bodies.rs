@@ -12,6 +12,7 @@ use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::strength_factor;
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use crate::physics::bond::total::direction;
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::Particles;
@@ -224,7 +225,7 @@ fn place_bonds(
         check_bond(original, distance, &answer, particles, [a, b])?;
         bonds.push(
             ends,
-            (apart / distance).into(),
+            direction(&apart).into(),
             shape.radius_m,
             &answer,
             rule,

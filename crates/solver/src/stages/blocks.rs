@@ -50,11 +50,11 @@ impl Effects {
     #[inline(always)]
     pub(super) fn add_to_both(
         &self,
-        ends: &[[u32; 2]],
+        ends: impl Iterator<Item = [u32; 2]>,
         wrenches: &mut [Wrench],
         particles: &Range<usize>,
     ) {
-        for (i, &[a, b]) in (0..BLOCK).zip(ends) {
+        for (i, [a, b]) in (0..BLOCK).zip(ends) {
             let a = &mut wrenches[a as usize - particles.start];
             for k in 0..4 {
                 a.force_n[k] -= self.force_on_b[i][k];

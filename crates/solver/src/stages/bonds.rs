@@ -78,16 +78,28 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                             .add_to_second(ends, self.wrenches, particles.start);
                     }
                 }
+                Which::Own(list) => {
+                    for some in list.chunks(BLOCK) {
+                        block.gather_some(self.bonds, some, self.poses);
+                        block.compute(some.len());
+                        let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
+                        block.effects.add_to_both(ends, self.wrenches, particles);
+                        if let Some(screen) = &screen {
+                            block.check(screen, self.bonds, some.iter().copied(), failing);
+                        }
+                    }
+                }
                 Which::Run(range) => {
                     let mut first = range.start;
                     while first < range.end {
                         let run = first..(first + BLOCK).min(range.end);
                         block.gather_run(self.bonds, run.clone(), self.poses);
                         block.compute(run.len());
-                        let ends = &self.bonds.ends[run.clone()];
+                        let ends = self.bonds.ends[run.clone()].iter().copied();
                         block.effects.add_to_both(ends, self.wrenches, particles);
                         if let Some(screen) = &screen {
-                            block.check(screen, self.bonds, run, failing);
+                            let numbers = run.start as u32..run.end as u32;
+                            block.check(screen, self.bonds, numbers, failing);
                         }
                         first += BLOCK;
                     }
@@ -217,9 +229,15 @@ impl Block {
 
     /// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
     #[inline(always)]
-    fn check(&self, screen: &Screen, bonds: &Bonds, run: Range<usize>, failing: &mut Vec<u32>) {
+    fn check(
+        &self,
+        screen: &Screen,
+        bonds: &Bonds,
+        numbers: impl Iterator<Item = u32>,
+        failing: &mut Vec<u32>,
+    ) {
         let mut beyond: Column = [0.0; BLOCK];
-        for i in 0..BLOCK {
+        for (i, beyond) in beyond.iter_mut().enumerate() {
             let load = BondLoad {
                 normal_n: self.load[0][i],
                 shear_n: self.load[1][i],
@@ -227,20 +245,20 @@ impl Block {
                 bending_n_m: self.load[3][i],
             };
             let [used, factor] = screen.used_and_factor(&load, self.radius[i]);
-            beyond[i] = used - NEARLY * factor;
+            *beyond = used - NEARLY * factor;
         }
         if bonds.strength_factors.is_empty() {
-            for (beyond, at) in beyond.iter().zip(run) {
+            for (beyond, at) in beyond.iter().zip(numbers) {
                 if *beyond >= 0.0 {
-                    failing.push(at as u32);
+                    failing.push(at);
                 }
             }
         } else {
-            for (i, at) in (0..BLOCK).zip(run) {
+            for (i, at) in (0..BLOCK).zip(numbers) {
                 let volume = PI * self.radius[i].powi(3);
-                let strengthened = bonds.strength_factors[at].powi(2) - 1.0;
+                let strengthened = bonds.strength_factors[at as usize].powi(2) - 1.0;
                 if beyond[i] >= NEARLY * volume * volume * strengthened {
-                    failing.push(at as u32);
+                    failing.push(at);
                 }
             }
         }

@@ -76,13 +76,23 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                         block.effects.add_to_second(ends, resisting, own.start);
                     }
                 }
+                Which::Own(list) => {
+                    for some in list.chunks(BLOCK) {
+                        let numbers = some.iter().map(|&at| at as usize);
+                        block.gather(bonds, numbers.clone(), poses, motions);
+                        block.compute(some.len());
+                        let ends = numbers.map(|at| bonds.ends[at]);
+                        block.effects.add_to_both(ends, resisting, own);
+                    }
+                }
                 Which::Run(range) => {
                     let mut first = range.start;
                     while first < range.end {
                         let run = first..(first + BLOCK).min(range.end);
                         block.gather(bonds, run.clone(), poses, motions);
                         block.compute(run.len());
-                        block.effects.add_to_both(&bonds.ends[run], resisting, own);
+                        let ends = bonds.ends[run].iter().copied();
+                        block.effects.add_to_both(ends, resisting, own);
                         first += BLOCK;
                     }
                 }

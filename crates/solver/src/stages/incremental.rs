@@ -88,7 +88,7 @@ fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wr
             }
         };
         match which {
-            Which::Border(list) => list.iter().for_each(|&at| add(at as usize)),
+            Which::Own(list) | Which::Border(list) => list.iter().for_each(|&at| add(at as usize)),
             Which::Run(range) => range.clone().for_each(&mut add),
         }
     }

@@ -24,6 +24,7 @@ pub fn kick(
         inverse_inertias,
         ..
     } = particles;
+    let fall = gravity_m_s2.map(|g| kick_s * g);
     motions
         .par_chunks_mut(CHUNK)
         .enumerate()
@@ -33,9 +34,8 @@ pub fn kick(
                 let per_mass = kick_s * inverse_masses[i];
                 let per_inertia = kick_s * inverse_inertias[i];
                 let wrench = &wrenches[i];
-                for k in 0..3 {
-                    motion.velocity_m_s[k] +=
-                        per_mass * wrench.force_n[k] + kick_s * gravity_m_s2[k];
+                for (k, fall) in fall.iter().enumerate() {
+                    motion.velocity_m_s[k] += per_mass * wrench.force_n[k] + fall;
                     motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
                 }
                 for wrench in resisting.iter().filter_map(|list| list.get(i)) {
@@ -82,8 +82,8 @@ pub fn add_particle_damping(
             for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
                 let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
                 let weight = gravity_m_s2.map(|g| g / particles.inverse_masses[i]);
-                for k in 0..3 {
-                    let force = wrench.force_n[k] + weight[k];
+                for (k, weight) in weight.iter().enumerate() {
+                    let force = wrench.force_n[k] + weight;
                     resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);
                     resisting.torque_n_m[k] -=
                         gamma * against(wrench.torque_n_m[k], motion.spin_rad_s[k]);

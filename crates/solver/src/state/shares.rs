@@ -1,7 +1,7 @@
 //! Which particles and bonds each thread works on.
 //!
 //! A share is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
-//! of two shares are computed by both. So no two threads write to the same place, and every sum keeps its order for any number of shares.
+//! of two shares are computed by both. Bonds that are broken belong to none. So no two threads write to the same place, and every sum keeps its order for any number of shares.
 
 use std::ops::Range;
 
@@ -19,8 +19,10 @@ pub struct Batch {
 /// Which bonds a batch holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Which {
-    /// One after another; their first ends are in the share.
+    /// One after another, none of them broken; their first ends are in the share.
     Run(Range<usize>),
+    /// These; their first ends are in the share.
+    Own(Vec<u32>),
     /// These; only their second ends are in the share.
     Border(Vec<u32>),
 }
@@ -36,17 +38,23 @@ pub struct Share {
     pub failing: Vec<u32>,
 }
 
+impl Share {
+    /// Number of bonds whose first end is in the share, as computed.
+    pub fn own_bonds(&self) -> usize {
+        let count = |batch: &Batch| match &batch.which {
+            Which::Run(range) => range.len(),
+            Which::Own(list) => list.len(),
+            Which::Border(_) => 0,
+        };
+        self.batches.iter().map(count).sum()
+    }
+}
+
 /// Divides particles and bonds into `count` shares with about the same number of bonds each; fewer where there are not enough particles.
 pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Share> {
     // A particle costs about a third of a bond.
     let work = 3 * bonds.len() + particles;
-    let mut first_bond = vec![0_usize; particles + 1];
-    for &[a, _] in &bonds.ends {
-        first_bond[a as usize + 1] += 1;
-    }
-    for p in 0..particles {
-        first_bond[p + 1] += first_bond[p];
-    }
+    let first_bond = first_bonds(bonds, particles);
     let mut starts: Vec<usize> = (0..=count)
         .map(|k| {
             let wanted = work * k / count;
@@ -72,17 +80,50 @@ pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Share> {
             failing: Vec::new(),
         })
         .collect();
-    add_borders(bonds, &mut shares);
-    for share in &mut shares {
+    add_batches(bonds, &mut shares, &first_bond);
+    shares
+}
+
+/// Gives the shares their bonds once more, without those that have broken since.
+pub fn divide_anew(bonds: &Bonds, shares: &mut [Share]) {
+    let particles = shares.last().map_or(0, |share| share.particles.end);
+    let first_bond = first_bonds(bonds, particles);
+    for share in shares.iter_mut() {
+        share.batches.clear();
+    }
+    add_batches(bonds, shares, &first_bond);
+}
+
+/// For each particle the first of the bonds that it is the first end of; and at the end the number of bonds. Length particles + 1.
+fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
+    let mut first_bond = vec![0_usize; particles + 1];
+    for &[a, _] in &bonds.ends {
+        first_bond[a as usize + 1] += 1;
+    }
+    for p in 0..particles {
+        first_bond[p + 1] += first_bond[p];
+    }
+    first_bond
+}
+
+fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize]) {
+    add_borders(bonds, shares);
+    for share in shares {
         let own = first_bond[share.particles.start]..first_bond[share.particles.end];
         for (rule, range) in bonds.runs(own) {
-            share.batches.push(Batch {
-                rule,
-                which: Which::Run(range),
-            });
+            let whole: Vec<u32> = range
+                .clone()
+                .filter(|&at| !bonds.is_broken(at))
+                .map(|at| at as u32)
+                .collect();
+            let which = if whole.len() == range.len() {
+                Which::Run(range)
+            } else {
+                Which::Own(whole)
+            };
+            share.batches.push(Batch { rule, which });
         }
     }
-    shares
 }
 
 /// Gives each bond whose ends lie in two shares to the share of its second end as well.
@@ -92,7 +133,7 @@ fn add_borders(bonds: &Bonds, shares: &mut [Share]) {
         while shares[of_first].particles.end <= a as usize {
             of_first += 1;
         }
-        if (b as usize) < shares[of_first].particles.end {
+        if (b as usize) < shares[of_first].particles.end || bonds.is_broken(at) {
             continue;
         }
         let of_second = shares.partition_point(|s| s.particles.end <= b as usize);

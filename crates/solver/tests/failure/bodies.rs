@@ -6,6 +6,7 @@ use dem_io::scene::{Factor, Hold};
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_run::physics::bond::total::direction;
 use dem_run::stages::loads::SetLoad;
 use dem_run::stages::supports::{Held, SetSupport};
 use dem_run::state::State;
@@ -92,7 +93,7 @@ pub(crate) fn bonded(
             end_radii_m: [RADIUS_M; 2],
         };
         let stiffness = stiffness(BondModel::Timoshenko, &shape, YOUNG_PA, 0.3);
-        bonds.push([a, b], apart.normalize().into(), RADIUS_M, &stiffness, 0);
+        bonds.push([a, b], direction(&apart).into(), RADIUS_M, &stiffness, 0);
     }
     if incremental {
         bonds.histories = vec![Default::default(); pairs.len()];

@@ -5,6 +5,7 @@ use dem_run::physics::bond::damping::{
     DampingCoefficients, Reduced, chen, chen_by_mode, platzer, reduced,
 };
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use dem_run::physics::bond::total::direction;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
 use dem_run::state::particles::{Particles, Wrench};
@@ -85,7 +86,7 @@ pub(crate) fn add_bonds(
         let stiffness = stiffness(of.model, &shape, of.young_modulus_pa, 0.3);
         bonds.push(
             [a, b],
-            apart.normalize().into(),
+            direction(&apart).into(),
             shape.radius_m,
             &stiffness,
             rule,

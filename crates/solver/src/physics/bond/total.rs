@@ -55,6 +55,11 @@ pub struct BondForces {
     pub load: BondLoad,
 }
 
+/// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in [`bond_forces`], so that a bond at rest gives no force to the last bit.
+pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {
+    apart * (1.0 / apart.norm())
+}
+
 /// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
 ///
 /// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and load the caller does not read is not computed.
@@ -64,7 +69,8 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
     let [lever_a, lever_b] = stiffness.levers_m;
     let apart = b.position_m - a.position_m;
     let length = apart.norm();
-    let c = apart / length;
+    let per_length = 1.0 / length;
+    let c = apart * per_length;
     let initial = lever_a + lever_b;
     let stretch = length - initial;
 
@@ -81,21 +87,21 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
     let (cosine, half_phi) = (relative.w, relative.imag());
     let phi = 2.0 * half_phi;
     let sum = direction_a + direction_b;
-    let sum_length = sum.norm();
-    let e = sum / sum_length;
-    let twist = phi.dot(&e);
+    let per_sum_squared = 1.0 / sum.norm_squared();
+    let twist_per_sum = phi.dot(&sum) * per_sum_squared;
+    let twist = sum * twist_per_sum;
+    let bend = phi - twist;
     let excess = stiffness.torsion - stiffness.bending;
 
     // Gradients of the energy with respect to phi and e; a change of e is a change of the sum, across it.
-    let by_phi = stiffness.bending * phi + excess * twist * e;
-    let bend = phi - twist * e;
-    let by_sum = (excess * twist / sum_length) * bend;
+    let by_phi = stiffness.bending * phi + excess * twist;
+    let by_sum = (excess * twist_per_sum) * bend;
     let turn = cosine * by_phi;
     let swing = half_phi.cross(&by_phi);
 
     let shear_force = stiffness.shear * across;
     BondForces {
-        force_on_b: shear_force * (along / length) - c * (stiffness.normal * stretch),
+        force_on_b: shear_force * (along * per_length) - c * (stiffness.normal * stretch),
         torques: [
             turn - swing - direction_a.cross(&(lever_a * shear_force + by_sum)),
             -turn - swing - direction_b.cross(&(lever_b * shear_force + by_sum)),
@@ -103,13 +109,13 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
         energy: BondEnergy {
             normal: 0.5 * stiffness.normal * stretch * stretch,
             shear: 0.5 * stiffness.shear * across.norm_squared(),
-            torsion: 0.5 * stiffness.torsion * twist * twist,
+            torsion: 0.5 * stiffness.torsion * twist.norm_squared(),
             bending: 0.5 * stiffness.bending * bend.norm_squared(),
         },
         load: BondLoad {
             normal_n: stiffness.normal * stretch,
             shear_n: stiffness.shear * across.norm(),
-            torsion_n_m: stiffness.torsion * twist.abs(),
+            torsion_n_m: stiffness.torsion * twist.norm(),
             bending_n_m: stiffness.bending * bend.norm(),
         },
     }
