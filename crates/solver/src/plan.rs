@@ -242,28 +242,29 @@ fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
         stage(
             "loads",
             !state.loads.is_empty(),
-            format!(
-                "on {} particles",
-                state.loads.iter().map(|l| l.particles.len()).sum::<usize>()
-            ),
+            on_particles(state.loads.iter().map(|l| l.particles.len()).sum()),
             "no loads",
         ),
         stage(
             "supports",
             !state.supports.is_empty(),
-            format!(
-                "on {} particles",
-                state.supports.iter().map(|s| s.held.len()).sum::<usize>()
-            ),
+            on_particles(state.supports.iter().map(|s| s.held.len()).sum()),
             "no supports",
         ),
         stage(
             "gravity",
             state.gravity_m_s2 != [0.0; 3],
-            format!("{:?} m/s2", state.gravity_m_s2),
+            {
+                let [x, y, z] = state.gravity_m_s2;
+                format!("[{x}, {y}, {z}] m/s2")
+            },
             "no gravity",
         ),
     ]
+}
+
+fn on_particles(count: usize) -> String {
+    format!("on {count} particle{}", if count == 1 { "" } else { "s" })
 }
 
 /// Whether a set picks particles by their numbers in the body's file.

@@ -58,6 +58,23 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
 }
 
 #[test]
+fn a_disk_that_is_read_only() {
+    for out in ["disk/empty", "disk/new"] {
+        let bench = Bench::new();
+        let script = format!(
+            "mkdir disk/empty && mount -o remount,ro disk && $DEM_RUN {} --out {out}",
+            good("alone.toml").display()
+        );
+        let Some(output) = on_a_small_disk(&bench, "300k", &script) else {
+            return;
+        };
+        let (said, code) = refused(&output);
+        assert_eq!(code, 1, "{said}");
+        assert!(said.contains(out) && said.contains("read-only"), "{said}");
+    }
+}
+
+#[test]
 fn a_folder_that_may_not_be_written_to() {
     let bench = Bench::new();
     fs::create_dir(bench.path("locked")).unwrap();

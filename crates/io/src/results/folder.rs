@@ -23,7 +23,7 @@ pub enum Existing {
     Refuse,
     /// Remove the files that an earlier run wrote, and nothing else: `--force`.
     Replace,
-    /// Leave all as it is, for a run that goes on: `--resume`.
+    /// Leave all as it is, but for what killed writes have left, for a run that goes on: `--resume`.
     Continue,
 }
 

@@ -72,16 +72,18 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
         ),
     );
     let why = if choice.given { "given" } else { "chosen" };
-    line(
-        "time step",
+    let step = significant(choice.step_s, 5);
+    let limit = if choice.limit.step_s.is_finite() {
         format!(
-            "{} s {why}: {} of the largest stable one, {} s ({} Lanczos steps)",
-            significant(choice.step_s, 5),
+            "{} of the largest stable one, {} s ({} Lanczos steps)",
             significant(choice.share_of_limit(), 3),
             significant(choice.limit.step_s, 5),
             choice.limit.iterations,
-        ),
-    );
+        )
+    } else {
+        "nothing vibrates, so none is too large".to_owned()
+    };
+    line("time step", format!("{step} s {why}: {limit}"));
     if choice.limit.damping_1_s > 0.0 {
         line(
             "",
@@ -94,7 +96,12 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
     let beside = |name: &str, step_s: f64| {
         if step_s.is_finite() {
             let share = significant(step_s / choice.limit.step_s, 3);
-            format!("{name} {} s, {share} of the limit", significant(step_s, 5))
+            let of_limit = if choice.limit.step_s.is_finite() {
+                format!(", {share} of the limit")
+            } else {
+                String::new()
+            };
+            format!("{name} {} s{of_limit}", significant(step_s, 5))
         } else {
             format!("{name} unknown: no elastic modulus of a material is given")
         }
@@ -111,7 +118,10 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
     }
     line(
         "memory",
-        format!("about {} MB", significant(bytes as f64 * 1e-6, 3)),
+        match bytes as f64 {
+            few if few < 1e6 => format!("about {} kB", significant(few * 1e-3, 3)),
+            many => format!("about {} MB", significant(many * 1e-6, 3)),
+        },
     );
     line(
         "run time",

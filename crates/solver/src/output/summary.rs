@@ -114,10 +114,14 @@ impl fmt::Display for Summary {
         )?;
         writeln!(
             f,
-            "steps        {} of {} s, {} of the limit; ended by {}",
+            "steps        {} of {} s, {}; ended by {}",
             self.steps,
             significant(self.time_step_s, 4),
-            significant(self.share_of_limit, 3),
+            if self.limit_s.is_finite() {
+                format!("{} of the limit", significant(self.share_of_limit, 3))
+            } else {
+                "without a limit".to_owned()
+            },
             self.ended_by,
         )?;
         if let Some(change) = &self.resumed_with {
