@@ -146,6 +146,16 @@ impl RunArguments {
             ("--set", !self.scene.overrides.is_empty()),
             ("--force-step", self.scene.force_step),
         ];
+        if self.scene.body.len() + usize::from(self.scene.file.is_some()) > 1 {
+            return Err(Diagnostic::input(
+                "--body",
+                format!(
+                    "there is no scene for it to go into: {} is none",
+                    self.scene.place()
+                ),
+                "name a scene (.toml), or one body only",
+            ));
+        }
         match given.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Diagnostic::input(
                 *option,

@@ -16,11 +16,9 @@ impl Interrupt {
         !again && self.heeded.load(Ordering::Relaxed)
     }
 
-    /// Does work that ends by itself when the flag is set.
+    /// Does work that ends by itself when the flag is set. What comes after it is soon done, and is waited for as well.
     pub fn heeded_by<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
         self.heeded.store(true, Ordering::Relaxed);
-        let done = work(&self.asked);
-        self.heeded.store(false, Ordering::Relaxed);
-        done
+        work(&self.asked)
     }
 }

@@ -149,8 +149,18 @@ fn loads(
                 return Err(Diagnostic::input(
                     format!("{}: [loads.{name}]", scene.source),
                     format!(
-                        "the load of {} along {} acts on a particle of '{}' that a support holds there",
-                        six[k], FREEDOMS[k], load.of
+                        "{} {} {} acts on a particle of '{}' that a support holds there",
+                        if k < 3 { "a force of" } else { "a torque of" },
+                        six[k],
+                        [
+                            "N along x",
+                            "N along y",
+                            "N along z",
+                            "N m about x",
+                            "N m about y",
+                            "N m about z"
+                        ][k],
+                        load.of
                     ),
                     "load particles that can move, or free them",
                 ));

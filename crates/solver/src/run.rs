@@ -79,7 +79,12 @@ pub fn run(
     let mut progress = Progress::new(rhythm, choice.limit.step_s);
     let mut changed_step = None;
     if let Some(snapshot) = &settings.resume {
-        snapshot.restore(&mut state)?;
+        let place = settings
+            .folder
+            .map(|f| f.checkpoint().display().to_string());
+        snapshot
+            .restore(&mut state)
+            .map_err(|error| error.within(&place.unwrap_or_default()))?;
         progress = snapshot.progress.clone();
         progress.go_on(&state, rhythm, scene)?;
         for (gauge, history) in gauges.iter_mut().zip(&snapshot.measures) {

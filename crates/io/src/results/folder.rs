@@ -51,6 +51,10 @@ impl ResultsFolder {
                     "check its name, or start the run without --resume",
                 ));
             }
+            // What a killed write has left.
+            for part in ["", FRAMES, PLOTS] {
+                folder.remove_files(part, |_| false)?;
+            }
         } else {
             make_folder(path)?;
             if existing == Existing::Replace {

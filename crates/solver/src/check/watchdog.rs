@@ -5,6 +5,7 @@ use dem_io::{Diagnostic, Result};
 use super::ledger::Balance;
 use crate::physics::bond::pair::frequencies;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
+use crate::stages::loads::loads_power_w;
 use crate::stages::motion::ordered_sum;
 use crate::state::State;
 
@@ -57,7 +58,10 @@ impl Watchdog {
     /// # Errors
     /// Energy is no number, or more has appeared from nowhere than a stable run can show.
     pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
-        let put_in = state.ledger.put_in_j(state.gravity_m_s2);
+        // A load that has only just begun has moved nothing yet: what it does in the half step to come counts as well.
+        let power_w = loads_power_w(&state.loads, state.time_s, &state.particles.motions);
+        let coming = 0.5 * state.time_step_s * power_w.abs();
+        let put_in = state.ledger.put_in_j(state.gravity_m_s2) + coming;
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }

@@ -31,10 +31,12 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
         .into_iter()
         .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
         .collect();
-    folder.write_plot(
-        ENERGY,
-        &plot(&series, "Energy", "energy (J)", &changing, "_j"),
-    )?;
+    let mut energy = plot(&series, "Energy", "energy (J)", &changing, "_j");
+    for line in &mut energy.lines {
+        // What goes in, as what is there often lies under it.
+        line.dashed = line.name.ends_with("work");
+    }
+    folder.write_plot(ENERGY, &energy)?;
     let mut errors = plot(
         &series,
         "Errors of energy and momentum",
@@ -60,6 +62,9 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
         };
         let title = gauge.name.replace('_', " ");
         let mut one = plot(&series, &title, &label, &[name], "");
+        for line in &mut one.lines {
+            line.name.clone_from(&title);
+        }
         one.reference = gauge
             .measure
             .reference

@@ -47,7 +47,11 @@ pub(super) fn due(state: &State, every_s: f64, next: u64) -> bool {
 
 /// Number of the first of those times that is still to come.
 pub(super) fn next(state: &State, every_s: f64) -> u64 {
-    (((state.time_s + 0.5 * state.time_step_s) / every_s).floor() as u64).saturating_add(1)
+    first_after(state.time_s + 0.5 * state.time_step_s, every_s)
+}
+
+fn first_after(time_s: f64, every_s: f64) -> u64 {
+    ((time_s / every_s).floor() as u64).saturating_add(1)
 }
 
 impl Rhythm {
@@ -104,11 +108,9 @@ impl Progress {
         }
         self.rested = false;
         if rhythm != self.rhythm {
-            // The first time that has not been reached half a step ago.
-            let first = |every_s: f64| ((before_s / every_s).floor() as u64).saturating_add(1);
-            self.next_row = first(rhythm.row_s);
-            self.next_frame = rhythm.frame_s.map_or(0, first);
-            self.next_checkpoint = rhythm.checkpoint_s.map_or(0, first);
+            self.next_row = first_after(before_s, rhythm.row_s);
+            self.next_frame = rhythm.frame_s.map_or(0, |s| first_after(before_s, s));
+            self.next_checkpoint = rhythm.checkpoint_s.map_or(0, |s| first_after(before_s, s));
             self.rhythm = rhythm;
         }
         Ok(())

@@ -1,66 +1,12 @@
-//! dem-run as a person meets it: arguments, pipes, output, messages and exit codes.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+//! A body instead of a scene: what it holds.
 
 use std::io::{Read, Write};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 
-use dem_io::Body;
-use dem_io::body::{About, vtp, write_body};
+use dem_io::body::write_body;
 
-fn dem_run() -> Command {
-    dem_tests::program("dem-run")
-}
-
-/// A row of particles, each bonded to the next but for one gap.
-fn row(particles: usize) -> Body {
-    let bonds: Vec<[u32; 2]> = (1..particles as u32)
-        .filter(|b| *b as usize != particles / 2)
-        .map(|b| [b - 1, b])
-        .collect();
-    Body {
-        positions: (0..particles)
-            .map(|i| [i as f64 * 2e-3, 0.0, 0.0])
-            .collect(),
-        radii: vec![1e-3; particles],
-        bond_radii: vec![5e-4; bonds.len()],
-        bond_lengths: vec![2e-3; bonds.len()],
-        bonds,
-        about: About {
-            particle_density_kg_m3: Some(2050.0),
-            seed: Some(7),
-            ..About::default()
-        },
-    }
-}
-
-fn vtp_bytes(body: &Body) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    vtp::write(body, &mut bytes).unwrap();
-    bytes
-}
-
-/// Runs dem-run with `input` on its standard input.
-fn piped(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = dem_run()
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A program that refuses its input early closes it.
-    let _ = child.stdin.take().unwrap().write_all(input);
-    child.wait_with_output().unwrap()
-}
-
-/// The one line that a failed run says, and its exit code.
-fn refused(output: &Output) -> (String, i32) {
-    assert!(output.stdout.is_empty());
-    let said = String::from_utf8(output.stderr.clone()).unwrap();
-    assert_eq!(said.matches('\n').count(), 1, "{said}");
-    (said.trim_end().to_owned(), output.status.code().unwrap())
-}
+use super::{dem_run, piped, refused, row, vtp_bytes};
 
 const TEXT: &str = "particles  10, diameter 2 mm
 bonds      8, 0.8 per particle
@@ -154,7 +100,7 @@ fn bad_input_is_one_line_and_exit_code_2() {
 
 #[test]
 fn without_a_body_the_usage_is_shown() {
-    for arguments in [&[][..], &["a.vtp", "--body", "b.vtp"], &["--wrong"]] {
+    for arguments in [&[][..], &["--wrong"]] {
         let output = piped(arguments, b"");
         assert_eq!(output.status.code(), Some(2));
         assert!(

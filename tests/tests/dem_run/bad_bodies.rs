@@ -1,0 +1,146 @@
+//! Bodies that cannot be right, in a scene: named with scene, body, file, particle or bond.
+
+use dem_io::Body;
+
+use super::{Bench, piped, refused, row, vtp_bytes};
+
+const SCENE: &str = "version = 1
+run.end_time = \"1 ms\"
+materials.cake.density = 2050
+[bonds.cake]
+young_modulus = \"12 MPa\"
+poisson_ratio = 0.3
+[bodies.sample]
+file = \"sample.vtp\"
+material = \"cake\"
+bonds = \"cake\"
+";
+
+fn assert_refused(bytes: &[u8], parts: &[&str]) {
+    let bench = Bench::new();
+    let scene = bench.write("scene.toml", SCENE);
+    bench.write("sample.vtp", bytes);
+    let said = bench.bad(&scene, &["--out", "out"], 2);
+    for part in ["scene.toml: [bodies.sample]: ", "sample.vtp: "]
+        .iter()
+        .chain(parts)
+    {
+        assert!(said.contains(part), "'{part}' is not in: {said}");
+    }
+    // Through a pipe it is said of standard input.
+    let output = piped(&[scene.to_str().unwrap(), "--body", "-"], bytes);
+    let (said, code) = refused(&output);
+    assert_eq!(code, 2);
+    assert!(said.contains("[bodies.sample]: standard input: "), "{said}");
+    assert_eq!(bench.files(), ["sample.vtp", "scene.toml"]);
+}
+
+#[test]
+fn damaged_cut_off_or_newer() {
+    let whole = vtp_bytes(&row(5));
+    assert_refused(&whole[..whole.len() / 2], &["write or copy it again"]);
+    assert_refused(&whole[..whole.len() - 60], &[]);
+    assert_refused(b"", &[]);
+    assert_refused(b"solid cake\n", &["not a VTK XML file"]);
+    let text = String::from_utf8_lossy(&whole);
+    let newer = text
+        .find("FormatVersion")
+        .or_else(|| text.find("format_version"));
+    if let Some(at) = newer {
+        let mut changed = whole.clone();
+        let digit = (at..at + 200).find(|&i| changed[i] == b'>').unwrap() + 1;
+        let digit = (digit..digit + 40)
+            .find(|&i| changed[i].is_ascii_digit())
+            .unwrap();
+        changed[digit] = b'9';
+        assert_refused(&changed, &["9"]);
+    }
+}
+
+fn changed(change: impl FnOnce(&mut Body)) -> Vec<u8> {
+    let mut body = row(5);
+    change(&mut body);
+    vtp_bytes(&body)
+}
+
+#[test]
+fn particles_and_bonds_that_cannot_be() {
+    assert_refused(
+        &changed(|b| b.positions[3][1] = f64::NAN),
+        &["particle 3", "y is NaN"],
+    );
+    assert_refused(
+        &changed(|b| b.radii[2] = 0.0),
+        &["particle 2", "radius is 0 m"],
+    );
+    assert_refused(&changed(|b| b.radii[2] = -1.0), &["particle 2", "-1 m"]);
+    assert_refused(&changed(|b| b.bonds[1] = [2, 2]), &["bond 1"]);
+    assert_refused(
+        &changed(|b| b.bonds[1] = [2, 7]),
+        &["bond 1", "particle 7", "5 particles"],
+    );
+    assert_refused(
+        &changed(|b| b.bonds[1] = b.bonds[0]),
+        &["bond 1", "as bond 0 does already"],
+    );
+    assert_refused(
+        &changed(|b| b.bond_lengths[1] = 0.0),
+        &["bond 1", "initial length is 0 m"],
+    );
+    assert_refused(
+        &changed(|b| b.bond_radii[1] = f64::INFINITY),
+        &["bond 1", "radius is inf m"],
+    );
+}
+
+#[test]
+fn two_bonded_particles_at_one_place() {
+    let bench = Bench::new();
+    let scene = bench.write("scene.toml", SCENE);
+    // Its length is in the file, so that nothing is wrong with the body itself.
+    bench.write("sample.vtp", changed(|b| b.positions[1] = b.positions[0]));
+    let said = bench.bad(&scene, &[], 2);
+    assert!(
+        said.ends_with("scene.toml: [bodies.sample]: bond 0: its two particles stand at the same place; move one of them, or remove the bond"),
+        "{said}"
+    );
+    // Or made so by where the body is put: a millimetre is lost at such a distance.
+    bench.write("sample.vtp", vtp_bytes(&row(5)));
+    let said = bench.bad(&scene, &["--set", "bodies.sample.position=[1e15, 0, 0]"], 2);
+    assert!(
+        said.contains("bond 0: its two particles stand at the same place"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_a_scene_lacks_for_a_body() {
+    let bench = Bench::new();
+    bench.write("sample.vtp", vtp_bytes(&row(5)));
+    let scene = bench.write("scene.toml", SCENE.replace("bonds = \"cake\"\n", ""));
+    let said = bench.bad(&scene, &[], 2);
+    assert!(
+        said.contains("[bodies.sample]: the body has 3 bonds, and no kind of bonds is named; add bonds = \"NAME\""),
+        "{said}"
+    );
+    let mut body = row(5);
+    body.about.particle_density_kg_m3 = None;
+    bench.write("sample.vtp", vtp_bytes(&body));
+    let scene = bench.write(
+        "scene.toml",
+        SCENE.replace(".density = 2050", ".young_modulus = 1e7"),
+    );
+    let said = bench.bad(&scene, &[], 2);
+    assert!(
+        said.contains("[materials.cake]: no density") && said.contains("add density = "),
+        "{said}"
+    );
+    // A density in the body's file will do.
+    bench.write("sample.vtp", vtp_bytes(&row(5)));
+    bench.good(&scene, &["--quiet"]);
+    let said = bench.bad(&scene, &["--set", "sets.one.particles=[5]"], 2);
+    assert!(
+        said.contains("[sets.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
+        "{said}"
+    );
+}

@@ -1,0 +1,76 @@
+//! `dem-run check`: what a scene will do. Nothing is run, nothing is written.
+
+use super::{Bench, corpus, dem_run, scene_of_data, vtp_bytes};
+
+fn check(bench: &Bench, options: &[&str]) -> String {
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .arg("check")
+        .args(options)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{said}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn says_the_step_and_why_stages_memory_and_time() {
+    let bench = Bench::new();
+    let path = scene_of_data("cantilever.toml");
+    let scene = path.to_str().unwrap();
+    let said = check(&bench, &[scene]);
+    for part in [
+        "11 particles, 10 bonds",
+        "5.1651e-5 s chosen: 0.9 of the largest stable one",
+        "Rayleigh's estimate",
+        "does           bond forces: 10 bonds",
+        "leaves out     gravity: no gravity",
+        "memory         about ",
+        "run time       about ",
+        "loads.tip.force                          [0, -100000, 0] N",
+    ] {
+        assert!(said.contains(part), "'{part}' is not in\n{said}");
+    }
+    let json = check(&bench, &[scene, "--json", "--set", "run.time_step=1e-5"]);
+    let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(value["time_step_s"], 1e-5);
+    assert_eq!(value["steps"], 400_000.0);
+    for number in [
+        "limit_s",
+        "memory_bytes",
+        "predicted_run_time_s",
+        "rayleigh_s",
+    ] {
+        assert!(value[number].as_f64().unwrap() > 0.0, "{number} in {json}");
+    }
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn every_good_scene_can_be_checked() {
+    let bench = Bench::new();
+    for scene in corpus("good") {
+        let scene = scene.to_str().unwrap();
+        check(&bench, &[scene]);
+        let json: serde_json::Value =
+            serde_json::from_str(&check(&bench, &[scene, "--json", "--threads", "1"])).unwrap();
+        assert!(json["time_step_s"].as_f64().unwrap() > 0.0);
+    }
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn only_scenes_can_be_checked() {
+    let bench = Bench::new();
+    let body = bench.write("row.vtp", vtp_bytes(&super::row(4)));
+    for options in [
+        vec![body.as_os_str()],
+        vec!["--body".as_ref(), body.as_os_str()],
+    ] {
+        let output = dem_run().arg("check").args(options).output().unwrap();
+        let (said, code) = super::refused(&output);
+        assert_eq!(code, 2);
+        assert!(said.contains("this is no scene (.toml)"), "{said}");
+    }
+}

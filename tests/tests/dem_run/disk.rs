@@ -1,0 +1,95 @@
+//! Disks that are full, folders that may not be written to.
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::process::Command;
+
+use super::{Bench, dem_run, good, names_in, refused};
+
+/// Runs a shell script as the superuser of a namespace of its own, where a small disk is mounted on ./disk; None where that is not permitted.
+fn on_a_small_disk(bench: &Bench, size: &str, script: &str) -> Option<std::process::Output> {
+    fs::create_dir(bench.path("disk")).unwrap();
+    let mount = format!("mount -t tmpfs -o size={size} tmpfs disk");
+    let try_it = |script: &str| {
+        Command::new("unshare")
+            .args(["--mount", "--user", "--map-root-user", "sh", "-c", script])
+            .current_dir(bench.path(""))
+            .env("DEM_RUN", dem_run().get_program())
+            .output()
+            .ok()
+    };
+    if !try_it(&mount)?.status.success() {
+        return None;
+    }
+    try_it(&format!("{mount} && {script}"))
+}
+
+#[test]
+fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
+    let bench = Bench::new();
+    let scene = good("breaking.toml");
+    let script = format!(
+        "$DEM_RUN {} --out disk/out --set 'output.series=1e-9'; code=$?; cp -r disk/out kept; exit $code",
+        scene.display()
+    );
+    let Some(output) = on_a_small_disk(&bench, "300k", &script) else {
+        // Nobody may mount a disk here: /dev/full is tried by the tests of dem-io.
+        return;
+    };
+    let (said, code) = refused(&output);
+    assert_eq!(code, 1, "{said}");
+    assert!(
+        said.contains("disk/out/") && said.contains("no space left"),
+        "{said}"
+    );
+    let files = names_in(&bench.path("kept"));
+    assert!(files.contains(&"checkpoint.dem".to_owned()), "{files:?}");
+    assert!(!files.iter().any(|name| name.starts_with('.')), "{files:?}");
+    // Rows are whole, and with room the run goes on where it stood.
+    let series = fs::read_to_string(bench.path("kept/series.csv")).unwrap();
+    assert!(series.ends_with('\n'));
+    bench.good(
+        &scene,
+        &["--out", "kept", "--set", "output.series=1e-9", "--resume"],
+    );
+    bench.good(&scene, &["--out", "whole", "--set", "output.series=1e-9"]);
+    super::assert_same(&bench.path("kept"), &bench.path("whole"));
+}
+
+#[test]
+fn a_folder_that_may_not_be_written_to() {
+    let bench = Bench::new();
+    fs::create_dir(bench.path("locked")).unwrap();
+    fs::set_permissions(bench.path("locked"), fs::Permissions::from_mode(0o555)).unwrap();
+    let may_anyway = fs::write(bench.path("locked/try"), "").is_ok();
+    if may_anyway {
+        // The superuser may write anywhere; /proc takes no files from anyone.
+        let said = bench.bad(&good("alone.toml"), &["--out", "/proc/out"], 1);
+        assert!(said.contains("/proc/out"), "{said}");
+        return;
+    }
+    for out in ["locked", "locked/out"] {
+        let said = bench.bad(&good("alone.toml"), &["--out", out], 1);
+        assert!(said.contains(out) && said.contains("permission"), "{said}");
+    }
+}
+
+#[test]
+fn a_full_disk_behind_standard_output() {
+    let bench = Bench::new();
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = bench
+        .command(&good("alone.toml"), &["--out", "out"])
+        .stdout(full)
+        .output()
+        .unwrap();
+    let (said, code) = refused(&output);
+    assert_eq!(code, 1);
+    assert!(
+        said.starts_with("error: standard output: no space left"),
+        "{said}"
+    );
+    // The results are there all the same.
+    assert!(bench.path("out/summary.json").exists());
+}

@@ -1,0 +1,149 @@
+//! Signals: Ctrl-C, a request to end, a kill.
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use super::{Bench, dem_run, good, scene_of_data};
+
+fn send(signal: &str, child: &Child) {
+    let sent = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+}
+
+fn start(mut command: Command) -> Child {
+    command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Lines of a file, 0 if there is none.
+fn lines(path: &Path) -> usize {
+    fs::read(path).map_or(0, |bytes| {
+        bytes.iter().filter(|byte| **byte == b'\n').count()
+    })
+}
+
+/// Waits until something has happened, or the program has ended.
+fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
+    let since = Instant::now();
+    while !happened() && child.try_wait().unwrap().is_none() {
+        assert!(since.elapsed() < Duration::from_secs(60), "nothing happens");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// Sends a signal to a run when its time series has so many rows; what it says, or None if it was faster than the signal.
+pub(super) fn interrupt(
+    command: Command,
+    signal: &str,
+    folder: &Path,
+    rows: usize,
+) -> Option<String> {
+    let mut child = start(command);
+    let series = folder.join("series.csv");
+    let checkpoint = folder.join("checkpoint.dem");
+    wait_until(&mut child, || lines(&series) > rows);
+    let ended = child.try_wait().unwrap().is_some();
+    if !ended {
+        send(signal, &child);
+    }
+    let output = child.wait_with_output().unwrap();
+    if output.status.success() {
+        return None;
+    }
+    assert!(checkpoint.exists());
+    let (said, code) = super::refused(&output);
+    assert_eq!(code, 1, "{said}");
+    Some(said)
+}
+
+/// Kills a run some time after it has written its second checkpoint.
+pub(super) fn kill_after_checkpoint(command: Command, folder: &Path) {
+    let mut child = start(command);
+    let checkpoint = folder.join("checkpoint.dem");
+    wait_until(&mut child, || checkpoint.exists());
+    let first = fs::read(&checkpoint).unwrap();
+    wait_until(&mut child, || fs::read(&checkpoint).unwrap() != first);
+    sleep(Duration::from_millis(5));
+    send("-KILL", &child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), None, "it was faster than the kill");
+    assert!(!folder.join("summary.json").exists());
+}
+
+#[test]
+fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
+    let bench = Bench::new();
+    let mut command = bench.command(
+        &scene_of_data("cantilever.toml"),
+        &[
+            "--set",
+            "run.rest=1e-300",
+            "--set",
+            "run.end_time=1000 s",
+            "--quiet",
+        ],
+    );
+    let mut child = start({
+        command.arg("--json");
+        command
+    });
+    // Nothing shows from outside that it runs; it does after a second at the latest, or it is ended at once.
+    sleep(Duration::from_millis(700));
+    send("-INT", &child);
+    child.try_wait().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let (said, code) = super::refused(&output);
+    assert_eq!(code, 1);
+    assert!(said.starts_with("error: interrupted at "), "{said}");
+    assert!(
+        said.ends_with("with --out FOLDER its state would have been kept"),
+        "{said}"
+    );
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn before_a_run_nothing_is_waited_for() {
+    let mut command = dem_run();
+    command
+        .arg(scene_of_data("clamped.toml"))
+        .args(["--body", "-"]);
+    // Nobody writes to its standard input.
+    let mut child = start({
+        command.stdin(Stdio::piped());
+        command
+    });
+    sleep(Duration::from_millis(500));
+    assert!(child.try_wait().unwrap().is_none());
+    send("-INT", &child);
+    let kept = child.stdin.take();
+    let since = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert!(since.elapsed() < Duration::from_secs(5));
+    assert_eq!(output.status.code(), Some(130));
+    drop(kept);
+}
+
+#[test]
+fn a_checkpoint_stays_when_the_next_run_is_interrupted_too() {
+    let bench = Bench::new();
+    let all = ["--set", "run.safety=0.02", "--out", "out"];
+    let scene = good("breaking.toml");
+    let first = interrupt(bench.command(&scene, &all), "-INT", &bench.path("out"), 5);
+    assert!(first.is_some());
+    let said = bench.bad(&scene, &all, 2);
+    assert!(
+        said.contains("--force") && said.contains("--resume"),
+        "{said}"
+    );
+    assert!(bench.path("out/checkpoint.dem").exists());
+}

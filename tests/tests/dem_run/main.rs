@@ -1,0 +1,242 @@
+//! dem-run as a person meets it: scenes and options in; results, messages and exit codes out.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bad_bodies;
+mod bad_input;
+mod body_information;
+mod check;
+mod corpus;
+mod disk;
+mod interrupted;
+mod random;
+mod results;
+mod resume;
+mod scenes;
+mod threads;
+mod unstable;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use dem_io::Body;
+use dem_io::body::{About, vtp};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn dem_run() -> Command {
+    dem_tests::program("dem-run")
+}
+
+/// The root of the repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A scene of data/scenes.
+fn scene_of_data(name: &str) -> PathBuf {
+    root().join("data/scenes").join(name)
+}
+
+/// The scenes of a folder in tests/scenes, sorted.
+fn corpus(folder: &str) -> Vec<PathBuf> {
+    let folder = root().join("tests/scenes").join(folder);
+    let mut scenes: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .collect();
+    scenes.sort();
+    scenes
+}
+
+/// A good scene of the corpus.
+fn good(name: &str) -> PathBuf {
+    root().join("tests/scenes/good").join(name)
+}
+
+/// A folder that vanishes after the test.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
+        fs::write(self.path(name), contents).unwrap();
+        self.path(name)
+    }
+
+    /// Names of what is in the folder, hidden ones too.
+    fn files(&self) -> Vec<String> {
+        names_in(self.folder.path())
+    }
+
+    /// dem-run SCENE OPTIONS in the folder.
+    fn command(&self, scene: &Path, options: &[&str]) -> Command {
+        let mut command = dem_run();
+        command
+            .current_dir(self.folder.path())
+            .arg(scene)
+            .args(options);
+        command
+    }
+
+    /// dem-run SCENE OPTIONS in the folder, to its end.
+    fn run(&self, scene: &Path, options: &[&str]) -> Output {
+        self.command(scene, options).output().unwrap()
+    }
+
+    /// Runs a scene that can be run; what it says.
+    fn good(&self, scene: &Path, options: &[&str]) -> String {
+        let output = self.run(scene, options);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{}: {said}", scene.display());
+        assert_eq!(said, "", "{}", scene.display());
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs a scene that fails with this exit code; its one message.
+    fn bad(&self, scene: &Path, options: &[&str], code: i32) -> String {
+        let (said, found) = refused(&self.run(scene, options));
+        assert_eq!(found, code, "{said}");
+        said
+    }
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// All files of a results folder by their names, but for what time and place put into the summary.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for part in ["", "frames", "plots"] {
+        if !folder.join(part).is_dir() {
+            continue;
+        }
+        for entry in fs::read_dir(folder.join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let name = path.strip_prefix(folder).unwrap().display().to_string();
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    if let Some(summary) = found.get_mut("summary.json") {
+        let mut value: Value = serde_json::from_slice(summary).unwrap();
+        for of_time in [
+            "wall_s",
+            "threads",
+            "steps_per_s",
+            "bond_steps_per_s",
+            "time_by_stage",
+            "results",
+        ] {
+            value.as_object_mut().unwrap().remove(of_time).unwrap();
+        }
+        *summary = serde_json::to_vec_pretty(&value).unwrap();
+    }
+    found
+}
+
+/// Asserts that two results folders hold the same bits.
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (results(one), results(other));
+    let names = |of: &BTreeMap<String, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&one), names(&other));
+    for (name, bytes) in &one {
+        let place = bytes.iter().zip(&other[name]).position(|(a, b)| a != b);
+        assert!(
+            *bytes == other[name],
+            "{name} differs at byte {place:?} of {}",
+            bytes.len()
+        );
+    }
+}
+
+/// A table with a header, as texts.
+fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut rows = text
+        .lines()
+        .map(|line| line.split(',').map(str::to_owned).collect::<Vec<String>>());
+    (rows.next().unwrap(), rows.collect())
+}
+
+/// A column of a table, as numbers.
+fn numbers(path: &Path, column: &str) -> Vec<f64> {
+    let (columns, rows) = table(path);
+    let at = columns.iter().position(|name| name == column);
+    let at = at.unwrap_or_else(|| panic!("no column {column} among {columns:?}"));
+    rows.iter().map(|row| row[at].parse().unwrap()).collect()
+}
+
+/// A row of particles, each bonded to the next but for one gap.
+fn row(particles: usize) -> Body {
+    let bonds: Vec<[u32; 2]> = (1..particles as u32)
+        .filter(|b| *b as usize != particles / 2)
+        .map(|b| [b - 1, b])
+        .collect();
+    Body {
+        positions: (0..particles)
+            .map(|i| [i as f64 * 2e-3, 0.0, 0.0])
+            .collect(),
+        radii: vec![1e-3; particles],
+        bond_radii: vec![5e-4; bonds.len()],
+        bond_lengths: vec![2e-3; bonds.len()],
+        bonds,
+        about: About {
+            particle_density_kg_m3: Some(2050.0),
+            seed: Some(7),
+            ..About::default()
+        },
+    }
+}
+
+fn vtp_bytes(body: &Body) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    vtp::write(body, &mut bytes).unwrap();
+    bytes
+}
+
+/// Runs dem-run with `input` on its standard input.
+fn piped(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = dem_run()
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that refuses its input early closes it.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+/// The one line that a failed run says, and its exit code.
+fn refused(output: &Output) -> (String, i32) {
+    let said = String::from_utf8(output.stderr.clone()).unwrap();
+    assert!(output.stdout.is_empty(), "{said}");
+    assert_eq!(said.matches('\n').count(), 1, "{said}");
+    assert!(said.starts_with("error: "), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    (said.trim_end().to_owned(), output.status.code().unwrap())
+}

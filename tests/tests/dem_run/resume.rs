@@ -1,0 +1,256 @@
+//! A run that was interrupted and taken up again leaves the same bits as one that was not.
+
+use std::fs;
+use std::path::Path;
+
+use super::interrupted::{interrupt, kill_after_checkpoint};
+use super::{Bench, assert_same, good, numbers, refused, table};
+
+/// Scenes that do all there is to do, and the signals and threads they meet.
+const SCENES: [(&str, &str, &str); 5] = [
+    ("breaking.toml", "-INT", "2"),
+    ("incremental.toml", "-TERM", "1"),
+    ("bodies.toml", "-INT", "3"),
+    ("strained.toml", "-TERM", "2"),
+    ("rest.toml", "-INT", "2"),
+];
+
+/// Makes a scene take longer, so that a signal meets it half way.
+fn slow(name: &str) -> &'static str {
+    match name {
+        "breaking.toml" => "run.safety=0.02",
+        "incremental.toml" => "run.safety=0.03",
+        "bodies.toml" => "run.safety=0.02",
+        "rest.toml" => "run.safety=0.01",
+        _ => "run.seed=0",
+    }
+}
+
+#[test]
+fn after_a_signal_a_run_goes_on_as_if_nothing_had_been() {
+    for (name, signal, threads) in SCENES {
+        let bench = Bench::new();
+        let options = ["--set", slow(name), "--threads", "1"];
+        bench.good(&good(name), &[&options[..], &["--out", "whole"]].concat());
+        let mut times = 0;
+        // Again and again: each time it is interrupted a little later.
+        let (mut rows, mut resume) = (10, false);
+        loop {
+            let first: &[&str] = if resume { &["--resume"] } else { &[] };
+            let all = ["--set", slow(name), "--threads", threads, "--out", "part"];
+            let command = bench.command(&good(name), &[&all[..], first].concat());
+            let Some(said) = interrupt(command, signal, &bench.path("part"), rows) else {
+                break;
+            };
+            assert!(said.starts_with("error: interrupted at "), "{said}");
+            assert!(
+                said.ends_with("go on with the same command and --resume: 'part/checkpoint.dem' holds its state"),
+                "{said}"
+            );
+            assert!(!bench.path("part/summary.json").exists());
+            times += 1;
+            resume = true;
+            rows = numbers(&bench.path("part/series.csv"), "time_s").len() + 100;
+        }
+        assert!(times > 0, "{name} was too fast to be interrupted");
+        assert_same(&bench.path("whole"), &bench.path("part"));
+    }
+}
+
+#[test]
+fn after_a_kill_a_run_goes_on_from_its_last_checkpoint() {
+    for name in ["breaking.toml", "bodies.toml", "strained.toml"] {
+        let bench = Bench::new();
+        let options = ["--set", slow(name), "--threads", "1"];
+        bench.good(&good(name), &[&options[..], &["--out", "whole"]].concat());
+        let all = [&options[..], &["--out", "part"]].concat();
+        kill_after_checkpoint(bench.command(&good(name), &all), &bench.path("part"));
+        bench.good(&good(name), &[&all[..], &["--resume"]].concat());
+        assert_same(&bench.path("whole"), &bench.path("part"));
+    }
+}
+
+#[test]
+fn the_limit_of_the_step_is_looked_at_again_on_the_way() {
+    let bench = Bench::new();
+    bench.good(&good("strained.toml"), &["--out", "out"]);
+    let (_, events) = table(&bench.path("out/events.csv"));
+    assert!(!events.is_empty());
+    assert!(
+        events
+            .iter()
+            .all(|row| row[2] == "time_step" && row[9] == "limit")
+    );
+}
+
+/// A scene that has been run to a fifth of its end time.
+fn begun(name: &str, options: &[&str]) -> Bench {
+    let bench = Bench::new();
+    bench.good(&good(name), &[&["--out", "out"], options].concat());
+    bench
+}
+
+#[test]
+fn a_run_that_is_over_says_so_and_can_be_taken_further() {
+    let bench = begun("bodies.toml", &["--set", "run.end_time=1 ms"]);
+    let resume = ["--out", "out", "--resume", "--set"];
+    let before = super::results(&bench.path("out"));
+    let said = bench.bad(
+        &good("bodies.toml"),
+        &[&resume[..], &["run.end_time=1 ms"]].concat(),
+        2,
+    );
+    assert!(
+        said.contains("this run has reached 1.0") && said.contains("set a later end"),
+        "{said}"
+    );
+    assert!(before == super::results(&bench.path("out")));
+    bench.good(
+        &good("bodies.toml"),
+        &[&resume[..], &["run.end_time=2 ms"]].concat(),
+    );
+    let times = numbers(&bench.path("out/series.csv"), "time_s");
+    assert!(times.is_sorted_by(|a, b| a < b));
+    assert!((times[times.len() - 1] / 2e-3 - 1.0).abs() < 1e-3);
+    // The second half has rows as well, twice as far apart.
+    let late = times.iter().filter(|t| **t > 1.01e-3).count();
+    assert!((400..600).contains(&late), "{late}");
+
+    let bench = begun("rest.toml", &[]);
+    let said = bench.bad(&good("rest.toml"), &["--out", "out", "--resume"], 2);
+    assert!(
+        said.contains("come to rest at") && said.contains("set a smaller run.rest"),
+        "{said}"
+    );
+    let said = bench.good(
+        &good("rest.toml"),
+        &["--out", "out", "--resume", "--set", "run.rest=1e-12"],
+    );
+    assert!(said.contains("ended by rest"), "{said}");
+}
+
+#[test]
+fn a_step_that_is_given_is_taken_when_a_run_goes_on() {
+    let bench = begun("bodies.toml", &["--set", "run.end_time=0.5 ms"]);
+    let options = ["--out", "out", "--resume", "--set", "run.time_step=1 us"];
+    let said = bench.good(&good("bodies.toml"), &options);
+    assert!(
+        said.contains("resumed      time step 1.9531e-6 s -> 1.0000e-6 s")
+            || said.contains("-> 1.0000e-6 s"),
+        "{said}"
+    );
+    let steps = numbers(&bench.path("out/series.csv"), "time_step_s");
+    assert!(steps[0] > 1.5e-6);
+    assert_eq!(steps[steps.len() - 1], 1e-6);
+    let (_, events) = table(&bench.path("out/events.csv"));
+    let noted: Vec<_> = events.iter().filter(|row| row[2] == "time_step").collect();
+    assert_eq!(noted.len(), 1);
+    assert_eq!(noted[0][9], "resumed");
+    let summary = fs::read_to_string(bench.path("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["time_step_s"], 1e-6);
+    assert!(summary["energy_error"].as_f64().unwrap() < 1e-3);
+}
+
+/// What is said of a folder whose checkpoint holds these bytes.
+fn said_of(bench: &Bench, checkpoint: &[u8]) -> String {
+    fs::write(bench.path("out/checkpoint.dem"), checkpoint).unwrap();
+    let said = bench.bad(
+        &good("bodies.toml"),
+        &["--out", "out", "--resume", "--set", "run.end_time=3 ms"],
+        2,
+    );
+    assert!(said.contains("out/checkpoint.dem"), "{said}");
+    assert!(
+        said.contains("without --resume") || said.contains("name a file"),
+        "{said}"
+    );
+    said
+}
+
+#[test]
+fn checkpoints_that_cannot_be_used() {
+    let bench = begun("bodies.toml", &[]);
+    let whole = fs::read(bench.path("out/checkpoint.dem")).unwrap();
+    let before = super::results(&bench.path("out"));
+    assert!(said_of(&bench, b"").contains("this is not a checkpoint"));
+    assert!(said_of(&bench, b"a picture of a cat").contains("this is not a checkpoint"));
+    for length in [20, 60, whole.len() / 2, whole.len() - 1] {
+        assert!(said_of(&bench, &whole[..length]).contains("cut off or damaged"));
+    }
+    for at in [30, whole.len() / 2, whole.len() - 3] {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 4;
+        assert!(said_of(&bench, &damaged).contains("damaged"));
+    }
+    let mut newer = whole.clone();
+    newer[16] = 99;
+    assert!(said_of(&bench, &newer).contains("in format 99"));
+
+    for other in ["breaking.toml", "incremental.toml", "alone.toml"] {
+        let of_other = begun(other, &[]);
+        let foreign = fs::read(of_other.path("out/checkpoint.dem")).unwrap();
+        let said = said_of(&bench, &foreign);
+        assert!(
+            said.contains("belongs to a run with other bodies or bonds"),
+            "{said}"
+        );
+    }
+    // Nothing else was touched.
+    fs::write(bench.path("out/checkpoint.dem"), &whole).unwrap();
+    assert!(before == super::results(&bench.path("out")));
+
+    fs::remove_file(bench.path("out/checkpoint.dem")).unwrap();
+    let said = bench.bad(&good("bodies.toml"), &["--out", "out", "--resume"], 2);
+    assert!(
+        said.contains("checkpoint.dem: there is no such file"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_scene_that_has_changed_is_not_gone_on_with() {
+    let bench = begun("bodies.toml", &["--set", "run.end_time=0.5 ms"]);
+    for change in [
+        "bonds.brittle.young_modulus=13 MPa",
+        "bonds.brittle.formulation=incremental",
+        "bonds.summed.formulation=total",
+        "bonds.brittle.failure.weibull_modulus=9",
+        "materials.steel.density=7000",
+        "bodies.a.position=[1e-9, 0, 0]",
+        "run.seed=1",
+    ] {
+        let (said, code) = refused(&bench.run(
+            &good("bodies.toml"),
+            &["--out", "out", "--resume", "--set", change],
+        ));
+        assert_eq!(code, 2, "{change}: {said}");
+        assert!(said.contains("other bodies or bonds"), "{change}: {said}");
+    }
+    let said = bench.bad(
+        &good("bodies.toml"),
+        &[
+            "--out",
+            "out",
+            "--resume",
+            "--set",
+            "measures.more.quantity=elastic_energy",
+        ],
+        2,
+    );
+    assert!(said.contains("series.csv: its first line is not"), "{said}");
+}
+
+#[test]
+fn there_has_to_be_a_folder_to_resume() {
+    let bench = Bench::new();
+    let said = bench.bad(&good("bodies.toml"), &["--resume", "--out", "none"], 2);
+    assert!(said.contains("none: there is no such folder"), "{said}");
+    let scene = fs::read_to_string(good("alone.toml")).unwrap();
+    let silent = bench.write("silent.toml", scene.replace("[output]", ""));
+    let said = bench.bad(Path::new(&silent), &["--resume"], 2);
+    assert!(
+        said.contains("--resume: no folder") && said.contains("add --out FOLDER"),
+        "{said}"
+    );
+}

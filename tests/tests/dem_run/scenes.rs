@@ -1,0 +1,128 @@
+//! The scenes of the repository, as its pages tell people to run them.
+
+use std::process::Stdio;
+
+use super::{Bench, corpus, dem_run, names_in, root, scene_of_data};
+
+#[test]
+fn cantilever() {
+    let bench = Bench::new();
+    let said = bench.good(&scene_of_data("cantilever.toml"), &[]);
+    let line = |name: &str| {
+        let found = said.lines().find(|line| line.starts_with(name));
+        found
+            .unwrap_or_else(|| panic!("{name} in {said}"))
+            .to_owned()
+    };
+    assert!(said.lines().next().unwrap().contains(" s simulated in "));
+    assert!(line("tip_deflection").contains("-8.5342 mm   theory -8.53424 mm   error "));
+    assert!(line("clamp_force").contains("theory 100000 N"));
+    assert!(line("error ").contains("energy "));
+    assert!(line("steps ").ends_with("ended by rest"));
+    assert!(line("verdict").ends_with("sound: nothing to mind"));
+    // A scene without [output] writes nothing.
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn spinning_bar() {
+    let bench = Bench::new();
+    let scene = scene_of_data("spinning-bar.toml");
+    bench.good(&scene, &["--set", "run.end_time=0.02", "--out", "spin"]);
+    assert_eq!(bench.files(), ["spin"]);
+    let json = bench.good(
+        &scene,
+        &["--set", "run.end_time=0.02", "--json", "--out", "again"],
+    );
+    let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(summary["energy_error"].as_f64().unwrap() < 1e-6);
+    assert!(summary["momentum_error"].as_f64().unwrap() < 1e-12);
+    assert!(summary["angular_momentum_error"].as_f64().unwrap() < 1e-12);
+    assert!((summary["simulated_s"].as_f64().unwrap() / 0.02 - 1.0).abs() < 1e-9);
+    assert_eq!(summary["results"], "again");
+    let written = std::fs::read_to_string(bench.path("again/summary.json")).unwrap();
+    assert_eq!(json, written);
+}
+
+#[test]
+fn a_packed_sample_through_a_pipe() {
+    let bench = Bench::new();
+    let mut pack = dem_tests::program("dem-pack")
+        .arg(root().join("data/shapes/bending-sample.stl"))
+        .args(["--diameter", "7mm..9mm", "--quiet"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .arg(scene_of_data("clamped.toml"))
+        .args(["--body", "-", "--set", "run.end_time=1 ms"])
+        .stdin(pack.stdout.take().unwrap())
+        .output()
+        .unwrap();
+    assert!(pack.wait().unwrap().success());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        said.contains("end_deflection") && said.contains("-> clamped-out"),
+        "{said}"
+    );
+    assert!(names_in(&bench.path("clamped-out/plots")).contains(&"end_deflection.svg".to_owned()));
+}
+
+#[test]
+fn every_scene_of_data_is_planned_or_asks_for_its_body() {
+    let bench = Bench::new();
+    let mut seen = 0;
+    for entry in root().join("data/scenes").read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
+        seen += 1;
+        let output = dem_run()
+            .current_dir(bench.path(""))
+            .arg("check")
+            .arg(&path)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        let asks = said.contains("there is no such file; check its name and folder");
+        assert!(
+            output.status.success() || asks,
+            "{}: {said}",
+            path.display()
+        );
+    }
+    assert!(seen >= 3);
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn quiet_means_quiet() {
+    let bench = Bench::new();
+    let scene = scene_of_data("spinning-bar.toml");
+    let short = ["--set", "run.end_time=1 ms", "--out"];
+    assert_eq!(
+        bench.good(&scene, &[&short[..], &["a", "--quiet"]].concat()),
+        ""
+    );
+    let json = bench.good(&scene, &[&short[..], &["b", "-q", "--json"]].concat());
+    let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary["ended_by"], "end time");
+}
+
+#[test]
+fn every_good_scene_of_the_corpus_runs() {
+    let scenes = corpus("good");
+    assert!(scenes.len() >= 7);
+    for scene in scenes {
+        let bench = Bench::new();
+        let said = bench.good(&scene, &["--threads", "1"]);
+        assert!(said.contains("verdict"), "{said}");
+    }
+}

@@ -1,0 +1,126 @@
+//! A step that is too large: refused, or stopped with the bond that cannot stand it.
+
+use std::fs;
+
+use super::{Bench, good};
+
+#[test]
+fn a_step_above_the_limit_is_refused_unless_forced() {
+    let bench = Bench::new();
+    let step = ["--set", "run.time_step=20 us", "--out", "out"];
+    let said = bench.bad(
+        &good("bodies.toml"),
+        &[&step[..], &["--set", "run.end_time=20 ms"]].concat(),
+        2,
+    );
+    assert!(
+        said.contains("run.time_step: 2.0000e-5 s is above the largest stable step of 1.9")
+            && said.contains("--force-step"),
+        "{said}"
+    );
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn an_unstable_run_names_body_bond_step_and_remedy() {
+    let bench = Bench::new();
+    let scene = bench.write("scene.toml", uneven().replace("output", "#"));
+    let options = ["--set", "run.time_step=20 us", "--force-step"];
+    // Without a folder there is no checkpoint to speak of.
+    let said = bench.bad(&scene, &options, 3);
+    assert!(
+        said.contains("unstable at step ") && said.contains("have come from nowhere"),
+        "{said}"
+    );
+    assert!(
+        said.contains("of body '") && said.contains("take a smaller run.time_step"),
+        "{said}"
+    );
+    assert!(
+        !said.contains("checkpoint") && !said.contains("--resume"),
+        "{said}"
+    );
+    let own: f64 = said
+        .split_once("need a step below ")
+        .unwrap()
+        .1
+        .split_once(" s")
+        .unwrap()
+        .0
+        .parse()
+        .unwrap();
+    assert!((1e-6..2e-5).contains(&own), "{said}");
+}
+
+/// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all others.
+fn uneven() -> String {
+    "version = 1
+run = { end_time = \"20 ms\", gravity = [0, 0, -1] }
+materials.cake.density = 2050
+output = { checkpoint = \"0.1 ms\", frames = \"1 ms\" }
+[bonds.cake]
+young_modulus = \"12 MPa\"
+poisson_ratio = 0.3
+[bodies.even]
+particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3], [4e-3, 0, 0, 1e-3]]
+bond_list = [[0, 1], [1, 2]]
+material = \"cake\"
+bonds = \"cake\"
+[bodies.uneven]
+particles = [[8e-3, 0, 0, 1e-3], [6e-3, 0, 0, 1e-3], [4e-3, 0, 0, 1e-3], [2.4e-3, 0, 0, 0.3e-3], [1.8e-3, 0, 0, 0.3e-3], [0, 0, 0, 1e-3]]
+bond_list = [[0, 1], [1, 2], [2, 3], [4, 5], [3, 4]]
+material = \"cake\"
+bonds = \"cake\"
+position = [0, 0.01, 0]
+velocity = [0.5, 0, 0]
+angular_velocity = [0, 0, 50]
+"
+    .to_owned()
+}
+
+#[test]
+fn the_bond_has_the_number_of_the_bodys_file() {
+    let bench = Bench::new();
+    let scene = bench.write("uneven.toml", uneven());
+    let limit = limit_of(&bench, &scene);
+    let step = format!("run.time_step={}", 1.15 * limit);
+    let said = bench.bad(&scene, &["--set", &step, "--force-step"], 3);
+    assert!(
+        said.contains("most of it in bond 4 of body 'uneven' at ("),
+        "{said}"
+    );
+}
+
+fn limit_of(bench: &Bench, scene: &std::path::Path) -> f64 {
+    let output = super::dem_run()
+        .current_dir(bench.path(""))
+        .args(["check", "--json"])
+        .arg(scene)
+        .output()
+        .unwrap();
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    value["limit_s"].as_f64().unwrap()
+}
+
+#[test]
+fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
+    let bench = Bench::new();
+    let scene = bench.write("uneven.toml", uneven());
+    let limit = limit_of(&bench, &scene);
+    let step = format!("run.time_step={}", 1.05 * limit);
+    let said = bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
+    assert!(
+        said.ends_with("--resume takes it up from 'out/checkpoint.dem' with that step"),
+        "{said}"
+    );
+    assert!(bench.path("out/checkpoint.dem").exists());
+    let step = format!("run.time_step={}", 0.2 * limit);
+    let said = bench.good(&scene, &["--set", &step, "--out", "out", "--resume"]);
+    assert!(said.contains("resumed      time step "), "{said}");
+    // Or with one that is found.
+    fs::remove_dir_all(bench.path("out")).unwrap();
+    let step = format!("run.time_step={}", 1.05 * limit);
+    bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
+    let said = bench.good(&scene, &["--out", "out", "--resume"]);
+    assert!(said.contains("resumed      time step "), "{said}");
+}
