@@ -55,6 +55,36 @@ struct Files<'a> {
     order: FrameOrder,
 }
 
+impl<'a> Files<'a> {
+    /// New files, or those of a run that is `continued` where it stood.
+    fn open(
+        folder: &'a ResultsFolder,
+        order: FrameOrder,
+        columns: &[String],
+        continued: Option<&Progress>,
+    ) -> Result<Self> {
+        let (series, events, frames) = match continued {
+            Some(at) => (
+                SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
+                EventFile::continue_at(&folder.events(), at.events_bytes)?,
+                FrameFiles::continue_at(folder, at.frame_times_s.clone())?,
+            ),
+            None => (
+                SeriesFile::create(&folder.series(), columns)?,
+                EventFile::create(&folder.events())?,
+                FrameFiles::create(folder),
+            ),
+        };
+        Ok(Self {
+            folder,
+            series,
+            events,
+            frames,
+            order,
+        })
+    }
+}
+
 /// Steps a plan to its end. `tell` is called now and then with the share of the end time reached, in 0..1.
 ///
 /// # Errors
@@ -94,25 +124,10 @@ pub fn run(
     }
     let columns = series::columns(&gauges);
     let mut files = match (settings.folder, order) {
-        (Some(folder), Some(order)) => Some(Files {
-            folder,
-            series: if settings.resume.is_some() {
-                SeriesFile::continue_at(&folder.series(), &columns, progress.series_bytes)?
-            } else {
-                SeriesFile::create(&folder.series(), &columns)?
-            },
-            events: if settings.resume.is_some() {
-                EventFile::continue_at(&folder.events(), progress.events_bytes)?
-            } else {
-                EventFile::create(&folder.events())?
-            },
-            frames: if settings.resume.is_some() {
-                FrameFiles::continue_at(folder, progress.frame_times_s.clone())?
-            } else {
-                FrameFiles::create(folder)
-            },
-            order,
-        }),
+        (Some(folder), Some(order)) => {
+            let continued = settings.resume.is_some().then_some(&progress);
+            Some(Files::open(folder, order, &columns, continued)?)
+        }
         _ => None,
     };
 
@@ -189,12 +204,6 @@ pub fn run(
         }
     };
     let wall_s = clock.elapsed().as_secs_f64();
-    if let Some(files) = &mut files {
-        // A run that has ended can be taken further with a later end time.
-        let mut after = state.clone();
-        move_on(&mut after);
-        save(&after, fingerprint, &gauges, &mut progress, files)?;
-    }
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
     let summary = Summary {
         scene: scene.source.clone(),
@@ -231,9 +240,10 @@ pub fn run(
             .map(|folder| folder.path().display().to_string()),
         resumed_with: changed_step,
     };
-    if let Some(files) = &files {
-        files.series.sync()?;
-        files.events.sync()?;
+    if let Some(files) = &mut files {
+        // A run that has ended can be taken further with a later end time.
+        move_on(&mut state);
+        save(&state, fingerprint, &gauges, &mut progress, files)?;
         write_json(&files.folder.summary(), &summary)?;
         write_plots(files.folder, &gauges)?;
     }

@@ -10,6 +10,7 @@ use crate::physics::bond::incremental::History;
 use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::{Motion, Pose};
+use crate::state::shares::divide_anew;
 
 /// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
 type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
@@ -143,6 +144,7 @@ impl Snapshot {
         for &at in &self.broken {
             state.bonds.set_broken(at as usize);
         }
+        divide_anew(&state.bonds, &mut state.shares);
         let history = |&[fx, fy, fz, mx, my, mz]: &[f64; 6]| History {
             shear_force: Vector3::new(fx, fy, fz),
             moment: Vector3::new(mx, my, mz),
@@ -172,8 +174,7 @@ pub fn fingerprint(state: &State) -> u64 {
         &p.inverse_masses,
         &b.normal,
         &b.shear,
-        &b.torsion,
-        &b.bending,
+        &b.torsion_per_bending,
         &b.levers_m[0],
         &b.levers_m[1],
         &b.radii_m,

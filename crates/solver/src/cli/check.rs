@@ -138,7 +138,7 @@ fn memory_bytes(state: &State) -> usize {
     let p = &state.particles;
     let b = &state.bonds;
     let per_particle = 64 + 48 + 64 + 3 * 8;
-    let per_bond = 8 + 10 * 8;
+    let per_bond = 8 + 8 * 8;
     p.len() * per_particle
         + b.len() * per_bond
         + 64 * (state.bond_resistance.len() + state.particle_resistance.len())

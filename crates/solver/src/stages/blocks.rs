@@ -23,6 +23,23 @@ pub(super) fn full_lanes(count: usize) -> Range<usize> {
     0..count.next_multiple_of(LANES).min(BLOCK)
 }
 
+/// Asks for the cache line of a value that will be needed soon.
+#[inline(always)]
+#[expect(
+    unsafe_code,
+    reason = "a hint that reads and writes nothing; the safe language has none"
+)]
+pub(super) fn fetch_soon<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64 processor has it.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
+}
+
 /// What the bonds of a block do to their ends.
 pub(super) struct Effects {
     force_on_b: Rows,

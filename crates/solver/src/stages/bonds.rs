@@ -9,11 +9,13 @@ use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{End, bond_forces};
-use crate::stages::blocks::{BLOCK, Column, Effects, Rows, full_lanes};
-use crate::state::bonds::Bonds;
+use crate::stages::blocks::{BLOCK, Column, Effects, Rows, fetch_soon, full_lanes};
+use crate::state::bonds::{Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
+/// Bonds between those that are computed and those whose particles are fetched into the cache.
+const AHEAD: usize = 2 * BLOCK;
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
@@ -62,6 +64,7 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
         self.wrenches.fill(Wrench::default());
         let mut block = Block::new();
         for Batch { rule, which } in batches.iter() {
+            let torsion = self.bonds.torsion_per_bending[*rule];
             let rule = &self.bonds.rules[*rule];
             if rule.incremental {
                 continue;
@@ -71,7 +74,7 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                 Which::Border(list) => {
                     for some in list.chunks(BLOCK) {
                         block.gather_some(self.bonds, some, self.poses);
-                        block.compute(some.len());
+                        block.compute(some.len(), torsion);
                         let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
                         block
                             .effects
@@ -81,7 +84,7 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                 Which::Own(list) => {
                     for some in list.chunks(BLOCK) {
                         block.gather_some(self.bonds, some, self.poses);
-                        block.compute(some.len());
+                        block.compute(some.len(), torsion);
                         let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
                         block.effects.add_to_both(ends, self.wrenches, particles);
                         if let Some(screen) = &screen {
@@ -93,8 +96,15 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
                     let mut first = range.start;
                     while first < range.end {
                         let run = first..(first + BLOCK).min(range.end);
+                        let ahead = self.bonds.ends.get(first + AHEAD..first + AHEAD + BLOCK);
+                        fetch_second_ends(
+                            ahead.unwrap_or_default(),
+                            self.poses,
+                            self.wrenches,
+                            particles,
+                        );
                         block.gather_run(self.bonds, run.clone(), self.poses);
-                        block.compute(run.len());
+                        block.compute(run.len(), torsion);
                         let ends = self.bonds.ends[run.clone()].iter().copied();
                         block.effects.add_to_both(ends, self.wrenches, particles);
                         if let Some(screen) = &screen {
@@ -109,6 +119,23 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
     }
 }
 
+/// Asks for the particles at the second ends of bonds that will be computed soon: in a large body they come from far away in memory, while first
+/// ends follow one another.
+#[inline(always)]
+fn fetch_second_ends(
+    ends: &[[u32; 2]],
+    poses: &[Pose],
+    wrenches: &[Wrench],
+    particles: &Range<usize>,
+) {
+    for &[_, b] in ends {
+        fetch_soon(&poses[b as usize]);
+        if particles.contains(&(b as usize)) {
+            fetch_soon(&wrenches[b as usize - particles.start]);
+        }
+    }
+}
+
 /// What a block of bonds needs, and what comes of it.
 struct Block {
     apart: Rows,
@@ -117,8 +144,6 @@ struct Block {
     levers: [Column; 2],
     normal: Column,
     shear: Column,
-    torsion: Column,
-    bending: Column,
     radius: Column,
     effects: Effects,
     /// Normal, shear, torsion, bending.
@@ -136,8 +161,6 @@ impl Block {
             levers: [column; 2],
             normal: column,
             shear: column,
-            torsion: column,
-            bending: column,
             radius: [1.0; BLOCK],
             effects: Effects::new(),
             load: [column; 4],
@@ -146,7 +169,7 @@ impl Block {
 
     /// The columns that are copied, and where from.
     #[inline(always)]
-    fn columns<'a>(&'a mut self, bonds: &'a Bonds) -> [(&'a mut Column, &'a [f64]); 10] {
+    fn columns<'a>(&'a mut self, bonds: &'a Bonds) -> [(&'a mut Column, &'a [f64]); 8] {
         let [x, y, z] = &mut self.direction;
         let [lever_a, lever_b] = &mut self.levers;
         [
@@ -157,8 +180,6 @@ impl Block {
             (lever_b, &bonds.levers_m[1]),
             (&mut self.normal, &bonds.normal),
             (&mut self.shear, &bonds.shear),
-            (&mut self.torsion, &bonds.torsion),
-            (&mut self.bending, &bonds.bending),
             (&mut self.radius, &bonds.radii_m),
         ]
     }
@@ -193,7 +214,7 @@ impl Block {
 
     /// Forces, torques and loads of the first `count` bonds.
     #[inline(always)]
-    fn compute(&mut self, count: usize) {
+    fn compute(&mut self, count: usize, torsion_per_bending: f64) {
         for i in full_lanes(count) {
             let turned = |q: &[f64; 4]| {
                 UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
@@ -209,11 +230,12 @@ impl Block {
                     turned: turned(&self.turned[1][i]),
                 },
             ];
+            let bending = bending_stiffness(self.normal[i], self.radius[i]);
             let stiffness = Stiffness {
                 normal: self.normal[i],
                 shear: self.shear[i],
-                torsion: self.torsion[i],
-                bending: self.bending[i],
+                torsion: bending * torsion_per_bending,
+                bending,
                 levers_m: [self.levers[0][i], self.levers[1][i]],
             };
             let [x, y, z] = &self.direction;

@@ -25,6 +25,12 @@ pub struct BondRule {
     pub strengthening_from_1_s: Option<f64>,
 }
 
+/// Stiffness in bending of a round bond, N m/rad, from that along it, N/m: E I/L0 from E A/L0.
+#[inline(always)]
+pub fn bending_stiffness(normal: f64, radius_m: f64) -> f64 {
+    0.25 * normal * radius_m * radius_m
+}
+
 /// All bonds of a scene, sorted by their first particle and then by their second.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bonds {
@@ -38,11 +44,7 @@ pub struct Bonds {
     pub normal: Vec<f64>,
     /// Across the bond, N/m.
     pub shear: Vec<f64>,
-    /// Torsion, N m/rad.
-    pub torsion: Vec<f64>,
-    /// Bending, N m/rad.
-    pub bending: Vec<f64>,
-    /// Bond radii, m.
+    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in every model.
     pub radii_m: Vec<f64>,
     /// Factor on the strengths. Empty: 1 for all.
     pub strength_factors: Vec<f64>,
@@ -52,6 +54,8 @@ pub struct Bonds {
     pub histories: Vec<History>,
     /// Kinds of bonds.
     pub rules: Vec<BondRule>,
+    /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the material only.
+    pub torsion_per_bending: Vec<f64>,
     /// Ends of stretches of bonds that follow the same rule, and the rule.
     pub stretches: Vec<(usize, usize)>,
 }
@@ -85,8 +89,10 @@ impl Bonds {
         }
         self.normal.push(stiffness.normal);
         self.shear.push(stiffness.shear);
-        self.torsion.push(stiffness.torsion);
-        self.bending.push(stiffness.bending);
+        if self.torsion_per_bending.len() <= rule {
+            self.torsion_per_bending.resize(rule + 1, 1.0);
+        }
+        self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
         self.radii_m.push(radius_m);
         let end = self.len();
         match self.stretches.last_mut() {
@@ -97,11 +103,12 @@ impl Bonds {
 
     /// What bond `at` answers.
     pub fn stiffness(&self, at: usize) -> Stiffness {
+        let bending = bending_stiffness(self.normal[at], self.radii_m[at]);
         Stiffness {
             normal: self.normal[at],
             shear: self.shear[at],
-            torsion: self.torsion[at],
-            bending: self.bending[at],
+            torsion: bending * self.torsion_per_bending[self.rule_of(at)],
+            bending,
             levers_m: [self.levers_m[0][at], self.levers_m[1][at]],
         }
     }
@@ -140,14 +147,8 @@ impl Bonds {
 
     /// Takes all stiffness, damping and history from bond `at`.
     pub fn set_broken(&mut self, at: usize) {
-        for all in [
-            &mut self.normal,
-            &mut self.shear,
-            &mut self.torsion,
-            &mut self.bending,
-        ] {
-            all[at] = 0.0;
-        }
+        self.normal[at] = 0.0;
+        self.shear[at] = 0.0;
         if let Some(damping) = self.damping.get_mut(at) {
             *damping = [0.0; 4];
         }

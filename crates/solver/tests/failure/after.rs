@@ -112,7 +112,7 @@ fn the_break_comes_in_the_middle_of_the_kick() {
                 move_on(&mut state);
                 move_on(&mut whole);
             }
-            let at_break = [&state, &whole].map(|s| dem_run::check::ledger::synchronous_motions(s));
+            let at_break = [&state, &whole].map(dem_run::check::ledger::synchronous_motions);
             for (a, b) in at_break[0].iter().zip(&at_break[1]) {
                 for k in 0..3 {
                     assert!((a.velocity_m_s[k] - b.velocity_m_s[k]).abs() < 1e-14);
