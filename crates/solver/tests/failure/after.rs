@@ -1,5 +1,6 @@
 //! What a break says of itself, and that nothing comes after it.
 
+use dem_run::check::ledger::synchronous_motions;
 use dem_run::physics::bond::failure::Cause;
 use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles, Wrench};
@@ -112,7 +113,7 @@ fn the_break_comes_in_the_middle_of_the_kick() {
                 move_on(&mut state);
                 move_on(&mut whole);
             }
-            let at_break = [&state, &whole].map(dem_run::check::ledger::synchronous_motions);
+            let at_break = [&state, &whole].map(synchronous_motions);
             for (a, b) in at_break[0].iter().zip(&at_break[1]) {
                 for k in 0..3 {
                     assert!((a.velocity_m_s[k] - b.velocity_m_s[k]).abs() < 1e-14);

@@ -108,3 +108,26 @@ fn books_stay_closed_through_breaks() {
         }
     });
 }
+
+/// A sphere that is held does not move when its bond breaks, and what holds it does no work.
+#[test]
+fn a_support_at_rest_does_no_work_in_a_break() {
+    on_one_thread(|| {
+        for incremental in [false, true] {
+            let mut state = rod(1, NORMAL, incremental);
+            hold(&mut state, std::iter::once(0), 0.0);
+            let m = 1.0 / state.particles.inverse_masses[1];
+            let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal[0]).sqrt();
+            state.particles.motions[1].velocity_m_s = [speed, 0.1 * speed, 0.0];
+            state.ledger = Ledger::opened(&state);
+            while state.broken_count == 0 {
+                act(&mut state);
+                assert_eq!(balance(&mut state).support_work_j, 0.0);
+                move_on(&mut state);
+                assert!(state.steps < 1000, "does not break");
+            }
+            act(&mut state);
+            assert_eq!(balance(&mut state).support_work_j, 0.0);
+        }
+    });
+}
