@@ -41,6 +41,7 @@ fn commands_run_as_pasted() {
     for (name, stands_in) in [
         ("filter-cake.stl", "filter-cake.stl"),
         ("rock.stl", "c-shape.stl"),
+        ("bending-sample.stl", "bending-sample.stl"),
     ] {
         fs::copy(
             root().join("data/shapes").join(stands_in),

@@ -337,7 +337,7 @@ pub struct Output {
     pub folder: Option<PathBuf>,
     /// `frames`: time between frames. None: first and last only.
     pub frames_s: Option<f64>,
-    /// `series`: time between rows of the time series. None: a thousandth of the run.
+    /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at least in large scenes.
     pub series_s: Option<f64>,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,

@@ -105,7 +105,8 @@ pub fn run(
     } = plan;
     let fingerprint = fingerprint(&state);
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
-    let rhythm = Rhythm::of(scene);
+    let size = state.particles.len() + state.bonds.len();
+    let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, choice.limit.step_s);
     let mut changed_step = None;
     if let Some(snapshot) = &settings.resume {

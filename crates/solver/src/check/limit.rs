@@ -128,12 +128,14 @@ fn largest_eigenvalue(
     let mut present = start(&roots);
     let mut before: Field = vec![[0.0; 6]; count];
     let mut image: Field = vec![[0.0; 6]; count];
+    let mut moved: Field = vec![[0.0; 6]; count];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     let mut largest = (0.0, 0.0);
     for iteration in 1..=ITERATIONS[1].min(6 * count) {
-        let moved: Field = scaled(&present, &roots);
+        moved.copy_from_slice(&present);
+        scale(&mut moved, &roots);
         times(state, &moved, &mut image);
-        image = scaled(&image, &roots);
+        scale(&mut image, &roots);
         let alpha = dot(&image, &present);
         let beta_before = beside.last().copied().unwrap_or(0.0);
         for i in 0..count {
@@ -228,9 +230,10 @@ fn start(roots: &Field) -> Field {
     field
 }
 
-fn scaled(field: &Field, by: &Field) -> Field {
-    let times = |(a, b): (&[f64; 6], &[f64; 6])| [0, 1, 2, 3, 4, 5].map(|k| a[k] * b[k]);
-    field.iter().zip(by).map(times).collect()
+fn scale(field: &mut Field, by: &Field) {
+    for (field, by) in field.iter_mut().flatten().zip(by.iter().flatten()) {
+        *field *= by;
+    }
 }
 
 fn dot(a: &Field, b: &Field) -> f64 {
@@ -247,28 +250,29 @@ fn stiffness_times(state: &mut State, moved: &Field, result: &mut Field) {
             [shift, m[3].abs(), m[4].abs(), m[5].abs()]
         })
         .fold(0.0, f64::max);
+    result.fill([0.0; 6]);
     if largest == 0.0 {
-        result.fill([0.0; 6]);
         return;
     }
     let step = STEP / largest;
     let rest = state.particles.poses.clone();
-    let mut forces_at = |sign: f64| {
+    let mut add_forces = |side: f64| {
         for ((pose, rest), moved) in state.particles.poses.iter_mut().zip(&rest).zip(moved) {
-            let [x, y, z, rx, ry, rz] = moved.map(|m| sign * step * m);
+            let [x, y, z, rx, ry, rz] = moved.map(|m| side * step * m);
             let [px, py, pz, zero] = rest.position_m;
             pose.position_m = [px + x, py + y, pz + z, zero];
             pose.turned = turn(rest.turned, [rx, ry, rz]);
         }
         bonds_as_total(state);
-        state.particles.wrenches.iter().map(six).collect::<Field>()
+        for (result, wrench) in result.iter_mut().zip(&state.particles.wrenches) {
+            for (result, force) in result.iter_mut().zip(six(wrench)) {
+                *result -= side / (2.0 * step) * force;
+            }
+        }
     };
-    let forward = forces_at(1.0);
-    let backward = forces_at(-1.0);
+    add_forces(1.0);
+    add_forces(-1.0);
     state.particles.poses = rest;
-    for (result, (f, b)) in result.iter_mut().zip(forward.iter().zip(&backward)) {
-        *result = [0, 1, 2, 3, 4, 5].map(|k| (b[k] - f[k]) / (2.0 * step));
-    }
 }
 
 /// Forces of all bonds by the total formulation, without looking for failing ones.

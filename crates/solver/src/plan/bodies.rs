@@ -124,6 +124,7 @@ fn place_particles(
     let order = spatial_order(&places);
     let first_particle = particles.len();
     let mut numbers = vec![0_u32; order.len()];
+    particles.reserve_exact(order.len());
     for (at, &original) in order.iter().enumerate() {
         numbers[original as usize] = (first_particle + at) as u32;
         let original = original as usize;
@@ -197,6 +198,8 @@ fn place_bonds(
         })
         .collect();
     sorted.sort_unstable();
+    bonds.reserve_exact(body.bonds.len());
+    placed.bonds.reserve_exact(body.bonds.len());
     let damped = bonds.rules.iter().any(|rule| rule.damped);
     let incremental = bonds.rules.iter().any(|rule| rule.incremental);
     for (ends, original) in sorted {

@@ -10,6 +10,11 @@ use crate::state::State;
 /// Rows of the time series unless asked otherwise.
 const ROWS: f64 = 1000.0;
 
+/// Particles and bonds of a scene in which a row costs time worth saving: as much as about four steps.
+const LARGE: usize = 20_000;
+/// Steps between two rows of a large scene, at least, unless asked otherwise.
+const ROW_STEPS: f64 = 200.0;
+
 /// Where the output of a run stands, and what it watches.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
@@ -55,10 +60,17 @@ fn first_after(time_s: f64, every_s: f64) -> u64 {
 }
 
 impl Rhythm {
-    pub(super) fn of(scene: &Scene) -> Self {
+    /// Of a scene planned with this step, with so many particles and bonds.
+    pub(super) fn of(scene: &Scene, step_s: f64, size: usize) -> Self {
         let output = scene.output.clone().unwrap_or_default();
+        let apart = if size > LARGE {
+            ROW_STEPS * step_s
+        } else {
+            0.0
+        };
+        let usual = (scene.run.end_time_s / ROWS).max(apart);
         Self {
-            row_s: output.series_s.unwrap_or(scene.run.end_time_s / ROWS),
+            row_s: output.series_s.unwrap_or(usual),
             frame_s: output.frames_s,
             checkpoint_s: output.checkpoint_s,
             rest: scene.run.rest,

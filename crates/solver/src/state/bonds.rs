@@ -71,6 +71,16 @@ impl Bonds {
         self.ends.is_empty()
     }
 
+    /// Makes room for so many bonds more, and no more than that.
+    pub fn reserve_exact(&mut self, count: usize) {
+        self.ends.reserve_exact(count);
+        let columns = [&mut self.normal, &mut self.shear, &mut self.radii_m];
+        let vectors = self.direction.iter_mut().chain(&mut self.levers_m);
+        for column in vectors.chain(columns) {
+            column.reserve_exact(count);
+        }
+    }
+
     /// Adds a bond that follows the rule of this number. Bonds are to be added in the order that [`Bonds`] names.
     pub fn push(
         &mut self,

@@ -86,6 +86,16 @@ impl Particles {
         self.poses.is_empty()
     }
 
+    /// Makes room for so many particles more, and no more than that.
+    pub fn reserve_exact(&mut self, count: usize) {
+        self.poses.reserve_exact(count);
+        self.motions.reserve_exact(count);
+        self.wrenches.reserve_exact(count);
+        self.inverse_masses.reserve_exact(count);
+        self.inverse_inertias.reserve_exact(count);
+        self.radii_m.reserve_exact(count);
+    }
+
     /// Adds a sphere at rest.
     pub fn push_sphere(&mut self, position_m: [f64; 3], radius_m: f64, density_kg_m3: f64) {
         let mass = density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
