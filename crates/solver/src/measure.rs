@@ -132,7 +132,7 @@ impl Gauge {
             Quantity::KineticEnergy => self
                 .particles
                 .iter()
-                .map(|&i| kinetic(state, motions, i as usize))
+                .map(|&i| p.kinetic_j(i as usize, &motions[i as usize]))
                 .sum(),
             Quantity::ElasticEnergy if self.of_all => balance.elastic_j(),
             Quantity::ElasticEnergy => self.over_bonds(state, 0.0, |sum, at, ends_in| {
@@ -225,13 +225,6 @@ pub fn bond_utilisation(state: &State, at: usize) -> f64 {
     let load = bonds.forces(at, &state.particles.poses).load;
     let stresses = stresses(&load, bonds.radii_m[at]);
     utilisation(criteria, &stresses, bonds.strength_factor(at))
-}
-
-fn kinetic(state: &State, motions: &[Motion], i: usize) -> f64 {
-    let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
-    let p = &state.particles;
-    0.5 * (square(&motions[i].velocity_m_s) / p.inverse_masses[i]
-        + square(&motions[i].spin_rad_s) / p.inverse_inertias[i])
 }
 
 fn mean_position(state: &State, particles: &[u32]) -> [f64; 3] {

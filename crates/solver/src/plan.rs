@@ -6,7 +6,7 @@ pub mod time_step;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Formulation, Pick, Scene};
+use dem_io::scene::Scene;
 use dem_io::{Body, Diagnostic, Result};
 
 use crate::stages::loads::SetLoad;
@@ -71,7 +71,7 @@ pub fn plan(
     state.loads = loads(scene, &sets, &state.supports)?;
     let step = choose_step(scene, &mut state, allow_any_step)?;
     state.time_step_s = step.step_s;
-    let stages = stages(scene, &state);
+    let stages = stages(&state);
     Ok(Plan {
         state,
         bodies,
@@ -182,7 +182,7 @@ fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u3
 }
 
 /// What a step consists of, and what is left out.
-fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
+fn stages(state: &State) -> Vec<PlannedStage> {
     let bonds = state.bonds.len();
     let rules = &state.bonds.rules;
     let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
@@ -191,10 +191,6 @@ fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
         needed,
         why: if needed { yes } else { no.to_owned() },
     };
-    let incremental = scene
-        .bonds
-        .values()
-        .any(|kind| kind.formulation == Formulation::Incremental);
     let scattered = !state.bonds.strength_factors.is_empty();
     vec![
         stage(
@@ -205,7 +201,7 @@ fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
         ),
         stage(
             "bond history",
-            incremental && bonds > 0,
+            any(&|rule| rule.incremental) && bonds > 0,
             "bonds of the incremental formulation".to_owned(),
             "every bond has the total formulation",
         ),
@@ -265,9 +261,4 @@ fn stages(scene: &Scene, state: &State) -> Vec<PlannedStage> {
 
 fn on_particles(count: usize) -> String {
     format!("on {count} particle{}", if count == 1 { "" } else { "s" })
-}
-
-/// Whether a set picks particles by their numbers in the body's file.
-fn picks_numbers(pick: &Pick) -> bool {
-    matches!(pick, Pick::Particles(_))
 }

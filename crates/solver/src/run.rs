@@ -33,6 +33,7 @@ use self::progress::{Rhythm, due, next};
 const LIMIT_EVERY: u64 = 20_000;
 /// Elastic energy over that of all bonds stretched by 1e-6, above which the limit may have fallen: a mean strain of 1e-3.
 const STRAINED: f64 = 1e6;
+
 /// How a run is told to go.
 #[derive(Debug)]
 pub struct RunSettings<'a> {

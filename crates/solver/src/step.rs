@@ -55,7 +55,7 @@ pub fn act(state: &mut State) {
             &state.bonds,
             &p.poses,
             &p.motions,
-            &state.shares,
+            &mut state.shares,
             &mut state.bond_resistance,
         );
     }

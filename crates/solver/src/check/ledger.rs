@@ -5,7 +5,7 @@
 
 use crate::physics::bond::total::BondEnergy;
 use crate::stages::loads::{SetLoad, add_resultant, loads_power_w, loads_resultant};
-use crate::stages::motion::{CHUNK, ordered_sum, power_w};
+use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
@@ -243,25 +243,15 @@ pub fn after_kick(state: &mut State) {
 
 /// Force and moment about a point of wrenches on particles.
 fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3]; 2] {
-    let chunks: Vec<[[f64; 3]; 2]> = wrenches
-        .par_chunks(CHUNK)
-        .zip(poses.par_chunks(CHUNK))
-        .map(|(wrenches, poses)| {
-            let mut total = [[0.0; 3]; 2];
-            for (wrench, pose) in wrenches.iter().zip(poses) {
-                let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
-                add_resultant(&mut total, pose, [fx, fy, fz], [tx, ty, tz], about_m);
-            }
-            total
-        })
-        .collect();
-    chunks.iter().fold([[0.0; 3]; 2], |mut sum, part| {
-        for k in 0..3 {
-            sum[0][k] += part[0][k];
-            sum[1][k] += part[1][k];
-        }
-        sum
-    })
+    let sums = ordered_sums(wrenches.len(), |i| {
+        let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrenches[i].force_n, wrenches[i].torque_n_m);
+        let mut one = [[0.0; 3]; 2];
+        add_resultant(&mut one, &poses[i], [fx, fy, fz], [tx, ty, tz], about_m);
+        let [[fx, fy, fz], [mx, my, mz]] = one;
+        [fx, fy, fz, mx, my, mz]
+    });
+    let [fx, fy, fz, mx, my, mz] = sums;
+    [[fx, fy, fz], [mx, my, mz]]
 }
 
 /// The ledger between a kick and the drift after it. Remembers the largest energies and momenta.
@@ -377,66 +367,50 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
 
 /// Kinetic energy of particles that move so, J.
 pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
-    ordered_sum(particles.len(), |i| {
-        let Motion {
-            velocity_m_s: v,
-            spin_rad_s: w,
-        } = motion(i);
-        let square = |v: [f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        0.5 * (square(v) / particles.inverse_masses[i] + square(w) / particles.inverse_inertias[i])
-    })
+    ordered_sum(particles.len(), |i| particles.kinetic_j(i, &motion(i)))
 }
 
 /// Elastic energy of all bonds by mode.
 pub fn elastic_energy(state: &State) -> BondEnergy {
     let bonds = &state.bonds;
-    let chunk_energy = |chunk: usize| {
-        let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(bonds.len());
-        let mut sum = BondEnergy::default();
-        for at in range.filter(|&at| !bonds.is_broken(at)) {
-            let energy = bonds.forces(at, &state.particles.poses).energy;
-            sum = add_energies(&sum, &energy);
+    let [normal, shear, torsion, bending] = ordered_sums(bonds.len(), |at| {
+        if bonds.is_broken(at) {
+            return [0.0; 4];
         }
-        sum
-    };
-    let chunks: Vec<BondEnergy> = (0..bonds.len().div_ceil(CHUNK))
-        .into_par_iter()
-        .map(chunk_energy)
-        .collect();
-    chunks
-        .iter()
-        .fold(BondEnergy::default(), |sum, part| add_energies(&sum, part))
-}
-
-fn add_energies(a: &BondEnergy, b: &BondEnergy) -> BondEnergy {
+        let energy = bonds.forces(at, &state.particles.poses).energy;
+        [energy.normal, energy.shear, energy.torsion, energy.bending]
+    });
     BondEnergy {
-        normal: a.normal + b.normal,
-        shear: a.shear + b.shear,
-        torsion: a.torsion + b.torsion,
-        bending: a.bending + b.bending,
+        normal,
+        shear,
+        torsion,
+        bending,
     }
 }
 
 /// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
 fn momenta(particles: &Particles, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
-    let part = |i: usize| {
+    let sums = ordered_sums(particles.len(), |i| {
         let (pose, motion) = (&particles.poses[i], &particles.motions[i]);
-        let (mass, inertia) = (
-            1.0 / particles.inverse_masses[i],
-            1.0 / particles.inverse_inertias[i],
-        );
-        let mut part = [[0.0; 3]; 2];
+        let mass = 1.0 / particles.inverse_masses[i];
+        let inertia = 1.0 / particles.inverse_inertias[i];
         let momentum = motion.velocity_m_s.map(|v| mass * v);
         let spin = motion.spin_rad_s.map(|w| inertia * w);
+        let mut part = [[0.0; 3]; 2];
         add_resultant(&mut part, pose, momentum, spin, about_m);
-        part
-    };
-    let component = |which: usize, k: usize| ordered_sum(particles.len(), |i| part(i)[which][k]);
-    let magnitude = |which: usize| {
-        ordered_sum(particles.len(), |i| {
-            part(i)[which].iter().map(|c| c * c).sum::<f64>().sqrt()
-        })
-    };
-    let total = [0, 1].map(|which| [0, 1, 2].map(|k| component(which, k)));
-    (total, [magnitude(0), magnitude(1)])
+        let magnitude = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let [p, l] = part;
+        [
+            p[0],
+            p[1],
+            p[2],
+            l[0],
+            l[1],
+            l[2],
+            magnitude(p),
+            magnitude(l),
+        ]
+    });
+    let [px, py, pz, lx, ly, lz, momentum, angular_momentum] = sums;
+    ([[px, py, pz], [lx, ly, lz]], [momentum, angular_momentum])
 }

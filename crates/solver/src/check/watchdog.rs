@@ -2,11 +2,10 @@
 
 use dem_io::{Diagnostic, Result};
 
-use super::ledger::Balance;
+use super::ledger::{Balance, kinetic_energy};
 use crate::physics::bond::pair::frequencies;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::stages::loads::loads_power_w;
-use crate::stages::motion::ordered_sum;
 use crate::state::State;
 
 /// Energy that may appear above the limit, over what was put in: there it is a local mode that grows until it saturates, small against a large body.
@@ -42,12 +41,7 @@ impl Watchdog {
             return false;
         }
         let p = &state.particles;
-        let kinetic = ordered_sum(p.len(), |i| {
-            let motion = &p.motions[i];
-            let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
-            0.5 * (square(&motion.velocity_m_s) / p.inverse_masses[i]
-                + square(&motion.spin_rad_s) / p.inverse_inertias[i])
-        });
+        let kinetic = kinetic_energy(p, |i| p.motions[i]);
         // Not a number is due as well.
         let quiet = kinetic <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2);
         !quiet

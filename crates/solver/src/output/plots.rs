@@ -3,6 +3,7 @@
 use dem_io::Result;
 use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
 
+use super::series::ENERGIES;
 use crate::measure::Gauge;
 
 /// Plots that every run has or may have, which no measure may overwrite.
@@ -17,17 +18,7 @@ const BROKEN: &str = "broken_bonds";
 /// Those of the files.
 pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
     let series = read_series(&folder.series())?;
-    let energies = [
-        "kinetic_energy_j",
-        "elastic_energy_j",
-        "gravity_energy_j",
-        "load_work_j",
-        "support_work_j",
-        "bond_damping_j",
-        "particle_damping_j",
-        "released_j",
-    ];
-    let changing: Vec<&str> = energies
+    let changing: Vec<&str> = ENERGIES
         .into_iter()
         .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
         .collect();

@@ -3,8 +3,8 @@
 use crate::check::ledger::Balance;
 use crate::measure::Gauge;
 
-/// Names of the columns after the time.
-const ALWAYS: [&str; 13] = [
+/// Names of the first columns after the time: energies and works, J.
+pub(super) const ENERGIES: [&str; 8] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -13,6 +13,9 @@ const ALWAYS: [&str; 13] = [
     "bond_damping_j",
     "particle_damping_j",
     "released_j",
+];
+/// Names of the columns after those.
+const OTHERS: [&str; 5] = [
     "energy_error",
     "momentum_error",
     "angular_momentum_error",
@@ -22,7 +25,11 @@ const ALWAYS: [&str; 13] = [
 
 /// Names of all columns after the time, with units, no two alike.
 pub fn columns(gauges: &[Gauge]) -> Vec<String> {
-    let mut columns: Vec<String> = ALWAYS.iter().map(|&name| name.to_owned()).collect();
+    let mut columns: Vec<String> = ENERGIES
+        .iter()
+        .chain(&OTHERS)
+        .map(|&name| name.to_owned())
+        .collect();
     for gauge in gauges {
         let mut name = match gauge.unit() {
             "" => gauge.name.clone(),

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{ParticleSet, Pick, Scene};
+use dem_io::scene::{Pick, Scene};
 use dem_io::{Diagnostic, Result};
 
 use super::bodies::PlacedBody;
-use super::picks_numbers;
 use crate::state::particles::Particles;
 
 /// Particles (numbers in the state, rising) of every set, every body and `all`.
@@ -27,8 +26,8 @@ pub fn resolve_sets(
     }
     for (name, set) in &scene.sets {
         let place = format!("{}: [sets.{name}]", scene.source);
-        let mut picked = if picks_numbers(&set.pick) {
-            by_number(&place, set, bodies)?
+        let mut picked = if let Pick::Particles(numbers) = &set.pick {
+            by_number(&place, numbers, set.body.as_deref(), bodies)?
         } else {
             let of = set.body.as_deref().unwrap_or("all");
             let candidates = sets.get(of).map_or(&[][..], Vec::as_slice);
@@ -51,11 +50,13 @@ pub fn resolve_sets(
     Ok(sets)
 }
 
-fn by_number(place: &str, set: &ParticleSet, bodies: &[PlacedBody]) -> Result<Vec<u32>> {
-    let Pick::Particles(numbers) = &set.pick else {
-        return Ok(Vec::new());
-    };
-    let body = bodies.iter().find(|b| Some(&b.name) == set.body.as_ref());
+fn by_number(
+    place: &str,
+    numbers: &[u32],
+    body: Option<&str>,
+    bodies: &[PlacedBody],
+) -> Result<Vec<u32>> {
+    let body = bodies.iter().find(|b| Some(b.name.as_str()) == body);
     let particles = body.map_or(&[][..], |b| b.particles.as_slice());
     numbers
         .iter()

@@ -6,6 +6,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::state::particles::Wrench;
+use crate::state::shares::Share;
 
 /// Bonds in a block.
 pub(super) const BLOCK: usize = 32;
@@ -38,6 +39,27 @@ pub(super) fn fetch_soon<T>(value: &T) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = value;
+}
+
+/// Works on all shares, on as many threads as there are; each has the wrenches of its own particles.
+pub(super) fn for_each_share(
+    shares: &mut [Share],
+    wrenches: &mut [Wrench],
+    work: &(impl Fn(&mut Share, &mut [Wrench]) + Sync),
+) {
+    match shares {
+        [] => {}
+        [share] => work(share, wrenches),
+        _ => {
+            let (left, right) = shares.split_at_mut(shares.len() / 2);
+            let count = right[0].particles.start - left[0].particles.start;
+            let (of_left, of_right) = wrenches.split_at_mut(count);
+            rayon::join(
+                || for_each_share(left, of_left, work),
+                || for_each_share(right, of_right, work),
+            );
+        }
+    }
 }
 
 /// What the bonds of a block do to their ends.

@@ -9,7 +9,7 @@ use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{End, bond_forces};
-use crate::stages::blocks::{BLOCK, Column, Effects, Rows, fetch_soon, full_lanes};
+use crate::stages::blocks::{BLOCK, Column, Effects, Rows, fetch_soon, for_each_share, full_lanes};
 use crate::state::bonds::{Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
@@ -21,24 +21,14 @@ const NEARLY: f64 = 1.0 - 1e-9;
 
 /// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
-    match shares {
-        [] => {}
-        [share] => pulp::Arch::new().dispatch(ShareWork {
+    for_each_share(shares, wrenches, &|share, wrenches| {
+        pulp::Arch::new().dispatch(ShareWork {
             bonds,
             poses,
             share,
             wrenches,
-        }),
-        _ => {
-            let (left, right) = shares.split_at_mut(shares.len() / 2);
-            let count = right[0].particles.start - left[0].particles.start;
-            let (of_left, of_right) = wrenches.split_at_mut(count);
-            rayon::join(
-                || bond_wrenches(bonds, poses, left, of_left),
-                || bond_wrenches(bonds, poses, right, of_right),
-            );
-        }
-    }
+        });
+    });
 }
 
 /// The work on one share: a call that is compiled for AVX2 as well.

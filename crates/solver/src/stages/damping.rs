@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::physics::bond::damping::{DampingCoefficients, EndMotion, damping_forces};
-use crate::stages::blocks::{BLOCK, Column, Effects, Rows, full_lanes};
+use crate::stages::blocks::{BLOCK, Column, Effects, Rows, for_each_share, full_lanes};
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
@@ -13,28 +13,18 @@ pub fn damping_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
     motions: &[Motion],
-    shares: &[Share],
+    shares: &mut [Share],
     resisting: &mut [Wrench],
 ) {
-    match shares {
-        [] => {}
-        [share] => pulp::Arch::new().dispatch(ShareWork {
+    for_each_share(shares, resisting, &|share, resisting| {
+        pulp::Arch::new().dispatch(ShareWork {
             bonds,
             poses,
             motions,
             share,
             resisting,
-        }),
-        _ => {
-            let (left, right) = shares.split_at(shares.len() / 2);
-            let count = right[0].particles.start - left[0].particles.start;
-            let (of_left, of_right) = resisting.split_at_mut(count);
-            rayon::join(
-                || damping_wrenches(bonds, poses, motions, left, of_left),
-                || damping_wrenches(bonds, poses, motions, right, of_right),
-            );
-        }
-    }
+        });
+    });
 }
 
 /// The work on one share: a call that is compiled for AVX2 as well.

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::physics::bond::failure::{stresses, utilisation};
 use crate::physics::bond::incremental::{Step, advance, bond_forces};
+use crate::stages::blocks::for_each_share;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
@@ -41,19 +42,9 @@ pub fn add_incremental_wrenches(
     shares: &mut [Share],
     wrenches: &mut [Wrench],
 ) {
-    match shares {
-        [] => {}
-        [share] => of_share(bonds, poses, share, wrenches),
-        _ => {
-            let (left, right) = shares.split_at_mut(shares.len() / 2);
-            let count = right[0].particles.start - left[0].particles.start;
-            let (of_left, of_right) = wrenches.split_at_mut(count);
-            rayon::join(
-                || add_incremental_wrenches(bonds, poses, left, of_left),
-                || add_incremental_wrenches(bonds, poses, right, of_right),
-            );
-        }
-    }
+    for_each_share(shares, wrenches, &|share, wrenches| {
+        of_share(bonds, poses, share, wrenches);
+    });
 }
 
 fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wrench]) {

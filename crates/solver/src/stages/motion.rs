@@ -116,17 +116,33 @@ pub fn power_w(wrenches: &[Wrench], motions: &[Motion]) -> f64 {
 
 /// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
 pub fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    if count <= CHUNK {
-        return (0..count).map(term).sum();
-    }
+    let [sum] = ordered_sums(count, |i| [term(i)]);
+    sum
+}
+
+/// Sums of several terms over 0..count, in an order that does not depend on the number of threads.
+pub fn ordered_sums<const N: usize>(
+    count: usize,
+    terms: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N] {
     let of_chunk = |chunk: usize| {
         let end = ((chunk + 1) * CHUNK).min(count);
-        (chunk * CHUNK..end).map(&term).sum::<f64>()
+        (chunk * CHUNK..end).fold([0.0; N], |sums, i| add(sums, terms(i)))
     };
+    if count <= CHUNK {
+        return of_chunk(0);
+    }
     (0..count.div_ceil(CHUNK))
         .into_par_iter()
         .map(of_chunk)
-        .collect::<Vec<f64>>()
-        .iter()
-        .sum()
+        .collect::<Vec<_>>()
+        .into_iter()
+        .fold([0.0; N], add)
+}
+
+fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += term;
+    }
+    sums
 }

@@ -86,6 +86,13 @@ impl Particles {
         self.poses.is_empty()
     }
 
+    /// Kinetic energy of particle `i` when it moves so, J.
+    pub fn kinetic_j(&self, i: usize, motion: &Motion) -> f64 {
+        let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        0.5 * (square(&motion.velocity_m_s) / self.inverse_masses[i]
+            + square(&motion.spin_rad_s) / self.inverse_inertias[i])
+    }
+
     /// Makes room for so many particles more, and no more than that.
     pub fn reserve_exact(&mut self, count: usize) {
         self.poses.reserve_exact(count);

@@ -1,5 +1,6 @@
 //! Damping of bonds: conserves what it must, dissipates, and leaves the largest step that an independent implementation found.
 
+use crate::vector;
 use dem_run::physics::bond::damping::{
     DampingCoefficients, DampingForces, EndMotion, Reduced, chen, chen_by_mode, damping_forces,
     platzer, reduced,
@@ -9,10 +10,6 @@ use dem_run::physics::bond::total::{End, bond_forces};
 use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-
-fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
-    prop::array::uniform3(-size..size).prop_map(Vector3::from)
-}
 
 fn direction() -> impl Strategy<Value = Vector3<f64>> {
     vector(1.0)

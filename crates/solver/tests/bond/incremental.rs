@@ -1,23 +1,12 @@
 //! The incremental formulation: does not depend on names, is objective, bends a cantilever as an independent implementation does, and keeps energy.
 
+use crate::{MODELS, vector};
 use dem_run::physics::bond::incremental::{History, Step, advance, bond_forces};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::{self, BondForces, End};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-
-const MODELS: [BondModel; 5] = [
-    BondModel::Parallel { kappa: None },
-    BondModel::EulerBernoulli,
-    BondModel::Timoshenko,
-    BondModel::ElasticSolid,
-    BondModel::ShearCoefficient { alpha: 0.9 },
-];
-
-fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
-    prop::array::uniform3(-size..size).prop_map(Vector3::from)
-}
 
 fn model() -> impl Strategy<Value = Stiffness> {
     (0..MODELS.len(), 0.2..0.6).prop_map(|(model, radius_a)| {

@@ -14,3 +14,21 @@ mod scatter;
 mod stiffness;
 mod strain_rate;
 mod total;
+
+use dem_run::physics::bond::stiffness::BondModel;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+/// Every bond model.
+pub(crate) const MODELS: [BondModel; 5] = [
+    BondModel::Parallel { kappa: None },
+    BondModel::EulerBernoulli,
+    BondModel::Timoshenko,
+    BondModel::ElasticSolid,
+    BondModel::ShearCoefficient { alpha: 0.9 },
+];
+
+/// Vectors in a cube of twice this edge.
+pub(crate) fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
+    prop::array::uniform3(-size..size).prop_map(Vector3::from)
+}

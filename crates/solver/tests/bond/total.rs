@@ -1,21 +1,10 @@
 //! The total formulation: its forces are the gradient of its energy, and nothing but deformation gives a force.
 
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use crate::{MODELS, vector};
+use dem_run::physics::bond::stiffness::{BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::{BondForces, End, bond_forces};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
-
-const MODELS: [BondModel; 5] = [
-    BondModel::Parallel { kappa: None },
-    BondModel::EulerBernoulli,
-    BondModel::Timoshenko,
-    BondModel::ElasticSolid,
-    BondModel::ShearCoefficient { alpha: 0.9 },
-];
-
-fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
-    prop::array::uniform3(-size..size).prop_map(Vector3::from)
-}
 
 fn direction() -> impl Strategy<Value = Vector3<f64>> {
     vector(1.0)
