@@ -223,7 +223,7 @@ pub fn bond_utilisation(state: &State, at: usize) -> f64 {
         return 0.0;
     }
     let load = bonds.forces(at, &state.particles.poses).load;
-    let stresses = stresses(&load, bonds.radii_m[at]);
+    let stresses = stresses(&load, bonds.radius_m(at));
     utilisation(criteria, &stresses, bonds.strength_factor(at))
 }
 

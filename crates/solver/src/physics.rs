@@ -1,4 +1,5 @@
 //! Physics as functions of plain numbers: nothing here knows of storage, threads, files or scenes.
 
 pub mod bond;
+pub mod number;
 pub mod rigid;

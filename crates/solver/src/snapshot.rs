@@ -172,16 +172,19 @@ pub fn fingerprint(state: &State) -> u64 {
     for numbers in [
         &p.radii_m,
         &p.inverse_masses,
-        &b.normal,
-        &b.shear,
         &b.torsion_per_bending,
-        &b.levers_m[0],
-        &b.levers_m[1],
-        &b.radii_m,
         &b.strength_factors,
     ] {
         add(numbers.len() as u64);
         numbers.iter().for_each(|n| add(n.to_bits()));
+    }
+    for block in &b.blocks {
+        let [x, y, z] = &block.direction;
+        let [lever_a, lever_b] = &block.levers_m;
+        let (normal, shear, radii) = (&block.normal, &block.shear, &block.radii_m);
+        for column in [x, y, z, lever_a, lever_b, normal, shear, radii] {
+            column.iter().for_each(|n| add(n.to_bits()));
+        }
     }
     for pose in &p.poses {
         pose.position_m.iter().for_each(|x| add(x.to_bits()));

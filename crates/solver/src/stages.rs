@@ -5,6 +5,7 @@ pub mod bonds;
 pub mod breakage;
 pub mod damping;
 pub mod incremental;
+mod lanes;
 pub mod loads;
 pub mod motion;
 pub mod supports;

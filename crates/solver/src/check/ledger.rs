@@ -110,7 +110,7 @@ impl Ledger {
         let bonds = &state.bonds;
         let stretched = |at: usize| {
             let stretch = 1e-6 * bonds.initial_length_m(at);
-            0.5 * bonds.normal[at] * stretch * stretch
+            0.5 * bonds.normal(at) * stretch * stretch
         };
         ledger.floor_j = ordered_sum(bonds.len(), stretched);
         ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic;

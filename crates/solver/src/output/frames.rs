@@ -116,7 +116,7 @@ impl FrameOrder {
                 bending_pa,
                 shear_pa,
                 torsion_pa,
-            } = stresses(&load, bonds.radii_m[at]);
+            } = stresses(&load, bonds.radius_m(at));
             normal_stresses.push(axial_pa + bending_pa);
             shear_stresses.push(shear_pa + torsion_pa);
             used.push(bond_utilisation(state, at));
@@ -125,7 +125,7 @@ impl FrameOrder {
         let bond_radii: Vec<f64> = self
             .bonds
             .iter()
-            .map(|&at| bonds.radii_m[at as usize])
+            .map(|&at| bonds.radius_m(at as usize))
             .collect();
         let bond_arrays = [
             array("bond_radius_m", Values::Scalars(&bond_radii)),

@@ -11,13 +11,13 @@ pub mod total;
 
 /// What a bond carries.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BondLoad {
+pub struct BondLoad<T = f64> {
     /// Along the bond, tension positive, N.
-    pub normal_n: f64,
+    pub normal_n: T,
     /// Across it, N. Not negative.
-    pub shear_n: f64,
+    pub shear_n: T,
     /// Torsional moment, N m. Not negative.
-    pub torsion_n_m: f64,
+    pub torsion_n_m: T,
     /// Bending moment, N m. Not negative.
-    pub bending_n_m: f64,
+    pub bending_n_m: T,
 }

@@ -96,14 +96,11 @@ fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all bonds [Platzer 15].
 fn thesis_s(state: &State) -> f64 {
     let inverse_masses = &state.particles.inverse_masses;
-    state
-        .bonds
-        .ends
-        .iter()
-        .zip(&state.bonds.normal)
-        .map(|(&[a, b], &k)| {
-            let inverse = inverse_masses[a as usize].max(inverse_masses[b as usize]);
-            0.17 / (k * inverse).sqrt()
+    let bonds = &state.bonds;
+    (0..bonds.len())
+        .map(|at| {
+            let [a, b] = bonds.ends[at].map(|end| inverse_masses[end as usize]);
+            0.17 / (bonds.normal(at) * a.max(b)).sqrt()
         })
         .fold(f64::INFINITY, f64::min)
 }

@@ -1,27 +1,110 @@
-//! Bonds are taken in blocks: what a block needs is gathered into short arrays side by side, computed without a branch (the compiler makes
-//! vector code of it, for AVX2 where the machine has it), and added to the particles in the order of the bonds.
+//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
+//! in the order of the bonds.
 
 use std::ops::Range;
 
-use nalgebra::Vector3;
-
-use crate::state::particles::Wrench;
+use super::lanes::Lanes;
+use crate::physics::number::Triple;
+use crate::state::bonds::{BLOCK, Bonds};
+use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::Share;
 
-/// Bonds in a block.
-pub(super) const BLOCK: usize = 32;
-/// Bonds computed at once, at least.
-const LANES: usize = 4;
+/// Four bonds, and which of them are wanted.
+pub(super) struct Four {
+    /// Their numbers. Where there are fewer than four, one stands for those that are missing.
+    pub(super) numbers: [usize; BLOCK],
+    /// Their two particles.
+    pub(super) ends: [[u32; 2]; BLOCK],
+    /// Places that are wanted.
+    pub(super) wanted: Range<usize>,
+}
 
-/// One number of each bond of a block.
-pub(super) type Column = [f64; BLOCK];
-/// Four numbers of each bond of a block.
-pub(super) type Rows = [[f64; 4]; BLOCK];
+impl Four {
+    /// Those of a block, of which the ones in `range` are wanted.
+    #[inline(always)]
+    pub(super) fn of_block(bonds: &Bonds, block: usize, range: &Range<usize>) -> Self {
+        let (first, last) = (block * BLOCK, bonds.len() - 1);
+        let numbers = [0, 1, 2, 3].map(|i| (first + i).min(last));
+        Self {
+            numbers,
+            ends: numbers.map(|at| bonds.ends[at]),
+            wanted: range.start.saturating_sub(first)..(range.end - first).min(BLOCK),
+        }
+    }
 
-/// Bonds to be computed where `count` are wanted: to the full number of lanes. What an earlier block left there does no harm.
+    /// Those of a part of a list: one to four.
+    #[inline(always)]
+    pub(super) fn of_list(bonds: &Bonds, some: &[u32]) -> Self {
+        let numbers = [0, 1, 2, 3].map(|i: usize| some[i.min(some.len() - 1)] as usize);
+        Self {
+            numbers,
+            ends: numbers.map(|at| bonds.ends[at]),
+            wanted: 0..some.len(),
+        }
+    }
+
+    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are particles of a share. `wrenches` are those of the
+    /// share. Torques are of both ends; the force is on the second, the first feels the opposite.
+    #[inline(always)]
+    pub(super) fn add<T: Lanes>(
+        &self,
+        first: usize,
+        force_on_b: Triple<T>,
+        torques: [Triple<T>; 2],
+        wrenches: &mut [Wrench],
+        particles: &Range<usize>,
+    ) {
+        let force_on_b = rows(force_on_b);
+        let (torque_on_a, torque_on_b) = (rows(torques[0]), rows(torques[1]));
+        for lane in 0..T::COUNT {
+            let [a, b] = self.ends[first + lane].map(|end| end as usize);
+            if !self.wanted.contains(&(first + lane)) {
+                continue;
+            }
+            if particles.contains(&a) {
+                let a = &mut wrenches[a - particles.start];
+                for k in 0..4 {
+                    a.force_n[k] -= force_on_b[lane][k];
+                    a.torque_n_m[k] += torque_on_a[lane][k];
+                }
+            }
+            if particles.contains(&b) {
+                let b = &mut wrenches[b - particles.start];
+                for k in 0..4 {
+                    b.force_n[k] += force_on_b[lane][k];
+                    b.torque_n_m[k] += torque_on_b[lane][k];
+                }
+            }
+        }
+    }
+}
+
+/// Blocks that a range of bonds touches.
 #[inline(always)]
-pub(super) fn full_lanes(count: usize) -> Range<usize> {
-    0..count.next_multiple_of(LANES).min(BLOCK)
+pub(super) fn blocks_of(range: &Range<usize>) -> Range<usize> {
+    range.start / BLOCK..range.end.div_ceil(BLOCK)
+}
+
+/// Vectors from places x, y, z of rows.
+#[inline(always)]
+pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Triple<T> {
+    let [x, y, z, _] = T::columns(proof, rows);
+    Triple(x, y, z)
+}
+
+/// Rows of x, y, z and something that makes four.
+#[inline(always)]
+fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; BLOCK] {
+    T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
+}
+
+/// The way from the first to the second ends, m, of as many bonds as there are lanes.
+#[inline(always)]
+pub(super) fn ways<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &[Pose]) -> Triple<T> {
+    vectors(proof, |lane| {
+        let [a, b] = ends[lane].map(|end| &poses[end as usize].position_m);
+        [0, 1, 2, 3].map(|k| b[k] - a[k])
+    })
 }
 
 /// Asks for the cache line of a value that will be needed soon.
@@ -30,7 +113,7 @@ pub(super) fn full_lanes(count: usize) -> Range<usize> {
     unsafe_code,
     reason = "a hint that reads and writes nothing; the safe language has none"
 )]
-pub(super) fn fetch_soon<T>(value: &T) {
+fn fetch_soon<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64 processor has it.
     unsafe {
@@ -39,6 +122,28 @@ pub(super) fn fetch_soon<T>(value: &T) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = value;
+}
+
+/// Bonds between those that are computed and those whose particles are fetched into the cache.
+const AHEAD: usize = 64;
+
+/// Asks for the particles at the second ends of the bonds that come soon after those of a block: in a large body they come from far away in memory,
+/// while first ends follow one another.
+#[inline(always)]
+pub(super) fn fetch_second_ends(
+    bonds: &Bonds,
+    block: usize,
+    poses: &[Pose],
+    wrenches: &[Wrench],
+    particles: &Range<usize>,
+) {
+    let soon = block * BLOCK + AHEAD;
+    for &[_, b] in bonds.ends.get(soon..soon + BLOCK).unwrap_or_default() {
+        fetch_soon(&poses[b as usize]);
+        if particles.contains(&(b as usize)) {
+            fetch_soon(&wrenches[b as usize - particles.start]);
+        }
+    }
 }
 
 /// Works on all shares, on as many threads as there are; each has the wrenches of its own particles.
@@ -58,71 +163,6 @@ pub(super) fn for_each_share(
                 || for_each_share(left, of_left, work),
                 || for_each_share(right, of_right, work),
             );
-        }
-    }
-}
-
-/// What the bonds of a block do to their ends.
-pub(super) struct Effects {
-    force_on_b: Rows,
-    torques: [Rows; 2],
-}
-
-impl Effects {
-    pub(super) fn new() -> Self {
-        let rows = [[0.0; 4]; BLOCK];
-        Self {
-            force_on_b: rows,
-            torques: [rows; 2],
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn set(&mut self, i: usize, force_on_b: &Vector3<f64>, torques: &[Vector3<f64>; 2]) {
-        let row = |v: &Vector3<f64>| [v.x, v.y, v.z, 0.0];
-        self.force_on_b[i] = row(force_on_b);
-        self.torques[0][i] = row(&torques[0]);
-        self.torques[1][i] = row(&torques[1]);
-    }
-
-    /// Adds them to the particles of a share, in which all first ends lie. `wrenches` are those of the share.
-    #[inline(always)]
-    pub(super) fn add_to_both(
-        &self,
-        ends: impl Iterator<Item = [u32; 2]>,
-        wrenches: &mut [Wrench],
-        particles: &Range<usize>,
-    ) {
-        for (i, [a, b]) in (0..BLOCK).zip(ends) {
-            let a = &mut wrenches[a as usize - particles.start];
-            for k in 0..4 {
-                a.force_n[k] -= self.force_on_b[i][k];
-                a.torque_n_m[k] += self.torques[0][i][k];
-            }
-            if (b as usize) < particles.end {
-                self.add_to_b(i, &mut wrenches[b as usize - particles.start]);
-            }
-        }
-    }
-
-    /// Adds them to the particles of a share, in which all second ends lie and no first.
-    #[inline(always)]
-    pub(super) fn add_to_second(
-        &self,
-        ends: impl Iterator<Item = [u32; 2]>,
-        wrenches: &mut [Wrench],
-        start: usize,
-    ) {
-        for (i, [_, b]) in (0..BLOCK).zip(ends) {
-            self.add_to_b(i, &mut wrenches[b as usize - start]);
-        }
-    }
-
-    #[inline(always)]
-    fn add_to_b(&self, i: usize, b: &mut Wrench) {
-        for k in 0..4 {
-            b.force_n[k] += self.force_on_b[i][k];
-            b.torque_n_m[k] += self.torques[1][i][k];
         }
     }
 }

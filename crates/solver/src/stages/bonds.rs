@@ -1,28 +1,24 @@
 //! Forces of the bonds on the particles, total formulation.
 
 use std::f64::consts::PI;
-use std::ops::Range;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-
-use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
-use crate::physics::bond::total::{End, bond_forces};
-use crate::stages::blocks::{BLOCK, Column, Effects, Rows, fetch_soon, for_each_share, full_lanes};
-use crate::state::bonds::{Bonds, bending_stiffness};
+use crate::physics::bond::total::answer;
+use crate::physics::number::{Triple, Turn};
+use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, ways};
+use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
-/// Bonds between those that are computed and those whose particles are fetched into the cache.
-const AHEAD: usize = 2 * BLOCK;
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
 /// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
     for_each_share(shares, wrenches, &|share, wrenches| {
-        pulp::Arch::new().dispatch(ShareWork {
+        with_lanes(ShareWork {
             bonds,
             poses,
             share,
@@ -31,7 +27,7 @@ pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrench
     });
 }
 
-/// The work on one share: a call that is compiled for AVX2 as well.
+/// The work on one share.
 struct ShareWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
@@ -40,68 +36,68 @@ struct ShareWork<'a> {
     wrenches: &'a mut [Wrench],
 }
 
-impl pulp::NullaryFnOnce for ShareWork<'_> {
-    type Output = ();
-
+impl LaneWork for ShareWork<'_> {
     #[inline(always)]
-    fn call(self) {
+    fn with<T: Lanes>(self, proof: T::Proof) {
+        let Self {
+            bonds,
+            poses,
+            share,
+            wrenches,
+        } = self;
         let Share {
             particles,
             batches,
             failing,
-        } = self.share;
+        } = share;
         failing.clear();
-        self.wrenches.fill(Wrench::default());
-        let mut block = Block::new();
+        wrenches.fill(Wrench::default());
         for Batch { rule, which } in batches.iter() {
-            let torsion = self.bonds.torsion_per_bending[*rule];
-            let rule = &self.bonds.rules[*rule];
-            if rule.incremental {
+            let kind = Kind {
+                torsion_per_bending: bonds.torsion_per_bending[*rule],
+                screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
+            };
+            if bonds.rules[*rule].incremental {
                 continue;
             }
-            let screen = rule.criteria.as_ref().map(Screen::new);
             match which {
-                Which::Border(list) => {
-                    for some in list.chunks(BLOCK) {
-                        block.gather_some(self.bonds, some, self.poses);
-                        block.compute(some.len(), torsion);
-                        let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
-                        block
-                            .effects
-                            .add_to_second(ends, self.wrenches, particles.start);
-                    }
-                }
-                Which::Own(list) => {
-                    for some in list.chunks(BLOCK) {
-                        block.gather_some(self.bonds, some, self.poses);
-                        block.compute(some.len(), torsion);
-                        let ends = some.iter().map(|&at| self.bonds.ends[at as usize]);
-                        block.effects.add_to_both(ends, self.wrenches, particles);
-                        if let Some(screen) = &screen {
-                            block.check(screen, self.bonds, some.iter().copied(), failing);
-                        }
-                    }
-                }
                 Which::Run(range) => {
-                    let mut first = range.start;
-                    while first < range.end {
-                        let run = first..(first + BLOCK).min(range.end);
-                        let ahead = self.bonds.ends.get(first + AHEAD..first + AHEAD + BLOCK);
-                        fetch_second_ends(
-                            ahead.unwrap_or_default(),
-                            self.poses,
-                            self.wrenches,
-                            particles,
-                        );
-                        block.gather_run(self.bonds, run.clone(), self.poses);
-                        block.compute(run.len(), torsion);
-                        let ends = self.bonds.ends[run.clone()].iter().copied();
-                        block.effects.add_to_both(ends, self.wrenches, particles);
-                        if let Some(screen) = &screen {
-                            let numbers = run.start as u32..run.end as u32;
-                            block.check(screen, self.bonds, numbers, failing);
+                    for block in blocks_of(range) {
+                        fetch_second_ends(bonds, block, poses, wrenches, particles);
+                        let four = Four::of_block(bonds, block, range);
+                        let numbers = &bonds.blocks[block];
+                        for first in (0..BLOCK).step_by(T::COUNT) {
+                            let found = kind.forces::<T>(proof, &four, numbers, first, poses);
+                            four.add(first, found.force_on_b, found.torques, wrenches, particles);
+                            list_failing(
+                                bonds,
+                                &four,
+                                numbers,
+                                first,
+                                &found.beyond[..T::COUNT],
+                                failing,
+                            );
                         }
-                        first += BLOCK;
+                    }
+                }
+                Which::Own(list) | Which::Border(list) => {
+                    for some in list.chunks(BLOCK) {
+                        let four = Four::of_list(bonds, some);
+                        let numbers = &BondBlock::of(bonds, four.numbers);
+                        for first in (0..BLOCK).step_by(T::COUNT) {
+                            let found = kind.forces::<T>(proof, &four, numbers, first, poses);
+                            four.add(first, found.force_on_b, found.torques, wrenches, particles);
+                            if matches!(which, Which::Own(_)) {
+                                list_failing(
+                                    bonds,
+                                    &four,
+                                    numbers,
+                                    first,
+                                    &found.beyond[..T::COUNT],
+                                    failing,
+                                );
+                            }
+                        }
                     }
                 }
             }
@@ -109,170 +105,180 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
     }
 }
 
-/// Asks for the particles at the second ends of bonds that will be computed soon: in a large body they come from far away in memory, while first
-/// ends follow one another.
-#[inline(always)]
-fn fetch_second_ends(
-    ends: &[[u32; 2]],
-    poses: &[Pose],
-    wrenches: &[Wrench],
-    particles: &Range<usize>,
-) {
-    for &[_, b] in ends {
-        fetch_soon(&poses[b as usize]);
-        if particles.contains(&(b as usize)) {
-            fetch_soon(&wrenches[b as usize - particles.start]);
-        }
-    }
+/// What bonds do to their ends, and how far they are beyond their strength: lane by lane.
+struct Found<T> {
+    force_on_b: Triple<T>,
+    torques: [Triple<T>; 2],
+    /// Square of the utilisation less [`NEARLY`], times (pi r^3)^2; below 0 if nothing can break.
+    beyond: [f64; BLOCK],
 }
 
-/// What a block of bonds needs, and what comes of it.
-struct Block {
-    apart: Rows,
-    turned: [Rows; 2],
-    direction: [Column; 3],
-    levers: [Column; 2],
-    normal: Column,
-    shear: Column,
-    radius: Column,
-    effects: Effects,
-    /// Normal, shear, torsion, bending.
-    load: [Column; 4],
+/// What bonds of a rule have in common.
+struct Kind {
+    torsion_per_bending: f64,
+    screen: Option<Screen>,
 }
 
-impl Block {
-    fn new() -> Self {
-        let column = [0.0; BLOCK];
-        let rows = [[0.0; 4]; BLOCK];
-        Self {
-            apart: rows,
-            turned: [rows; 2],
-            direction: [column; 3],
-            levers: [column; 2],
-            normal: column,
-            shear: column,
-            radius: [1.0; BLOCK],
-            effects: Effects::new(),
-            load: [column; 4],
-        }
-    }
-
-    /// The columns that are copied, and where from.
+impl Kind {
+    /// Forces of the bonds from `first` on, one for each lane.
     #[inline(always)]
-    fn columns<'a>(&'a mut self, bonds: &'a Bonds) -> [(&'a mut Column, &'a [f64]); 8] {
-        let [x, y, z] = &mut self.direction;
-        let [lever_a, lever_b] = &mut self.levers;
-        [
-            (x, &bonds.direction[0]),
-            (y, &bonds.direction[1]),
-            (z, &bonds.direction[2]),
-            (lever_a, &bonds.levers_m[0]),
-            (lever_b, &bonds.levers_m[1]),
-            (&mut self.normal, &bonds.normal),
-            (&mut self.shear, &bonds.shear),
-            (&mut self.radius, &bonds.radii_m),
-        ]
-    }
-
-    #[inline(always)]
-    fn gather_run(&mut self, bonds: &Bonds, run: Range<usize>, poses: &[Pose]) {
-        for (to, from) in self.columns(bonds) {
-            to[..run.len()].copy_from_slice(&from[run.clone()]);
-        }
-        self.gather_ends(bonds.ends[run].iter().copied(), poses);
-    }
-
-    #[inline(always)]
-    fn gather_some(&mut self, bonds: &Bonds, some: &[u32], poses: &[Pose]) {
-        for (to, from) in self.columns(bonds) {
-            for (to, &at) in to.iter_mut().zip(some) {
-                *to = from[at as usize];
-            }
-        }
-        self.gather_ends(some.iter().map(|&at| bonds.ends[at as usize]), poses);
-    }
-
-    #[inline(always)]
-    fn gather_ends(&mut self, ends: impl Iterator<Item = [u32; 2]>, poses: &[Pose]) {
-        for (i, [a, b]) in (0..BLOCK).zip(ends) {
-            let (a, b) = (&poses[a as usize], &poses[b as usize]);
-            self.apart[i] = [0, 1, 2, 3].map(|k| b.position_m[k] - a.position_m[k]);
-            self.turned[0][i] = a.turned;
-            self.turned[1][i] = b.turned;
-        }
-    }
-
-    /// Forces, torques and loads of the first `count` bonds.
-    #[inline(always)]
-    fn compute(&mut self, count: usize, torsion_per_bending: f64) {
-        for i in full_lanes(count) {
-            let turned = |q: &[f64; 4]| {
-                UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
-            };
-            let apart = self.apart[i];
-            let ends = [
-                End {
-                    position_m: Vector3::zeros(),
-                    turned: turned(&self.turned[0][i]),
-                },
-                End {
-                    position_m: Vector3::new(apart[0], apart[1], apart[2]),
-                    turned: turned(&self.turned[1][i]),
-                },
-            ];
-            let bending = bending_stiffness(self.normal[i], self.radius[i]);
-            let stiffness = Stiffness {
-                normal: self.normal[i],
-                shear: self.shear[i],
-                torsion: bending * torsion_per_bending,
-                bending,
-                levers_m: [self.levers[0][i], self.levers[1][i]],
-            };
-            let [x, y, z] = &self.direction;
-            let direction = Vector3::new(x[i], y[i], z[i]);
-            let forces = bond_forces(&stiffness, &direction, &ends);
-            self.effects.set(i, &forces.force_on_b, &forces.torques);
-            self.load[0][i] = forces.load.normal_n;
-            self.load[1][i] = forces.load.shear_n;
-            self.load[2][i] = forces.load.torsion_n_m;
-            self.load[3][i] = forces.load.bending_n_m;
-        }
-    }
-
-    /// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
-    #[inline(always)]
-    fn check(
+    fn forces<T: Lanes>(
         &self,
-        screen: &Screen,
-        bonds: &Bonds,
-        numbers: impl Iterator<Item = u32>,
-        failing: &mut Vec<u32>,
-    ) {
-        let mut beyond: Column = [0.0; BLOCK];
-        for (i, beyond) in beyond.iter_mut().enumerate() {
-            let load = BondLoad {
-                normal_n: self.load[0][i],
-                shear_n: self.load[1][i],
-                torsion_n_m: self.load[2][i],
-                bending_n_m: self.load[3][i],
-            };
-            let [used, factor] = screen.used_and_factor(&load, self.radius[i]);
-            *beyond = used - NEARLY * factor;
+        proof: T::Proof,
+        four: &Four,
+        numbers: &BondBlock,
+        first: usize,
+        poses: &[Pose],
+    ) -> Found<T> {
+        let ends = &four.ends[first..first + T::COUNT];
+        let normal = T::load(proof, &numbers.normal, first);
+        let radius_m = T::load(proof, &numbers.radii_m, first);
+        let bending = bending_stiffness(normal, radius_m);
+        let stiffness = Stiffness {
+            normal,
+            shear: T::load(proof, &numbers.shear, first),
+            torsion: bending.times(self.torsion_per_bending),
+            bending,
+            levers_m: [
+                T::load(proof, &numbers.levers_m[0], first),
+                T::load(proof, &numbers.levers_m[1], first),
+            ],
+        };
+        let direction = Triple(
+            T::load(proof, &numbers.direction[0], first),
+            T::load(proof, &numbers.direction[1], first),
+            T::load(proof, &numbers.direction[2], first),
+        );
+        let turned = [
+            turns(proof, |lane| poses[ends[lane][0] as usize].turned),
+            turns(proof, |lane| poses[ends[lane][1] as usize].turned),
+        ];
+        let answer = answer(&stiffness, direction, ways(proof, ends, poses), turned);
+        let mut beyond = [-1.0; BLOCK];
+        if let Some(screen) = &self.screen {
+            let [used, factor] = screen.used_and_factor(&answer.load, radius_m);
+            beyond = (used - factor.times(NEARLY)).values();
         }
-        if bonds.strength_factors.is_empty() {
-            for (beyond, at) in beyond.iter().zip(numbers) {
-                if *beyond >= 0.0 {
-                    failing.push(at);
+        Found {
+            force_on_b: answer.force_on_b,
+            torques: answer.torques,
+            beyond,
+        }
+    }
+}
+
+/// Rotations from quaternions x, y, z, w.
+#[inline(always)]
+fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Turn<T> {
+    let [x, y, z, w] = T::columns(proof, rows);
+    Turn(Triple(x, y, z), w)
+}
+
+/// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
+#[inline(always)]
+fn list_failing(
+    bonds: &Bonds,
+    four: &Four,
+    numbers: &BondBlock,
+    first: usize,
+    beyond: &[f64],
+    failing: &mut Vec<u32>,
+) {
+    for (i, beyond) in (first..).zip(beyond) {
+        let at = four.numbers[i];
+        let strengthened = bonds.strength_factors.get(at).map_or(0.0, |factor| {
+            let volume = PI * numbers.radii_m[i].powi(3);
+            NEARLY * volume * volume * (factor * factor - 1.0)
+        });
+        if *beyond >= strengthened && four.wanted.contains(&i) {
+            failing.push(at as u32);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::bond::failure::Criteria;
+    use crate::state::bonds::BondRule;
+    use crate::state::particles::Particles;
+    use crate::state::shares::divide;
+
+    /// Numbers between -1 and 1 that look random.
+    fn scattered(seed: u64) -> impl FnMut() -> f64 {
+        let mut hash = seed;
+        move || {
+            hash ^= hash << 13;
+            hash ^= hash >> 7;
+            hash ^= hash << 17;
+            (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    #[test]
+    fn as_many_lanes_as_there_are_give_the_bits_of_one() {
+        let mut any = scattered(7);
+        let mut particles = Particles::default();
+        for i in 0..40 {
+            particles.push_sphere([f64::from(i) + 0.3 * any(), any(), any()], 1.0, 1.0);
+            let q = [any(), any(), any(), any()];
+            let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+            particles.poses[i as usize].turned = q.map(|x| x / norm);
+        }
+        let mut bonds = Bonds {
+            rules: vec![BondRule {
+                incremental: false,
+                damped: false,
+                criteria: Some(Criteria {
+                    tension_pa: 1.5,
+                    shear_pa: f64::INFINITY,
+                    von_mises_pa: 1.5,
+                    compressive: false,
+                }),
+                strengthening_from_1_s: None,
+            }],
+            ..Bonds::default()
+        };
+        for (a, b) in (0..39).map(|a| (a, a + 1)).chain([(37, 39)]) {
+            let k = [any(), any(), any()].map(|x| 2.0 + x);
+            let stiffness = Stiffness {
+                normal: k[0],
+                shear: k[1],
+                torsion: k[2],
+                bending: bending_stiffness(k[0], 1.0 + 0.2 * any()),
+                levers_m: [0.5 + 0.1 * any(), 0.5],
+            };
+            bonds.push([a, b], [1.0, 0.0, 0.0], 1.0, &stiffness, 0);
+        }
+        for shares in [1, 3] {
+            let results = [false, true].map(|several| {
+                let mut shares = divide(&bonds, particles.len(), shares);
+                if several {
+                    let mut wrenches = particles.wrenches.clone();
+                    bond_wrenches(&bonds, &particles.poses, &mut shares, &mut wrenches);
+                    (wrenches, shares)
+                } else {
+                    let mut wrenches = particles.wrenches.clone();
+                    for_each_share(&mut shares, &mut wrenches, &|share, wrenches| {
+                        let work = ShareWork {
+                            bonds: &bonds,
+                            poses: &particles.poses,
+                            share,
+                            wrenches,
+                        };
+                        work.with::<f64>(());
+                    });
+                    (wrenches, shares)
                 }
+            });
+            let [one, many] = &results;
+            for (one, many) in one.0.iter().zip(&many.0) {
+                assert_eq!(one.force_n[..3], many.force_n[..3]);
+                assert_eq!(one.torque_n_m[..3], many.torque_n_m[..3]);
             }
-        } else {
-            for (i, at) in (0..BLOCK).zip(numbers) {
-                let volume = PI * self.radius[i].powi(3);
-                let strengthened = bonds.strength_factors[at as usize].powi(2) - 1.0;
-                if beyond[i] >= NEARLY * volume * volume * strengthened {
-                    failing.push(at);
-                }
-            }
+            assert_eq!(one.1, many.1);
+            let failing: usize = one.1.iter().map(|share| share.failing.len()).sum();
+            assert!(failing > 0 && failing < bonds.len(), "{failing} failing");
         }
     }
 }

@@ -52,7 +52,7 @@ pub fn break_bonds(
 fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -> Option<Cause> {
     let rule = &bonds.rules[bonds.rule_of(at)];
     let criteria = rule.criteria?;
-    let stresses = stresses(&forces.load, bonds.radii_m[at]);
+    let stresses = stresses(&forces.load, bonds.radius_m(at));
     let strengthening = rule.strengthening_from_1_s.map_or(1.0, |from| {
         let [a, b] = bonds.ends[at].map(|end| end as usize);
         let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();

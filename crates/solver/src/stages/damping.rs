@@ -1,10 +1,10 @@
 //! Viscous forces of damped bonds on the particles, from the velocities half a step ago.
 
-use nalgebra::Vector3;
-
-use crate::physics::bond::damping::{DampingCoefficients, EndMotion, damping_forces};
-use crate::stages::blocks::{BLOCK, Column, Effects, Rows, for_each_share, full_lanes};
-use crate::state::bonds::Bonds;
+use crate::physics::bond::damping::{DampingCoefficients, resistance};
+use crate::physics::number::Triple;
+use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, vectors, ways};
+use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
@@ -17,7 +17,7 @@ pub fn damping_wrenches(
     resisting: &mut [Wrench],
 ) {
     for_each_share(shares, resisting, &|share, resisting| {
-        pulp::Arch::new().dispatch(ShareWork {
+        with_lanes(ShareWork {
             bonds,
             poses,
             motions,
@@ -27,7 +27,7 @@ pub fn damping_wrenches(
     });
 }
 
-/// The work on one share: a call that is compiled for AVX2 as well.
+/// The work on one share.
 struct ShareWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
@@ -37,11 +37,9 @@ struct ShareWork<'a> {
     resisting: &'a mut [Wrench],
 }
 
-impl pulp::NullaryFnOnce for ShareWork<'_> {
-    type Output = ();
-
+impl LaneWork for ShareWork<'_> {
     #[inline(always)]
-    fn call(self) {
+    fn with<T: Lanes>(self, proof: T::Proof) {
         let Self {
             bonds,
             poses,
@@ -50,40 +48,31 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
             resisting,
         } = self;
         resisting.fill(Wrench::default());
-        let own = &share.particles;
-        let mut block = Block::new();
+        let particles = &share.particles;
         for Batch { rule, which } in &share.batches {
             if !bonds.rules[*rule].damped {
                 continue;
             }
             match which {
-                Which::Border(list) => {
-                    for some in list.chunks(BLOCK) {
-                        let numbers = some.iter().map(|&at| at as usize);
-                        block.gather(bonds, numbers.clone(), poses, motions);
-                        block.compute(some.len());
-                        let ends = numbers.map(|at| bonds.ends[at]);
-                        block.effects.add_to_second(ends, resisting, own.start);
-                    }
-                }
-                Which::Own(list) => {
-                    for some in list.chunks(BLOCK) {
-                        let numbers = some.iter().map(|&at| at as usize);
-                        block.gather(bonds, numbers.clone(), poses, motions);
-                        block.compute(some.len());
-                        let ends = numbers.map(|at| bonds.ends[at]);
-                        block.effects.add_to_both(ends, resisting, own);
-                    }
-                }
                 Which::Run(range) => {
-                    let mut first = range.start;
-                    while first < range.end {
-                        let run = first..(first + BLOCK).min(range.end);
-                        block.gather(bonds, run.clone(), poses, motions);
-                        block.compute(run.len());
-                        let ends = bonds.ends[run].iter().copied();
-                        block.effects.add_to_both(ends, resisting, own);
-                        first += BLOCK;
+                    for block in blocks_of(range) {
+                        fetch_second_ends(bonds, block, poses, resisting, particles);
+                        let four = Four::of_block(bonds, block, range);
+                        for first in (0..BLOCK).step_by(T::COUNT) {
+                            let (force_on_b, torques) =
+                                forces::<T>(proof, bonds, &four, first, poses, motions);
+                            four.add(first, force_on_b, torques, resisting, particles);
+                        }
+                    }
+                }
+                Which::Own(list) | Which::Border(list) => {
+                    for some in list.chunks(BLOCK) {
+                        let four = Four::of_list(bonds, some);
+                        for first in (0..BLOCK).step_by(T::COUNT) {
+                            let (force_on_b, torques) =
+                                forces::<T>(proof, bonds, &four, first, poses, motions);
+                            four.add(first, force_on_b, torques, resisting, particles);
+                        }
                     }
                 }
             }
@@ -91,73 +80,43 @@ impl pulp::NullaryFnOnce for ShareWork<'_> {
     }
 }
 
-/// What a block of bonds needs, and what comes of it.
-struct Block {
-    apart: Rows,
-    velocities: [Rows; 2],
-    spins: [Rows; 2],
-    levers: [Column; 2],
-    coefficients: Rows,
-    effects: Effects,
-}
-
-impl Block {
-    fn new() -> Self {
-        let rows = [[1.0; 4]; BLOCK];
-        Self {
-            apart: rows,
-            velocities: [rows; 2],
-            spins: [rows; 2],
-            levers: [[1.0; BLOCK]; 2],
-            coefficients: rows,
-            effects: Effects::new(),
-        }
-    }
-
-    #[inline(always)]
-    fn gather(
-        &mut self,
-        bonds: &Bonds,
-        numbers: impl Iterator<Item = usize>,
-        poses: &[Pose],
-        motions: &[Motion],
-    ) {
-        let row = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
-        for (i, at) in (0..BLOCK).zip(numbers) {
-            let [a, b] = bonds.ends[at].map(|end| end as usize);
-            let places = [poses[a].position_m, poses[b].position_m];
-            self.apart[i] = [0, 1, 2, 3].map(|k| places[1][k] - places[0][k]);
-            for (side, end) in [a, b].into_iter().enumerate() {
-                self.velocities[side][i] = row(motions[end].velocity_m_s);
-                self.spins[side][i] = row(motions[end].spin_rad_s);
-                self.levers[side][i] = bonds.levers_m[side][at];
-            }
-            self.coefficients[i] = bonds.damping[at];
-        }
-    }
-
-    /// Damping forces of the first `count` bonds.
-    #[inline(always)]
-    fn compute(&mut self, count: usize) {
-        for i in full_lanes(count) {
-            let vector = |rows: &Rows| Vector3::new(rows[i][0], rows[i][1], rows[i][2]);
-            let [normal, shear, torsion, bending] = self.coefficients[i];
-            let coefficients = DampingCoefficients {
-                normal,
-                shear,
-                torsion,
-                bending,
-            };
-            let apart = vector(&self.apart);
-            let length = apart.norm();
-            let ends = [0, 1].map(|side| EndMotion {
-                velocity_m_s: vector(&self.velocities[side]),
-                spin_rad_s: vector(&self.spins[side]),
-            });
-            let levers = [self.levers[0][i], self.levers[1][i]];
-            let c = apart * (1.0 / length);
-            let forces = damping_forces(&coefficients, &levers, &c, length, &ends);
-            self.effects.set(i, &forces.force_on_b, &forces.torques);
-        }
-    }
+/// Damping forces of the bonds from `first` on, one for each lane: on the second ends, N, and torques on both, N m.
+#[inline(always)]
+fn forces<T: Lanes>(
+    proof: T::Proof,
+    bonds: &Bonds,
+    four: &Four,
+    first: usize,
+    poses: &[Pose],
+    motions: &[Motion],
+) -> (Triple<T>, [Triple<T>; 2]) {
+    let row = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
+    let ends = &four.ends[first..first + T::COUNT];
+    let numbers = &four.numbers[first..first + T::COUNT];
+    let motion = |lane: usize, side: usize| &motions[ends[lane][side] as usize];
+    let moving = [
+        [
+            vectors(proof, |lane| row(motion(lane, 0).velocity_m_s)),
+            vectors(proof, |lane| row(motion(lane, 0).spin_rad_s)),
+        ],
+        [
+            vectors(proof, |lane| row(motion(lane, 1).velocity_m_s)),
+            vectors(proof, |lane| row(motion(lane, 1).spin_rad_s)),
+        ],
+    ];
+    let [normal, shear, torsion, bending] = T::columns(proof, |lane| bonds.damping[numbers[lane]]);
+    let coefficients = DampingCoefficients {
+        normal,
+        shear,
+        torsion,
+        bending,
+    };
+    let [lever_a, lever_b, _, _] = T::columns(proof, |lane| {
+        let [a, b] = bonds.levers_m(numbers[lane]);
+        [a, b, 0.0, 0.0]
+    });
+    let apart = ways::<T>(proof, ends, poses);
+    let length = apart.square().root();
+    let c = apart * length.inverse();
+    resistance(&coefficients, [lever_a, lever_b], c, length, moving)
 }

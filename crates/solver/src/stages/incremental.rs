@@ -68,7 +68,7 @@ fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wr
             if own.contains(&a) {
                 wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
                 if let Some(criteria) = &rule.criteria {
-                    let stresses = stresses(&forces.load, bonds.radii_m[at]);
+                    let stresses = stresses(&forces.load, bonds.radius_m(at));
                     if utilisation(criteria, &stresses, bonds.strength_factor(at)) >= 1.0 {
                         failing.push(at as u32);
                     }

@@ -1,4 +1,4 @@
-//! Bonds: one entry per bond in every array.
+//! Bonds: one entry per bond in every array, and what the loop over bonds reads of them in blocks.
 
 use std::ops::Range;
 
@@ -9,6 +9,7 @@ use crate::physics::bond::incremental::History;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{BondForces, End};
 use crate::physics::bond::{incremental, total};
+use crate::physics::number::Number;
 
 use super::particles::Pose;
 
@@ -25,10 +26,62 @@ pub struct BondRule {
     pub strengthening_from_1_s: Option<f64>,
 }
 
+/// Bonds in a block.
+pub const BLOCK: usize = 4;
+
+/// One number of each bond of a block.
+pub type Column = [f64; BLOCK];
+
+/// Bonds that follow one another: what their forces come from, number by number side by side, so that a loop over them reads whole vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct BondBlock {
+    /// Unit vectors from the first to the second end at the start, x, y, z.
+    pub direction: [Column; 3],
+    /// Distances of the contact point from the two ends at the start, m.
+    pub levers_m: [Column; 2],
+    /// Along the bond, N/m. A broken bond has no stiffness.
+    pub normal: Column,
+    /// Across the bond, N/m.
+    pub shear: Column,
+    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in every model.
+    pub radii_m: Column,
+}
+
+impl BondBlock {
+    /// No bond.
+    pub const EMPTY: Self = Self {
+        direction: [[0.0; BLOCK]; 3],
+        levers_m: [[0.0; BLOCK]; 2],
+        normal: [0.0; BLOCK],
+        shear: [0.0; BLOCK],
+        radii_m: [1.0; BLOCK],
+    };
+
+    /// Copies of these bonds.
+    #[inline(always)]
+    pub fn of(bonds: &Bonds, some: [usize; BLOCK]) -> Self {
+        let collect = |column: fn(&Self) -> &Column| {
+            some.map(|at| column(&bonds.blocks[at / BLOCK])[at % BLOCK])
+        };
+        Self {
+            direction: [
+                collect(|b| &b.direction[0]),
+                collect(|b| &b.direction[1]),
+                collect(|b| &b.direction[2]),
+            ],
+            levers_m: [collect(|b| &b.levers_m[0]), collect(|b| &b.levers_m[1])],
+            normal: collect(|b| &b.normal),
+            shear: collect(|b| &b.shear),
+            radii_m: collect(|b| &b.radii_m),
+        }
+    }
+}
+
 /// Stiffness in bending of a round bond, N m/rad, from that along it, N/m: E I/L0 from E A/L0.
 #[inline(always)]
-pub fn bending_stiffness(normal: f64, radius_m: f64) -> f64 {
-    0.25 * normal * radius_m * radius_m
+pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
+    normal.times(0.25) * radius_m * radius_m
 }
 
 /// All bonds of a scene, sorted by their first particle and then by their second.
@@ -36,16 +89,8 @@ pub fn bending_stiffness(normal: f64, radius_m: f64) -> f64 {
 pub struct Bonds {
     /// The two particles, the smaller index first.
     pub ends: Vec<[u32; 2]>,
-    /// Unit vector from the first to the second end at the start, x, y, z.
-    pub direction: [Vec<f64>; 3],
-    /// Distances of the contact point from the two ends at the start, m.
-    pub levers_m: [Vec<f64>; 2],
-    /// Along the bond, N/m. A broken bond has no stiffness.
-    pub normal: Vec<f64>,
-    /// Across the bond, N/m.
-    pub shear: Vec<f64>,
-    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in every model.
-    pub radii_m: Vec<f64>,
+    /// What their forces come from; the last block may have room left.
+    pub blocks: Vec<BondBlock>,
     /// Factor on the strengths. Empty: 1 for all.
     pub strength_factors: Vec<f64>,
     /// Damping along, across, torsion, bending: N s/m, N s/m, N m s/rad, N m s/rad. Empty: none is damped.
@@ -74,11 +119,8 @@ impl Bonds {
     /// Makes room for so many bonds more, and no more than that.
     pub fn reserve_exact(&mut self, count: usize) {
         self.ends.reserve_exact(count);
-        let columns = [&mut self.normal, &mut self.shear, &mut self.radii_m];
-        let vectors = self.direction.iter_mut().chain(&mut self.levers_m);
-        for column in vectors.chain(columns) {
-            column.reserve_exact(count);
-        }
+        let blocks = (self.len() + count).div_ceil(BLOCK);
+        self.blocks.reserve_exact(blocks - self.blocks.len());
     }
 
     /// Adds a bond that follows the rule of this number. Bonds are to be added in the order that [`Bonds`] names.
@@ -90,20 +132,26 @@ impl Bonds {
         stiffness: &Stiffness,
         rule: usize,
     ) {
+        let i = self.len() % BLOCK;
+        if i == 0 {
+            self.blocks.push(BondBlock::EMPTY);
+        }
         self.ends.push(ends);
-        for (all, one) in self.direction.iter_mut().zip(direction) {
-            all.push(one);
+        if let Some(block) = self.blocks.last_mut() {
+            for (column, x) in block.direction.iter_mut().zip(direction) {
+                column[i] = x;
+            }
+            for (column, lever) in block.levers_m.iter_mut().zip(stiffness.levers_m) {
+                column[i] = lever;
+            }
+            block.normal[i] = stiffness.normal;
+            block.shear[i] = stiffness.shear;
+            block.radii_m[i] = radius_m;
         }
-        for (all, one) in self.levers_m.iter_mut().zip(stiffness.levers_m) {
-            all.push(one);
-        }
-        self.normal.push(stiffness.normal);
-        self.shear.push(stiffness.shear);
         if self.torsion_per_bending.len() <= rule {
             self.torsion_per_bending.resize(rule + 1, 1.0);
         }
         self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
-        self.radii_m.push(radius_m);
         let end = self.len();
         match self.stretches.last_mut() {
             Some((last, of)) if *of == rule => *last = end,
@@ -111,15 +159,32 @@ impl Bonds {
         }
     }
 
+    /// Stiffness along bond `at`, N/m; 0 if it is broken.
+    pub fn normal(&self, at: usize) -> f64 {
+        self.blocks[at / BLOCK].normal[at % BLOCK]
+    }
+
+    /// Radius of bond `at`, m.
+    pub fn radius_m(&self, at: usize) -> f64 {
+        self.blocks[at / BLOCK].radii_m[at % BLOCK]
+    }
+
+    /// Distances of the contact point of bond `at` from its two ends at the start, m.
+    pub fn levers_m(&self, at: usize) -> [f64; 2] {
+        let [a, b] = &self.blocks[at / BLOCK].levers_m;
+        [a[at % BLOCK], b[at % BLOCK]]
+    }
+
     /// What bond `at` answers.
     pub fn stiffness(&self, at: usize) -> Stiffness {
-        let bending = bending_stiffness(self.normal[at], self.radii_m[at]);
+        let (normal, radius_m) = (self.normal(at), self.radius_m(at));
+        let bending = bending_stiffness(normal, radius_m);
         Stiffness {
-            normal: self.normal[at],
-            shear: self.shear[at],
+            normal,
+            shear: self.blocks[at / BLOCK].shear[at % BLOCK],
             torsion: bending * self.torsion_per_bending[self.rule_of(at)],
             bending,
-            levers_m: [self.levers_m[0][at], self.levers_m[1][at]],
+            levers_m: self.levers_m(at),
         }
     }
 
@@ -131,8 +196,8 @@ impl Bonds {
             let apart = b.place() - a.place();
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
         }
-        let [x, y, z] = &self.direction;
-        let direction = Vector3::new(x[at], y[at], z[at]);
+        let [x, y, z] = &self.blocks[at / BLOCK].direction;
+        let direction = Vector3::new(x[at % BLOCK], y[at % BLOCK], z[at % BLOCK]);
         let ends = [a, b].map(|pose| End {
             position_m: pose.place(),
             turned: pose.rotation(),
@@ -142,7 +207,8 @@ impl Bonds {
 
     /// Initial length of bond `at`, m.
     pub fn initial_length_m(&self, at: usize) -> f64 {
-        self.levers_m[0][at] + self.levers_m[1][at]
+        let [a, b] = self.levers_m(at);
+        a + b
     }
 
     /// Factor on the strengths of bond `at`.
@@ -152,13 +218,14 @@ impl Bonds {
 
     /// Whether bond `at` is broken.
     pub fn is_broken(&self, at: usize) -> bool {
-        self.normal[at] == 0.0
+        self.normal(at) == 0.0
     }
 
     /// Takes all stiffness, damping and history from bond `at`.
     pub fn set_broken(&mut self, at: usize) {
-        self.normal[at] = 0.0;
-        self.shear[at] = 0.0;
+        let block = &mut self.blocks[at / BLOCK];
+        block.normal[at % BLOCK] = 0.0;
+        block.shear[at % BLOCK] = 0.0;
         if let Some(damping) = self.damping.get_mut(at) {
             *damping = [0.0; 4];
         }

@@ -14,7 +14,7 @@ use crate::bodies::{
 fn flying_apart(incremental: bool) -> State {
     let mut state = rod(1, NORMAL, incremental);
     let m = 1.0 / state.particles.inverse_masses[0];
-    let k = state.bonds.normal[0];
+    let k = state.bonds.normal(0);
     // Twice the speed that the bond can hold.
     let force = STRENGTH_PA * area_m2();
     let speed = 2.0 * force / (0.5 * m * k).sqrt();

@@ -25,7 +25,7 @@ enum Besides {
 fn shaken(incremental: bool, besides: Besides) -> State {
     let mut state = rod(6, NORMAL, incremental);
     let m = 1.0 / state.particles.inverse_masses[0];
-    let speed = STRENGTH_PA * area_m2() / (m * state.bonds.normal[0]).sqrt();
+    let speed = STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
     for (i, motion) in state.particles.motions.iter_mut().enumerate() {
         let phase = PI * i as f64 / 6.0;
         let along = -(phase.cos()) * 2.2 * speed;
@@ -117,7 +117,7 @@ fn a_support_at_rest_does_no_work_in_a_break() {
             let mut state = rod(1, NORMAL, incremental);
             hold(&mut state, std::iter::once(0), 0.0);
             let m = 1.0 / state.particles.inverse_masses[1];
-            let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal[0]).sqrt();
+            let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
             state.particles.motions[1].velocity_m_s = [speed, 0.1 * speed, 0.0];
             state.ledger = Ledger::opened(&state);
             while state.broken_count == 0 {

@@ -67,7 +67,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     let share = |state: &State, at: usize| {
         let forces = state.bonds.forces(at, &state.particles.poses);
         let criteria = state.bonds.rules[0].criteria.unwrap();
-        let stresses = stresses(&forces.load, state.bonds.radii_m[at]);
+        let stresses = stresses(&forces.load, state.bonds.radius_m(at));
         utilisation(&criteria, &stresses, state.bonds.strength_factor(at))
     };
     let mut before = vec![0.0; state.bonds.len()];

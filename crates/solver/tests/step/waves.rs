@@ -14,7 +14,7 @@ const SPEED_M_S: f64 = 1.0;
 fn chain(count: u32, model: BondModel) -> (State, f64) {
     let (particles, pairs) = spheres(count);
     let state = body(particles, &pairs, &steel(model, ELASTIC), 1e-6);
-    let rate = (state.bonds.normal[0] * state.particles.inverse_masses[0]).sqrt();
+    let rate = (state.bonds.normal(0) * state.particles.inverse_masses[0]).sqrt();
     (state, rate)
 }
 

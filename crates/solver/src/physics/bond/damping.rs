@@ -3,20 +3,21 @@
 //! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
 
 use super::stiffness::Stiffness;
+use crate::physics::number::{Number, Triple};
 use nalgebra::Vector3;
 use std::ops::Add;
 
 /// Damping force or moment per relative speed at the contact point, mode by mode.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct DampingCoefficients {
+pub struct DampingCoefficients<T = f64> {
     /// Along the bond, N s/m.
-    pub normal: f64,
+    pub normal: T,
     /// Across it, N s/m.
-    pub shear: f64,
+    pub shear: T,
     /// About the bond, N m s/rad.
-    pub torsion: f64,
+    pub torsion: T,
     /// About axes across it, N m s/rad.
-    pub bending: f64,
+    pub bending: T,
 }
 
 impl Add for DampingCoefficients {
@@ -115,7 +116,6 @@ pub struct DampingForces {
 /// Damping of a bond now `length_m` long along the unit vector `c` from a to b. Its contact point splits the length as the `levers_m` do the initial one.
 ///
 /// The bond is turned by nothing as a whole, gives no force while it moves as a rigid body, and never adds energy.
-#[inline(always)]
 pub fn damping_forces(
     coefficients: &DampingCoefficients,
     levers_m: &[f64; 2],
@@ -123,23 +123,40 @@ pub fn damping_forces(
     length_m: f64,
     ends: &[EndMotion; 2],
 ) -> DampingForces {
-    let [a, b] = ends;
-    let [lever_a, lever_b] = *levers_m;
+    let triple = |v: &Vector3<f64>| Triple(v.x, v.y, v.z);
+    let vector = |t: Triple<f64>| Vector3::new(t.0, t.1, t.2);
+    let motions = ends.map(|end| [triple(&end.velocity_m_s), triple(&end.spin_rad_s)]);
+    let (force_on_b, torques) = resistance(coefficients, *levers_m, triple(c), length_m, motions);
+    DampingForces {
+        force_on_b: vector(force_on_b),
+        torques: torques.map(vector),
+    }
+}
+
+/// As [`damping_forces`], for one bond or several at once whose ends have these velocities, m/s, and spins, rad/s: force on the second end, N, and
+/// torques on both, N m.
+#[inline(always)]
+pub fn resistance<T: Number>(
+    coefficients: &DampingCoefficients<T>,
+    [lever_a, lever_b]: [T; 2],
+    c: Triple<T>,
+    length_m: T,
+    [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Triple<T>; 2]; 2],
+) -> (Triple<T>, [Triple<T>; 2]) {
     let scale = length_m / (lever_a + lever_b);
     let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
-    let velocity =
-        b.velocity_m_s - a.velocity_m_s - a.spin_rad_s.cross(&arm_a) - b.spin_rad_s.cross(&arm_b);
-    let spin = b.spin_rad_s - a.spin_rad_s;
-    let force = split(coefficients.normal, coefficients.shear, &velocity, c);
-    let moment = split(coefficients.torsion, coefficients.bending, &spin, c);
-    DampingForces {
-        force_on_b: -force,
-        torques: [moment + arm_a.cross(&force), arm_b.cross(&force) - moment],
-    }
+    let velocity = velocity_b - velocity_a - spin_a.cross(arm_a) - spin_b.cross(arm_b);
+    let spin = spin_b - spin_a;
+    let force = split(coefficients.normal, coefficients.shear, velocity, c);
+    let moment = split(coefficients.torsion, coefficients.bending, spin, c);
+    (
+        -force,
+        [moment + arm_a.cross(force), arm_b.cross(force) - moment],
+    )
 }
 
 /// `along` times the part of a vector along `c` plus `across` times the rest.
 #[inline(always)]
-fn split(along: f64, across: f64, vector: &Vector3<f64>, c: &Vector3<f64>) -> Vector3<f64> {
-    across * vector + c * ((along - across) * vector.dot(c))
+fn split<T: Number>(along: T, across: T, vector: Triple<T>, c: Triple<T>) -> Triple<T> {
+    vector * across + c * ((along - across) * vector.dot(c))
 }

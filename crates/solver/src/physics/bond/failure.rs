@@ -6,6 +6,7 @@
 //! the bond; here the same stresses come from its forces and moments, each with its own stiffness. A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
 
 use super::BondLoad;
+use crate::physics::number::Number;
 use std::f64::consts::PI;
 
 /// Strengths of a bond. An infinite strength is not asked for; several may act together.
@@ -95,18 +96,22 @@ impl Screen {
 
     /// Square of the utilisation, but for the factor (pi r^3)^2 that is given beside it: stresses times pi r^3 are F r + 4 M and S r + 2 T.
     #[inline(always)]
-    pub fn used_and_factor(&self, load: &BondLoad, radius_m: f64) -> [f64; 2] {
-        let (bending, torsion) = (4.0 * load.bending_n_m, 2.0 * load.torsion_n_m);
+    pub fn used_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
+        let (bending, torsion) = (load.bending_n_m.times(4.0), load.torsion_n_m.times(2.0));
         let axial = load.normal_n * radius_m;
-        let counts = self.compressive || axial > 0.0;
-        let normal = if counts { axial.abs() + bending } else { 0.0 };
+        let pulled = axial.if_positive(axial) + bending;
+        let normal = if self.compressive {
+            axial.larger(-axial) + bending
+        } else {
+            axial.if_positive(pulled)
+        };
         let shear = load.shear_n * radius_m + torsion;
-        let pulled = axial.max(0.0) + bending;
         let [by_normal, by_shear, by_von_mises] = self.per_strength_squared;
-        let used = (normal * normal * by_normal)
-            .max(shear * shear * by_shear)
-            .max((pulled * pulled + 3.0 * shear * shear) * by_von_mises);
-        let volume = PI * radius_m * radius_m * radius_m;
+        let used = (normal * normal)
+            .times(by_normal)
+            .larger((shear * shear).times(by_shear))
+            .larger((pulled * pulled + (shear * shear).times(3.0)).times(by_von_mises));
+        let volume = (radius_m * radius_m * radius_m).times(PI);
         [used, volume * volume]
     }
 }

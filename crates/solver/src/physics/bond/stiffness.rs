@@ -38,17 +38,17 @@ pub struct BondShape {
 
 /// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stiffness {
+pub struct Stiffness<T = f64> {
     /// Along the bond, N/m.
-    pub normal: f64,
+    pub normal: T,
     /// Across the bond at the contact point, N/m.
-    pub shear: f64,
+    pub shear: T,
     /// Torsion, N m/rad.
-    pub torsion: f64,
+    pub torsion: T,
     /// Bending, N m/rad.
-    pub bending: f64,
+    pub bending: T,
     /// Distances of the contact point from the two centres, m; together the bond's length.
-    pub levers_m: [f64; 2],
+    pub levers_m: [T; 2],
 }
 
 /// Stiffness of a bond of Young's modulus `young_modulus_pa` and Poisson's ratio `poisson_ratio`.

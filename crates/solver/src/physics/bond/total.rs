@@ -11,6 +11,7 @@
 
 use super::BondLoad;
 use super::stiffness::Stiffness;
+use crate::physics::number::{Number, Triple, Turn};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// An end of a bond: where its particle is and how it is turned.
@@ -24,15 +25,15 @@ pub struct End {
 
 /// Energy of a bond by mode, J.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BondEnergy {
+pub struct BondEnergy<T = f64> {
     /// Stretch.
-    pub normal: f64,
+    pub normal: T,
     /// Shear.
-    pub shear: f64,
+    pub shear: T,
     /// Torsion.
-    pub torsion: f64,
+    pub torsion: T,
     /// Bending.
-    pub bending: f64,
+    pub bending: T,
 }
 
 impl BondEnergy {
@@ -57,66 +58,102 @@ pub struct BondForces {
 
 /// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in [`bond_forces`], so that a bond at rest gives no force to the last bit.
 pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {
-    apart * (1.0 / apart.norm())
+    let apart = Triple(apart.x, apart.y, apart.z);
+    let Triple(x, y, z) = apart * apart.square().root().inverse();
+    Vector3::new(x, y, z)
 }
 
 /// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
+pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
+    let triple = |v: &Vector3<f64>| Triple(v.x, v.y, v.z);
+    let vector = |t: Triple<f64>| Vector3::new(t.0, t.1, t.2);
+    let apart = ends[1].position_m - ends[0].position_m;
+    let turned = ends.map(|end| Turn(triple(&end.turned.imag()), end.turned.w));
+    let answer = answer(stiffness, triple(direction), triple(&apart), turned);
+    BondForces {
+        force_on_b: vector(answer.force_on_b),
+        torques: answer.torques.map(vector),
+        energy: answer.energy,
+        load: answer.load,
+    }
+}
+
+/// What one bond or several at once do to their ends: as [`BondForces`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer<T> {
+    /// Force on the second end, N.
+    pub force_on_b: Triple<T>,
+    /// Torques on the two ends, N m.
+    pub torques: [Triple<T>; 2],
+    /// Energy stored, J.
+    pub energy: BondEnergy<T>,
+    /// What it carries.
+    pub load: BondLoad<T>,
+}
+
+/// Forces of bonds whose initial directions were `direction`, whose second ends now stand `apart` from the first, m, and whose ends are `turned`
+/// since the start.
 ///
 /// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and load the caller does not read is not computed.
 #[inline(always)]
-pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
-    let [a, b] = ends;
+pub fn answer<T: Number>(
+    stiffness: &Stiffness<T>,
+    direction: Triple<T>,
+    apart: Triple<T>,
+    turned: [Turn<T>; 2],
+) -> Answer<T> {
     let [lever_a, lever_b] = stiffness.levers_m;
-    let apart = b.position_m - a.position_m;
-    let length = apart.norm();
-    let per_length = 1.0 / length;
+    let length = apart.square().root();
+    let per_length = length.inverse();
     let c = apart * per_length;
     let initial = lever_a + lever_b;
     let stretch = length - initial;
 
     // s = L0 c + lean: nothing cancels in a lean that is small, and at rest it is 0 to the last bit.
-    let (direction_a, direction_b) = (a.turned * direction, b.turned * direction);
-    let lean = lever_a * (direction_a - c) + lever_b * (direction_b - c);
-    let lean_along = c.dot(&lean);
+    let [turned_a, turned_b] = turned;
+    let (direction_a, direction_b) = (turned_a.of(direction), turned_b.of(direction));
+    let lean = (direction_a - c) * lever_a + (direction_b - c) * lever_b;
+    let lean_along = c.dot(lean);
     let along = initial + lean_along;
     let across = lean - c * lean_along;
 
-    let relative = b.turned.quaternion() * a.turned.quaternion().conjugate();
     // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.
-    let relative = relative * 1.0_f64.copysign(relative.w);
-    let (cosine, half_phi) = (relative.w, relative.imag());
-    let phi = 2.0 * half_phi;
+    let Turn(half_phi, cosine) = turned_b.since(turned_a);
+    let sign = cosine.sign();
+    let (half_phi, cosine) = (half_phi * sign, cosine * sign);
+    let phi = half_phi + half_phi;
     let sum = direction_a + direction_b;
-    let per_sum_squared = 1.0 / sum.norm_squared();
-    let twist_per_sum = phi.dot(&sum) * per_sum_squared;
+    let per_sum_squared = sum.square().inverse();
+    let twist_per_sum = phi.dot(sum) * per_sum_squared;
     let twist = sum * twist_per_sum;
     let bend = phi - twist;
     let excess = stiffness.torsion - stiffness.bending;
 
     // Gradients of the energy with respect to phi and e; a change of e is a change of the sum, across it.
-    let by_phi = stiffness.bending * phi + excess * twist;
-    let by_sum = (excess * twist_per_sum) * bend;
-    let turn = cosine * by_phi;
-    let swing = half_phi.cross(&by_phi);
+    let by_phi = phi * stiffness.bending + twist * excess;
+    let by_sum = bend * (excess * twist_per_sum);
+    let turn = by_phi * cosine;
+    let swing = half_phi.cross(by_phi);
 
-    let shear_force = stiffness.shear * across;
-    BondForces {
-        force_on_b: shear_force * (along * per_length) - c * (stiffness.normal * stretch),
+    let shear_force = across * stiffness.shear;
+    let normal_force = stiffness.normal * stretch;
+    Answer {
+        force_on_b: shear_force * (along * per_length) - c * normal_force,
         torques: [
-            turn - swing - direction_a.cross(&(lever_a * shear_force + by_sum)),
-            -turn - swing - direction_b.cross(&(lever_b * shear_force + by_sum)),
+            turn - swing - direction_a.cross(shear_force * lever_a + by_sum),
+            -turn - swing - direction_b.cross(shear_force * lever_b + by_sum),
         ],
         energy: BondEnergy {
-            normal: 0.5 * stiffness.normal * stretch * stretch,
-            shear: 0.5 * stiffness.shear * across.norm_squared(),
-            torsion: 0.5 * stiffness.torsion * twist.norm_squared(),
-            bending: 0.5 * stiffness.bending * bend.norm_squared(),
+            normal: (normal_force * stretch).times(0.5),
+            shear: (stiffness.shear * across.square()).times(0.5),
+            torsion: (stiffness.torsion * twist.square()).times(0.5),
+            bending: (stiffness.bending * bend.square()).times(0.5),
         },
         load: BondLoad {
-            normal_n: stiffness.normal * stretch,
-            shear_n: stiffness.shear * across.norm(),
-            torsion_n_m: stiffness.torsion * twist.norm(),
-            bending_n_m: stiffness.bending * bend.norm(),
+            normal_n: normal_force,
+            shear_n: stiffness.shear * across.square().root(),
+            torsion_n_m: stiffness.torsion * twist.square().root(),
+            bending_n_m: stiffness.bending * bend.square().root(),
         },
     }
 }

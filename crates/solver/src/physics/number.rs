@@ -1,0 +1,149 @@
+//! Formulas that are worked out for one bond or for several at once are written for any [`Number`]: an `f64`, or one `f64` for each bond.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// What a formula needs of its numbers. Every operation rounds as that of `f64` does, so several at once give the same bits as one by one.
+pub trait Number:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Times a constant.
+    fn times(self, factor: f64) -> Self;
+
+    /// One over this.
+    fn inverse(self) -> Self;
+
+    /// Root.
+    fn root(self) -> Self;
+
+    /// The larger of two numbers.
+    fn larger(self, other: Self) -> Self;
+
+    /// 1 or -1, as the sign is; -1 for -0.
+    fn sign(self) -> Self;
+
+    /// `value` where this is above 0, and 0 elsewhere.
+    fn if_positive(self, value: Self) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        1.0 / self
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Self {
+        1.0_f64.copysign(self)
+    }
+
+    #[inline(always)]
+    fn if_positive(self, value: Self) -> Self {
+        if self > 0.0 { value } else { 0.0 }
+    }
+}
+
+/// A vector in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triple<T>(pub T, pub T, pub T);
+
+impl<T: Number> Triple<T> {
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> T {
+        self.0 * other.0 + self.1 * other.1 + self.2 * other.2
+    }
+
+    /// Outer product.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self(
+            self.1 * other.2 - self.2 * other.1,
+            self.2 * other.0 - self.0 * other.2,
+            self.0 * other.1 - self.1 * other.0,
+        )
+    }
+
+    /// Square of the length.
+    #[inline(always)]
+    pub fn square(self) -> T {
+        self.dot(self)
+    }
+}
+
+impl<T: Number> Add for Triple<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1, self.2 + other.2)
+    }
+}
+
+impl<T: Number> Sub for Triple<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1, self.2 - other.2)
+    }
+}
+
+impl<T: Number> Neg for Triple<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1, -self.2)
+    }
+}
+
+impl<T: Number> Mul<T> for Triple<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self(self.0 * factor, self.1 * factor, self.2 * factor)
+    }
+}
+
+/// A rotation: the vector part and the scalar part of a unit quaternion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn<T>(pub Triple<T>, pub T);
+
+impl<T: Number> Turn<T> {
+    /// A vector after the rotation.
+    #[inline(always)]
+    pub fn of(self, vector: Triple<T>) -> Triple<T> {
+        let Self(axis, w) = self;
+        let half = axis.cross(vector);
+        let t = half + half;
+        t * w + axis.cross(t) + vector
+    }
+
+    /// The rotation after which `before` becomes this one, in space: this times the conjugate of `before`.
+    #[inline(always)]
+    pub fn since(self, before: Self) -> Self {
+        let (Self(b, wb), Self(a, wa)) = (self, before);
+        Self(b * wa - a * wb - b.cross(a), wb * wa + b.dot(a))
+    }
+}
