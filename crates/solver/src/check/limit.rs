@@ -44,7 +44,7 @@ pub struct Limit {
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. The wrenches of the state are overwritten.
 pub fn limit(state: &mut State) -> Limit {
-    let (k, iterations) = largest_eigenvalue(state, STIFFNESS);
+    let (k, iterations) = largest_eigenvalue(state, Weights::STIFFNESS);
     let stiffer = if state.particle_resistance.is_empty() {
         1.0
     } else {
@@ -53,7 +53,7 @@ pub fn limit(state: &mut State) -> Limit {
     let c = if state.bond_resistance.is_empty() {
         0.0
     } else {
-        largest_eigenvalue(state, DAMPING).0
+        largest_eigenvalue(state, Weights::DAMPING).0
     };
     Limit {
         step_s: if c > 0.0 {
@@ -80,7 +80,7 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
     let (mut safe_s, mut step_s) = (safe_s, safe_s);
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
-        let both = Operator {
+        let both = Weights {
             stiffness: 0.25 * stiffer * step_s * step_s,
             damping: 0.5 * step_s,
         };
@@ -109,31 +109,35 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
     safe_s
 }
 
-/// A weighted sum of the two symmetric operators of a body.
+/// Weights of the two symmetric operators of a body in a sum of them.
 #[derive(Debug, Clone, Copy)]
-struct Operator {
+struct Weights {
     /// Of K, from displacements to forces.
     stiffness: f64,
     /// Of C, from velocities to forces.
     damping: f64,
 }
 
-const STIFFNESS: Operator = Operator {
-    stiffness: 1.0,
-    damping: 0.0,
-};
-const DAMPING: Operator = Operator {
-    stiffness: 0.0,
-    damping: 1.0,
-};
+impl Weights {
+    const STIFFNESS: Self = Self {
+        stiffness: 1.0,
+        damping: 0.0,
+    };
+    const DAMPING: Self = Self {
+        stiffness: 0.0,
+        damping: 1.0,
+    };
+}
 
 /// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
 type Field = Vec<[f64; 6]>;
 
-/// Largest eigenvalue of an operator over mass, and the iterations needed.
+/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed.
 /// An upper bound by the residual: never too small by more than that is too large.
-fn largest_eigenvalue(state: &mut State, operator: Operator) -> (f64, usize) {
+fn largest_eigenvalue(state: &mut State, weights: Weights) -> (f64, usize) {
     let roots = inverse_mass_roots(state);
+    // Allocated once: allocators find it hard to use the place of an aligned array again.
+    let mut displaced = state.particles.poses.clone();
     let mut present = start(&roots);
     let mut before: Field = vec![[0.0; 6]; roots.len()];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
@@ -143,11 +147,12 @@ fn largest_eigenvalue(state: &mut State, operator: Operator) -> (f64, usize) {
         let beta_before = beside.last().copied().unwrap_or(0.0);
         let mut image = before;
         image.iter_mut().flatten().for_each(|f| *f *= -beta_before);
-        if operator.stiffness > 0.0 {
-            add_stiffness_times(state, operator.stiffness, &roots, &present, &mut image);
+        if weights.stiffness > 0.0 {
+            let weight = weights.stiffness;
+            add_stiffness_times(state, weight, &roots, &present, &mut displaced, &mut image);
         }
-        if operator.damping > 0.0 {
-            add_damping_times(state, operator.damping, &roots, &present, &mut image);
+        if weights.damping > 0.0 {
+            add_damping_times(state, weights.damping, &roots, &present, &mut image);
         }
         let alpha = dot(&image, &present);
         for (image, present) in image.iter_mut().flatten().zip(present.iter().flatten()) {
@@ -246,11 +251,13 @@ fn scaled(field: &[f64; 6], roots: &[f64; 6]) -> [f64; 6] {
 }
 
 /// Adds `weight` times the stiffness times a field to `sum`: minus the change of the forces in a small displacement, by a central difference.
+/// The poses in `displaced` (one for each particle) are overwritten.
 fn add_stiffness_times(
     state: &mut State,
     weight: f64,
     roots: &Field,
     field: &Field,
+    displaced: &mut [Pose],
     sum: &mut Field,
 ) {
     let moved = |i: usize| scaled(&field[i], &roots[i]);
@@ -265,7 +272,6 @@ fn add_stiffness_times(
         return;
     }
     let step = STEP / largest;
-    let mut displaced = state.particles.poses.clone();
     for side in [1.0, -1.0] {
         for (i, (pose, rest)) in displaced.iter_mut().zip(&state.particles.poses).enumerate() {
             let [x, y, z, rx, ry, rz] = moved(i).map(|m| side * step * m);
@@ -273,7 +279,7 @@ fn add_stiffness_times(
             pose.position_m = [px + x, py + y, pz + z, zero];
             pose.turned = turn(rest.turned, [rx, ry, rz]);
         }
-        bonds_as_total(state, &displaced);
+        bonds_as_total(state, displaced);
         let factor = -side * weight / (2.0 * step);
         add_forces(factor, &state.particles.wrenches, roots, sum);
     }
