@@ -1,7 +1,8 @@
 //! Writing VTK XML PolyData (.vtp): what the files of bodies and the frames of a run have in common.
 //!
-//! The header is text; the arrays follow it as they stand in memory (appended raw, little endian), so that nothing is lost
-//! and nothing is converted. Points are particles, lines are bonds of two points each. There are no vertex cells: cell data
+//! The header is text; the arrays follow it as numbers in binary (appended raw, little endian), so that nothing is lost.
+//! Each value is computed when its turn comes to be written, so that no array has to be held in memory, and there is one for
+//! every point or line. Points are particles, lines are bonds of two points each. There are no vertex cells: cell data
 //! would have to cover them too. Connectivity and offsets are signed: ParaView refuses unsigned ones.
 //!
 //! [VTK XML formats](https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html)
@@ -12,7 +13,7 @@ use std::io::{self, Write};
 use crate::xml::escaped;
 
 /// An array with a name that ParaView shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct NamedArray<'a> {
     /// Its name, with the unit if it has one: `velocity_m_s`.
     pub name: &'a str,
@@ -20,35 +21,20 @@ pub struct NamedArray<'a> {
     pub values: Values<'a>,
 }
 
-/// The values of an array: one number or one vector for each particle or bond.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The values of an array: one number or one vector for each particle or bond, found by its index.
+#[derive(Clone, Copy)]
 pub enum Values<'a> {
     /// Numbers.
-    Scalars(&'a [f64]),
+    Scalars(&'a dyn Fn(usize) -> f64),
     /// Vectors of 3 components.
-    Vectors(&'a [[f64; 3]]),
+    Vectors(&'a dyn Fn(usize) -> [f64; 3]),
     /// Counts and indices.
-    Counts(&'a [u32]),
+    Counts(&'a dyn Fn(usize) -> u32),
     /// Whole numbers with a sign.
-    Integers(&'a [i32]),
+    Integers(&'a dyn Fn(usize) -> i32),
 }
 
 impl Values<'_> {
-    /// For how many particles or bonds there are values.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Scalars(values) => values.len(),
-            Self::Vectors(values) => values.len(),
-            Self::Counts(values) => values.len(),
-            Self::Integers(values) => values.len(),
-        }
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     fn kind(&self) -> &'static str {
         match self {
             Self::Scalars(_) | Self::Vectors(_) => "Float64",
@@ -57,30 +43,36 @@ impl Values<'_> {
         }
     }
 
-    /// Bytes of all values together.
+    /// Bytes of each value.
     fn bytes(&self) -> u64 {
-        let each = match self {
+        match self {
             Self::Scalars(_) => 8,
             Self::Vectors(_) => 24,
             Self::Counts(_) | Self::Integers(_) => 4,
-        };
-        each * self.len() as u64
+        }
     }
 
-    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+    /// Writes the values of the indices below `count`.
+    fn write(&self, out: &mut dyn Write, count: usize) -> io::Result<()> {
         match self {
-            Self::Scalars(values) => write_array(out, values, f64::to_le_bytes),
-            Self::Vectors(values) => write_array(out, values.as_flattened(), f64::to_le_bytes),
-            Self::Counts(values) => write_array(out, values, u32::to_le_bytes),
-            Self::Integers(values) => write_array(out, values, i32::to_le_bytes),
+            Self::Scalars(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
+            Self::Vectors(value) => write_array(out, count, |i| value(i).map(f64::to_le_bytes)),
+            Self::Counts(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
+            Self::Integers(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
         }
     }
 }
 
 /// Points, lines of two points each, and the data of both.
 pub(crate) struct PolyData<'a> {
-    pub(crate) points: &'a [[f64; 3]],
-    pub(crate) lines: &'a [[u32; 2]],
+    /// Number of points.
+    pub(crate) points: usize,
+    /// Place of each point.
+    pub(crate) place: &'a dyn Fn(usize) -> [f64; 3],
+    /// Number of lines.
+    pub(crate) lines: usize,
+    /// The two points of each line.
+    pub(crate) ends: &'a dyn Fn(usize) -> [u32; 2],
     pub(crate) point_data: &'a [NamedArray<'a>],
     pub(crate) cell_data: &'a [NamedArray<'a>],
 }
@@ -95,7 +87,7 @@ impl PolyData<'_> {
         out: &mut dyn Write,
         write_fields: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let (points, lines) = (self.points.len() as u64, self.lines.len() as u64);
+        let (points, lines) = (self.points, self.lines);
         writeln!(out, "<?xml version=\"1.0\"?>")?;
         let header = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
         writeln!(
@@ -114,20 +106,23 @@ impl PolyData<'_> {
             out,
             "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_"
         )?;
-        Values::Vectors(self.points).write(out)?;
-        write_array(out, self.lines.as_flattened(), |end| {
-            i64::from(end).to_le_bytes()
+        Values::Vectors(self.place).write(out, points)?;
+        write_array(out, lines, |line| {
+            (self.ends)(line).map(|end| i64::from(end).to_le_bytes())
         })?;
-        write_offsets(out, lines)?;
-        for array in self.point_data.iter().chain(self.cell_data) {
-            array.values.write(out)?;
+        // Where each line ends in the connectivity: 2, 4, 6, ...
+        write_array(out, lines, |line| [(2 * (line as i64 + 1)).to_le_bytes()])?;
+        for (arrays, count) in [(self.point_data, points), (self.cell_data, lines)] {
+            for array in arrays {
+                array.values.write(out, count)?;
+            }
         }
         writeln!(out, "\n  </AppendedData>\n</VTKFile>")
     }
 
     /// Says in the header which arrays there are, and where in the appended data each begins.
     fn declare(&self, out: &mut dyn Write) -> io::Result<()> {
-        let lines = self.lines.len() as u64;
+        let lines = self.lines as u64;
         let mut end = 0;
         let mut section = |name: &str, arrays: &[Declaration]| {
             writeln!(out, "      <{name}>")?;
@@ -151,9 +146,9 @@ impl PolyData<'_> {
         };
         let points = NamedArray {
             name: "Points",
-            values: Values::Vectors(self.points),
+            values: Values::Vectors(self.place),
         };
-        section("Points", &[Declaration::of(&points)])?;
+        section("Points", &[Declaration::of(&points, self.points)])?;
         section(
             "Lines",
             &[
@@ -161,8 +156,8 @@ impl PolyData<'_> {
                 whole("offsets", 8 * lines),
             ],
         )?;
-        section("PointData", &Declaration::all(self.point_data))?;
-        section("CellData", &Declaration::all(self.cell_data))
+        section("PointData", &Declaration::all(self.point_data, self.points))?;
+        section("CellData", &Declaration::all(self.cell_data, self.lines))
     }
 }
 
@@ -176,11 +171,11 @@ struct Declaration<'a> {
 }
 
 impl<'a> Declaration<'a> {
-    fn all(arrays: &[NamedArray<'a>]) -> Vec<Self> {
-        arrays.iter().map(Self::of).collect()
+    fn all(arrays: &[NamedArray<'a>], count: usize) -> Vec<Self> {
+        arrays.iter().map(|array| Self::of(array, count)).collect()
     }
 
-    fn of(array: &NamedArray<'a>) -> Self {
+    fn of(array: &NamedArray<'a>, count: usize) -> Self {
         Self {
             kind: array.values.kind(),
             name: array.name,
@@ -188,7 +183,7 @@ impl<'a> Declaration<'a> {
                 Values::Vectors(_) => " NumberOfComponents=\"3\"",
                 _ => "",
             },
-            bytes: array.values.bytes(),
+            bytes: array.values.bytes() * count as u64,
         }
     }
 }
@@ -226,28 +221,26 @@ pub(crate) fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) ->
     writeln!(out, "0</Array>")
 }
 
-/// One array: its size in bytes, then its values.
-fn write_array<T: Copy, const BYTES: usize>(
-    out: &mut dyn Write,
-    values: &[T],
-    bytes_of: impl Fn(T) -> [u8; BYTES],
-) -> io::Result<()> {
-    out.write_all(&((BYTES * values.len()) as u64).to_le_bytes())?;
-    let mut bytes = [0_u8; 8 * 4096];
-    for chunk in values.chunks(4096) {
-        for (place, &value) in bytes.chunks_exact_mut(BYTES).zip(chunk) {
-            place.copy_from_slice(&bytes_of(value));
-        }
-        out.write_all(&bytes[..BYTES * chunk.len()])?;
-    }
-    Ok(())
-}
+/// Values that are gathered before they are written, and the most bytes that each may have.
+const AT_ONCE: usize = 1024;
+const MOST_BYTES: usize = 24;
 
-/// Where each line ends in the connectivity: 2, 4, 6, ...
-fn write_offsets(out: &mut dyn Write, lines: u64) -> io::Result<()> {
-    out.write_all(&(8 * lines).to_le_bytes())?;
-    for line in 1..=lines {
-        out.write_all(&(2 * line).to_le_bytes())?;
+/// One array: its size in bytes, then its values, each of so many numbers.
+fn write_array<const NUMBERS: usize, const BYTES: usize>(
+    out: &mut dyn Write,
+    count: usize,
+    bytes_of: impl Fn(usize) -> [[u8; BYTES]; NUMBERS],
+) -> io::Result<()> {
+    const { assert!(NUMBERS * BYTES <= MOST_BYTES) };
+    let each = NUMBERS * BYTES;
+    out.write_all(&((each * count) as u64).to_le_bytes())?;
+    let mut bytes = [0_u8; MOST_BYTES * AT_ONCE];
+    for first in (0..count).step_by(AT_ONCE) {
+        let some = first..(first + AT_ONCE).min(count);
+        for (place, i) in bytes.chunks_exact_mut(each).zip(some.clone()) {
+            place.copy_from_slice(bytes_of(i).as_flattened());
+        }
+        out.write_all(&bytes[..each * some.len()])?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use dem_io::scene::{At, Measure, Quantity};
 use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::{Balance, synchronous_motions};
+use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{stresses, utilisation};
 use crate::physics::rigid::rotation_vector;
 use crate::plan::Plan;
@@ -213,18 +214,29 @@ impl History {
     }
 }
 
+/// What a bond carries: nothing if it is broken.
+pub fn load(state: &State, at: usize) -> BondLoad {
+    if state.bonds.is_broken(at) {
+        return BondLoad::default();
+    }
+    state.bonds.forces(at, &state.particles.poses).load
+}
+
 /// Stress over strength of a bond, before any strengthening by rate; 0 for one that is broken or cannot break.
 pub fn bond_utilisation(state: &State, at: usize) -> f64 {
+    utilisation_under(state, at, &load(state, at))
+}
+
+/// The same under a load that is known.
+pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     let bonds = &state.bonds;
-    let Some(criteria) = &bonds.rules[bonds.rule_of(at)].criteria else {
-        return 0.0;
-    };
-    if bonds.is_broken(at) {
-        return 0.0;
+    match &bonds.rules[bonds.rule_of(at)].criteria {
+        Some(criteria) if !bonds.is_broken(at) => {
+            let stresses = stresses(load, bonds.radius_m(at));
+            utilisation(criteria, &stresses, bonds.strength_factor(at))
+        }
+        _ => 0.0,
     }
-    let load = bonds.forces(at, &state.particles.poses).load;
-    let stresses = stresses(&load, bonds.radius_m(at));
-    utilisation(criteria, &stresses, bonds.strength_factor(at))
 }
 
 fn mean_position(state: &State, particles: &[u32]) -> [f64; 3] {

@@ -110,24 +110,25 @@ pub fn run(
     let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, choice.limit.step_s);
     let mut changed_step = None;
-    if let Some(snapshot) = &settings.resume {
+    let is_continued = settings.resume.is_some();
+    if let Some(snapshot) = settings.resume {
         let place = settings
             .folder
             .map(|f| f.checkpoint().display().to_string());
         snapshot
             .restore(&mut state)
             .map_err(|error| error.within(&place.unwrap_or_default()))?;
-        progress = snapshot.progress.clone();
+        progress = snapshot.progress;
         progress.go_on(&state, rhythm, scene)?;
-        for (gauge, history) in gauges.iter_mut().zip(&snapshot.measures) {
-            gauge.history = *history;
+        for (gauge, history) in gauges.iter_mut().zip(snapshot.measures) {
+            gauge.history = history;
         }
         changed_step = change_step(&mut state, &choice);
     }
     let columns = series::columns(&gauges);
     let mut files = match (settings.folder, order) {
         (Some(folder), Some(order)) => {
-            let continued = settings.resume.is_some().then_some(&progress);
+            let continued = is_continued.then_some(&progress);
             Some(Files::open(folder, order, &columns, continued)?)
         }
         _ => None,

@@ -41,20 +41,22 @@ const SEED: &str = "seed";
 /// # Errors
 /// Those of `out`.
 pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
-    let array = |name, values| NamedArray {
+    let array = |name, value| NamedArray {
         name,
-        values: Values::Scalars(values),
+        values: Values::Scalars(value),
     };
-    let data = PolyData {
-        points: &body.positions,
-        lines: &body.bonds,
-        point_data: &[array(RADIUS, &body.radii)],
+    PolyData {
+        points: body.positions.len(),
+        place: &|i| body.positions[i],
+        lines: body.bonds.len(),
+        ends: &|bond| body.bonds[bond],
+        point_data: &[array(RADIUS, &|i| body.radii[i])],
         cell_data: &[
-            array(BOND_RADIUS, &body.bond_radii),
-            array(BOND_LENGTH, &body.bond_lengths),
+            array(BOND_RADIUS, &|bond| body.bond_radii[bond]),
+            array(BOND_LENGTH, &|bond| body.bond_lengths[bond]),
         ],
-    };
-    data.write(out, |out| write_fields(&body.about, out))
+    }
+    .write(out, |out| write_fields(&body.about, out))
 }
 
 fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {

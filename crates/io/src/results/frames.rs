@@ -11,49 +11,42 @@ pub use crate::vtk::{NamedArray, Values};
 use crate::vtk::{PolyData, exact, write_number};
 use crate::{Diagnostic, Result};
 
-/// What is to be seen at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What is to be seen at one time. Particles and bonds are known by their indices, from 0 on.
+#[derive(Clone, Copy)]
 pub struct Frame<'a> {
     /// Simulated time, s.
     pub time_s: f64,
-    /// Centres of the particles, m.
-    pub positions: &'a [[f64; 3]],
-    /// What is known of the particles: one value each.
+    /// Number of particles.
+    pub particles: usize,
+    /// Centre of each particle, m.
+    pub position_m: &'a dyn Fn(usize) -> [f64; 3],
+    /// What is known of the particles.
     pub particle_arrays: &'a [NamedArray<'a>],
+    /// Number of bonds.
+    pub bonds: usize,
     /// The two particles of each bond.
-    pub bonds: &'a [[u32; 2]],
-    /// What is known of the bonds: one value each.
+    pub ends: &'a dyn Fn(usize) -> [u32; 2],
+    /// What is known of the bonds.
     pub bond_arrays: &'a [NamedArray<'a>],
 }
 
 impl Frame<'_> {
-    /// Whether every array has one value for each particle or bond, and every bond its two particles: ParaView crashes without.
+    /// Whether every bond has its two particles: ParaView crashes without.
     ///
     /// # Errors
-    /// Says which array or bond (exit code 1: it is a fault of the program).
+    /// Says which bond (exit code 1: it is a fault of the program).
     pub fn check(&self) -> Result<()> {
-        let fault =
-            |problem| Diagnostic::failed("frame", problem, "this is a fault of the program");
-        let (particles, bonds) = (self.positions.len(), self.bonds.len());
-        for (arrays, count, what) in [
-            (self.particle_arrays, particles, "particles"),
-            (self.bond_arrays, bonds, "bonds"),
-        ] {
-            for array in arrays {
-                let (name, values) = (array.name, array.values.len());
-                if values != count {
-                    return Err(fault(format!(
-                        "array '{name}' has {values} values for {count} {what}"
-                    )));
-                }
-            }
-        }
-        let missing = |end: &u32| *end as usize >= particles;
-        match self.bonds.iter().position(|bond| bond.iter().any(missing)) {
-            Some(bond) => Err(fault(format!(
-                "bond {bond} joins {:?} of {particles} particles",
-                self.bonds[bond]
-            ))),
+        let missing = |end: u32| end as usize >= self.particles;
+        match (0..self.bonds).find(|&bond| (self.ends)(bond).into_iter().any(missing)) {
+            Some(bond) => Err(Diagnostic::failed(
+                "frame",
+                format!(
+                    "bond {bond} joins {:?} of {} particles",
+                    (self.ends)(bond),
+                    self.particles
+                ),
+                "this is a fault of the program",
+            )),
             None => Ok(()),
         }
     }
@@ -65,8 +58,10 @@ impl Frame<'_> {
 /// Those of `out`.
 pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
     let data = PolyData {
-        points: frame.positions,
+        points: frame.particles,
+        place: frame.position_m,
         lines: frame.bonds,
+        ends: frame.ends,
         point_data: frame.particle_arrays,
         cell_data: frame.bond_arrays,
     };

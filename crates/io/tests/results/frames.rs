@@ -18,43 +18,45 @@ const BONDS: [[u32; 2]; 2] = [[0, 1], [0, 2]];
 const PARTICLE_ARRAYS: [NamedArray<'static>; 4] = [
     NamedArray {
         name: "velocity_m_s",
-        values: Values::Vectors(&VELOCITIES),
+        values: Values::Vectors(&|i| VELOCITIES[i]),
     },
     NamedArray {
         name: "body \"a\" & <b>",
-        values: Values::Counts(&[7, 8, u32::MAX]),
+        values: Values::Counts(&|i| [7, 8, u32::MAX][i]),
     },
     NamedArray {
         name: "radius",
-        values: Values::Scalars(&[6e-4, 5e-4, 7e-4]),
+        values: Values::Scalars(&|i| [6e-4, 5e-4, 7e-4][i]),
     },
     NamedArray {
         name: "cluster",
-        values: Values::Integers(&[-1, 0, i32::MIN]),
+        values: Values::Integers(&|i| [-1, 0, i32::MIN][i]),
     },
 ];
 
 const BOND_ARRAYS: [NamedArray<'static>; 3] = [
     NamedArray {
         name: "state",
-        values: Values::Integers(&[1, -1]),
+        values: Values::Integers(&|bond| [1, -1][bond]),
     },
     NamedArray {
         name: "bond_radius",
-        values: Values::Scalars(&[4e-4, 3e-4]),
+        values: Values::Scalars(&|bond| [4e-4, 3e-4][bond]),
     },
     NamedArray {
         name: "force_n",
-        values: Values::Vectors(&[[1.0; 3], [f64::NAN; 3]]),
+        values: Values::Vectors(&|bond| [[1.0; 3], [f64::NAN; 3]][bond]),
     },
 ];
 
 fn frame(time_s: f64) -> Frame<'static> {
     Frame {
         time_s,
-        positions: &POSITIONS,
+        particles: POSITIONS.len(),
+        position_m: &|i| POSITIONS[i],
         particle_arrays: &PARTICLE_ARRAYS,
-        bonds: &BONDS,
+        bonds: BONDS.len(),
+        ends: &|bond| BONDS[bond],
         bond_arrays: &BOND_ARRAYS,
     }
 }
@@ -178,20 +180,62 @@ fn the_reader_of_bodies_reads_a_frame() {
 #[test]
 fn a_wrong_frame_is_a_fault_with_a_name() {
     let mut wrong = frame(0.0);
-    wrong.bonds = &[[0, 1], [1, 3]];
+    wrong.ends = &|bond| [[0, 1], [1, 3]][bond];
     let error = wrong.check().unwrap_err();
     assert_eq!(error.problem, "bond 1 joins [1, 3] of 3 particles");
     let mut wrong = frame(0.0);
-    wrong.bonds = &[[0, 1]];
+    wrong.particles = 2;
     let error = wrong.check().unwrap_err();
-    assert_eq!(error.problem, "array 'state' has 2 values for 1 bonds");
-    let mut wrong = frame(0.0);
-    wrong.positions = &POSITIONS[..2];
-    let error = wrong.check().unwrap_err();
-    assert_eq!(
-        error.problem,
-        "array 'velocity_m_s' has 3 values for 2 particles"
-    );
+    assert_eq!(error.problem, "bond 1 joins [0, 2] of 2 particles");
+}
+
+/// A frame of `count` particles in a row, each joined to the next, with an array of each kind.
+fn bytes_of_row(count: usize) -> Vec<u8> {
+    let row = Frame {
+        time_s: 0.0,
+        particles: count,
+        position_m: &|i| [i as f64, 0.5, -(i as f64)],
+        particle_arrays: &[NamedArray {
+            name: "half",
+            values: Values::Scalars(&|i| 0.5 * i as f64),
+        }],
+        bonds: count.saturating_sub(1),
+        ends: &|bond| [bond as u32, bond as u32 + 1],
+        bond_arrays: &[NamedArray {
+            name: "number",
+            values: Values::Counts(&|bond| bond as u32),
+        }],
+    };
+    bytes_of(&row)
+}
+
+#[test]
+fn arrays_of_any_length_hold_every_value_in_order() {
+    for count in [0, 1, 2, 1023, 1024, 1025, 1026, 3000] {
+        let (found, _) = arrays(&bytes_of_row(count));
+        let bonds = count.saturating_sub(1);
+        let floats = |values: Vec<f64>| values.into_iter().flat_map(f64::to_le_bytes).collect();
+        let longs = |values: Vec<i64>| values.into_iter().flat_map(i64::to_le_bytes).collect();
+        let expected: [Vec<u8>; 5] = [
+            floats(
+                (0..count)
+                    .flat_map(|i| [i as f64, 0.5, -(i as f64)])
+                    .collect(),
+            ),
+            longs(
+                (0..bonds as i64)
+                    .flat_map(|bond| [bond, bond + 1])
+                    .collect(),
+            ),
+            longs((1..=bonds as i64).map(|bond| 2 * bond).collect()),
+            floats((0..count).map(|i| 0.5 * i as f64).collect()),
+            (0..bonds as u32).flat_map(u32::to_le_bytes).collect(),
+        ];
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(found.4 == *expected, "'{}' of {count}", found.2);
+        }
+        assert_eq!(found.len(), expected.len());
+    }
 }
 
 #[test]

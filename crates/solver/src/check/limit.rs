@@ -6,7 +6,7 @@ use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::damping::damping_wrenches;
 use crate::state::State;
-use crate::state::particles::{Motion, Wrench};
+use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Iterations at least and at most.
 const ITERATIONS: [usize; 2] = [20, 200];
@@ -44,7 +44,7 @@ pub struct Limit {
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. The wrenches of the state are overwritten.
 pub fn limit(state: &mut State) -> Limit {
-    let (k, iterations) = largest_eigenvalue(state, &stiffness_times);
+    let (k, iterations) = largest_eigenvalue(state, Weights::STIFFNESS);
     let stiffer = if state.particle_resistance.is_empty() {
         1.0
     } else {
@@ -53,7 +53,7 @@ pub fn limit(state: &mut State) -> Limit {
     let c = if state.bond_resistance.is_empty() {
         0.0
     } else {
-        largest_eigenvalue(state, &damping_times).0
+        largest_eigenvalue(state, Weights::DAMPING).0
     };
     Limit {
         step_s: if c > 0.0 {
@@ -80,16 +80,11 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
     let (mut safe_s, mut step_s) = (safe_s, safe_s);
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
-        let (by_stiffness, by_damping) = (0.25 * stiffer * step_s * step_s, 0.5 * step_s);
-        let (value, _) = largest_eigenvalue(state, &|state, moved, result| {
-            let mut resisting = vec![[0.0; 6]; moved.len()];
-            stiffness_times(state, moved, result);
-            damping_times(state, moved, &mut resisting);
-            for (result, resisting) in result.iter_mut().zip(&resisting) {
-                let sum = |k: usize| by_stiffness * result[k] + by_damping * resisting[k];
-                *result = [0, 1, 2, 3, 4, 5].map(sum);
-            }
-        });
+        let both = Weights {
+            stiffness: 0.25 * stiffer * step_s * step_s,
+            damping: 0.5 * step_s,
+        };
+        let (value, _) = largest_eigenvalue(state, both);
         // The eigenvalue grows at least with the step and at most with its square.
         let not_too_long = if value < 1.0 {
             step_s / value.sqrt()
@@ -114,34 +109,54 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
     safe_s
 }
 
-/// A vector with three displacements and three rotations for each particle.
+/// Weights of the two symmetric operators of a body in a sum of them.
+#[derive(Debug, Clone, Copy)]
+struct Weights {
+    /// Of K, from displacements to forces.
+    stiffness: f64,
+    /// Of C, from velocities to forces.
+    damping: f64,
+}
+
+impl Weights {
+    const STIFFNESS: Self = Self {
+        stiffness: 1.0,
+        damping: 0.0,
+    };
+    const DAMPING: Self = Self {
+        stiffness: 0.0,
+        damping: 1.0,
+    };
+}
+
+/// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
 type Field = Vec<[f64; 6]>;
 
-/// Largest eigenvalue of a symmetric operator between displacements and forces, over mass; and the iterations needed.
+/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed.
 /// An upper bound by the residual: never too small by more than that is too large.
-fn largest_eigenvalue(
-    state: &mut State,
-    times: &dyn Fn(&mut State, &Field, &mut Field),
-) -> (f64, usize) {
+fn largest_eigenvalue(state: &mut State, weights: Weights) -> (f64, usize) {
     let roots = inverse_mass_roots(state);
-    let count = roots.len();
+    // Allocated once: allocators find it hard to use the place of an aligned array again.
+    let mut displaced = state.particles.poses.clone();
     let mut present = start(&roots);
-    let mut before: Field = vec![[0.0; 6]; count];
-    let mut image: Field = vec![[0.0; 6]; count];
-    let mut moved: Field = vec![[0.0; 6]; count];
+    let mut before: Field = vec![[0.0; 6]; roots.len()];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     let mut largest = (0.0, 0.0);
-    for iteration in 1..=ITERATIONS[1].min(6 * count) {
-        moved.copy_from_slice(&present);
-        scale(&mut moved, &roots);
-        times(state, &moved, &mut image);
-        scale(&mut image, &roots);
-        let alpha = dot(&image, &present);
+    for iteration in 1..=ITERATIONS[1].min(6 * roots.len()) {
+        // The image of the present vector takes the place of the one before, of which only its part is left.
         let beta_before = beside.last().copied().unwrap_or(0.0);
-        for i in 0..count {
-            for k in 0..6 {
-                image[i][k] -= alpha * present[i][k] + beta_before * before[i][k];
-            }
+        let mut image = before;
+        image.iter_mut().flatten().for_each(|f| *f *= -beta_before);
+        if weights.stiffness > 0.0 {
+            let weight = weights.stiffness;
+            add_stiffness_times(state, weight, &roots, &present, &mut displaced, &mut image);
+        }
+        if weights.damping > 0.0 {
+            add_damping_times(state, weights.damping, &roots, &present, &mut image);
+        }
+        let alpha = dot(&image, &present);
+        for (image, present) in image.iter_mut().flatten().zip(present.iter().flatten()) {
+            *image -= alpha * present;
         }
         let beta = dot(&image, &image).sqrt();
         diagonal.push(alpha);
@@ -154,12 +169,8 @@ fn largest_eigenvalue(
             break;
         }
         beside.push(beta);
-        std::mem::swap(&mut before, &mut present);
-        for i in 0..count {
-            for k in 0..6 {
-                present[i][k] = image[i][k] / beta;
-            }
-        }
+        image.iter_mut().flatten().for_each(|f| *f /= beta);
+        before = std::mem::replace(&mut present, image);
     }
     let (value, residual) = largest;
     ((value + residual).max(0.0), diagonal.len())
@@ -230,70 +241,79 @@ fn start(roots: &Field) -> Field {
     field
 }
 
-fn scale(field: &mut Field, by: &Field) {
-    for (field, by) in field.iter_mut().flatten().zip(by.iter().flatten()) {
-        *field *= by;
-    }
-}
-
 fn dot(a: &Field, b: &Field) -> f64 {
     crate::stages::motion::ordered_sum(a.len(), |i| (0..6).map(|k| a[i][k] * b[i][k]).sum())
 }
 
-/// Stiffness times a small displacement: minus the change of the forces, by a central difference.
-fn stiffness_times(state: &mut State, moved: &Field, result: &mut Field) {
-    let largest = moved
-        .iter()
-        .zip(&state.particles.radii_m)
-        .flat_map(|(m, radius)| {
-            let shift = m[0].abs().max(m[1].abs()).max(m[2].abs()) / radius;
-            [shift, m[3].abs(), m[4].abs(), m[5].abs()]
+/// Displacements and rotations, or velocities and spins, that an entry of a field stands for; and forces and torques over the roots.
+fn scaled(field: &[f64; 6], roots: &[f64; 6]) -> [f64; 6] {
+    [0, 1, 2, 3, 4, 5].map(|k| field[k] * roots[k])
+}
+
+/// Adds `weight` times the stiffness times a field to `sum`: minus the change of the forces in a small displacement, by a central difference.
+/// The poses in `displaced` (one for each particle) are overwritten.
+fn add_stiffness_times(
+    state: &mut State,
+    weight: f64,
+    roots: &Field,
+    field: &Field,
+    displaced: &mut [Pose],
+    sum: &mut Field,
+) {
+    let moved = |i: usize| scaled(&field[i], &roots[i]);
+    let radii = &state.particles.radii_m;
+    let largest = (0..field.len())
+        .flat_map(|i| {
+            let [x, y, z, rx, ry, rz] = moved(i).map(f64::abs);
+            [x.max(y).max(z) / radii[i], rx, ry, rz]
         })
         .fold(0.0, f64::max);
-    result.fill([0.0; 6]);
     if largest == 0.0 {
         return;
     }
     let step = STEP / largest;
-    let rest = state.particles.poses.clone();
-    let mut add_forces = |side: f64| {
-        for ((pose, rest), moved) in state.particles.poses.iter_mut().zip(&rest).zip(moved) {
-            let [x, y, z, rx, ry, rz] = moved.map(|m| side * step * m);
+    for side in [1.0, -1.0] {
+        for (i, (pose, rest)) in displaced.iter_mut().zip(&state.particles.poses).enumerate() {
+            let [x, y, z, rx, ry, rz] = moved(i).map(|m| side * step * m);
             let [px, py, pz, zero] = rest.position_m;
             pose.position_m = [px + x, py + y, pz + z, zero];
             pose.turned = turn(rest.turned, [rx, ry, rz]);
         }
-        bonds_as_total(state);
-        for (result, wrench) in result.iter_mut().zip(&state.particles.wrenches) {
-            for (result, force) in result.iter_mut().zip(six(wrench)) {
-                *result -= side / (2.0 * step) * force;
-            }
-        }
-    };
-    add_forces(1.0);
-    add_forces(-1.0);
-    state.particles.poses = rest;
+        bonds_as_total(state, displaced);
+        let factor = -side * weight / (2.0 * step);
+        add_forces(factor, &state.particles.wrenches, roots, sum);
+    }
 }
 
-/// Forces of all bonds by the total formulation, without looking for failing ones.
-fn bonds_as_total(state: &mut State) {
+/// Forces of all bonds at these poses by the total formulation, without looking for failing ones.
+fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let rules = state.bonds.rules.clone();
     for rule in &mut state.bonds.rules {
         rule.incremental = false;
         rule.criteria = None;
     }
-    let p = &mut state.particles;
-    bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+    let wrenches = &mut state.particles.wrenches;
+    bond_wrenches(&state.bonds, poses, &mut state.shares, wrenches);
     state.bonds.rules = rules;
 }
 
-/// Damping times a velocity.
-fn damping_times(state: &mut State, moved: &Field, result: &mut Field) {
-    let motions: Vec<Motion> = moved
+/// Adds `weight` times the damping times a field to `sum`.
+fn add_damping_times(
+    state: &mut State,
+    weight: f64,
+    roots: &Field,
+    field: &Field,
+    sum: &mut Field,
+) {
+    let motions: Vec<Motion> = field
         .iter()
-        .map(|&[vx, vy, vz, wx, wy, wz]| Motion {
-            velocity_m_s: [vx, vy, vz],
-            spin_rad_s: [wx, wy, wz],
+        .zip(roots)
+        .map(|(field, roots)| {
+            let [vx, vy, vz, wx, wy, wz] = scaled(field, roots);
+            Motion {
+                velocity_m_s: [vx, vy, vz],
+                spin_rad_s: [wx, wy, wz],
+            }
         })
         .collect();
     let State {
@@ -304,12 +324,16 @@ fn damping_times(state: &mut State, moved: &Field, result: &mut Field) {
         ..
     } = state;
     damping_wrenches(bonds, &particles.poses, &motions, shares, bond_resistance);
-    for (result, wrench) in result.iter_mut().zip(bond_resistance) {
-        *result = six(wrench).map(|f| -f);
-    }
+    add_forces(-weight, bond_resistance, roots, sum);
 }
 
-fn six(wrench: &Wrench) -> [f64; 6] {
-    let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
-    [fx, fy, fz, tx, ty, tz]
+/// Adds a factor times wrenches to a field.
+fn add_forces(factor: f64, wrenches: &[Wrench], roots: &Field, sum: &mut Field) {
+    for ((sum, wrench), roots) in sum.iter_mut().zip(wrenches).zip(roots) {
+        let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
+        let forces = scaled(&[fx, fy, fz, tx, ty, tz], roots);
+        for (sum, force) in sum.iter_mut().zip(forces) {
+            *sum += factor * force;
+        }
+    }
 }

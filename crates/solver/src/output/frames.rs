@@ -4,8 +4,9 @@ use dem_io::Result;
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 
 use crate::check::ledger::synchronous_motions;
-use crate::measure::bond_utilisation;
-use crate::physics::bond::failure::{Stresses, stresses};
+use crate::measure::{load, utilisation_under};
+use crate::physics::bond::BondLoad;
+use crate::physics::bond::failure::stresses;
 use crate::plan::bodies::PlacedBody;
 use crate::state::State;
 
@@ -15,7 +16,6 @@ pub struct FrameOrder {
     particles: Vec<u32>,
     bodies: Vec<u32>,
     bonds: Vec<u32>,
-    ends: Vec<[u32; 2]>,
     start: Vec<[f64; 3]>,
     /// For each particle of the state, its number in the frames.
     place_of: Vec<u32>,
@@ -28,7 +28,6 @@ impl FrameOrder {
             particles: Vec::new(),
             bodies: Vec::new(),
             bonds: Vec::new(),
-            ends: Vec::new(),
             start: Vec::new(),
             place_of: vec![0_u32; state.particles.len()],
         };
@@ -45,13 +44,7 @@ impl FrameOrder {
             for (at, &original) in (body.first_bond as u32..).zip(&body.bonds) {
                 of_file[original as usize] = at;
             }
-            for at in of_file {
-                order.bonds.push(at);
-                let ends = state.bonds.ends[at as usize];
-                order
-                    .ends
-                    .push(ends.map(|end| order.place_of[end as usize]));
-            }
+            order.bonds.extend(of_file);
         }
         order
     }
@@ -66,88 +59,71 @@ impl FrameOrder {
     /// # Errors
     /// Those of the files.
     pub fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
-        let p = &state.particles;
+        let (p, bonds) = (&state.particles, &state.bonds);
         let motions = synchronous_motions(state);
-        let of_particles = |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> {
-            self.particles.iter().map(|&i| of(i as usize)).collect()
+        let particle = |i: usize| self.particles[i] as usize;
+        let position = |i: usize| p.poses[particle(i)].place().into();
+        let displacement = |i: usize| {
+            let (now, start): ([f64; 3], _) = (position(i), self.start[i]);
+            [0, 1, 2].map(|k| now[k] - start[k])
         };
-        let positions = of_particles(&|i| p.poses[i].place().into());
-        let displacements: Vec<[f64; 3]> = positions
-            .iter()
-            .zip(&self.start)
-            .map(|(now, start)| [0, 1, 2].map(|k| now[k] - start[k]))
+        let bond = |i: usize| self.bonds[i] as usize;
+        // Dear to compute, and seven arrays follow from them.
+        let loads: Vec<BondLoad> = (0..self.bonds.len())
+            .map(|i| load(state, bond(i)))
             .collect();
-        let velocities = of_particles(&|i| motions[i].velocity_m_s);
-        let spins = of_particles(&|i| motions[i].spin_rad_s);
-        let radii: Vec<f64> = self
-            .particles
-            .iter()
-            .map(|&i| p.radii_m[i as usize])
-            .collect();
-        let particle_arrays = [
-            array("radius_m", Values::Scalars(&radii)),
-            array("body", Values::Counts(&self.bodies)),
-            array("displacement_m", Values::Vectors(&displacements)),
-            array("velocity_m_s", Values::Vectors(&velocities)),
-            array("angular_velocity_rad_s", Values::Vectors(&spins)),
-        ];
-
-        let bonds = &state.bonds;
-        let mut loads: [Vec<f64>; 4] = Default::default();
-        let mut normal_stresses = Vec::new();
-        let mut shear_stresses = Vec::new();
-        let mut used = Vec::new();
-        let mut broken = Vec::new();
-        for &at in &self.bonds {
-            let at = at as usize;
-            let is_broken = bonds.is_broken(at);
-            let load = if is_broken {
-                crate::physics::bond::BondLoad::default()
-            } else {
-                bonds.forces(at, &p.poses).load
-            };
-            let [normal, shear, torsion, bending] = &mut loads;
-            normal.push(load.normal_n);
-            shear.push(load.shear_n);
-            torsion.push(load.torsion_n_m);
-            bending.push(load.bending_n_m);
-            let Stresses {
-                axial_pa,
-                bending_pa,
-                shear_pa,
-                torsion_pa,
-            } = stresses(&load, bonds.radius_m(at));
-            normal_stresses.push(axial_pa + bending_pa);
-            shear_stresses.push(shear_pa + torsion_pa);
-            used.push(bond_utilisation(state, at));
-            broken.push(u32::from(is_broken));
-        }
-        let bond_radii: Vec<f64> = self
-            .bonds
-            .iter()
-            .map(|&at| bonds.radius_m(at as usize))
-            .collect();
-        let bond_arrays = [
-            array("bond_radius_m", Values::Scalars(&bond_radii)),
-            array("normal_force_n", Values::Scalars(&loads[0])),
-            array("shear_force_n", Values::Scalars(&loads[1])),
-            array("torsion_n_m", Values::Scalars(&loads[2])),
-            array("bending_n_m", Values::Scalars(&loads[3])),
-            array("normal_stress_pa", Values::Scalars(&normal_stresses)),
-            array("shear_stress_pa", Values::Scalars(&shear_stresses)),
-            array("utilisation", Values::Scalars(&used)),
-            array("broken", Values::Counts(&broken)),
-        ];
+        let stresses = |i: usize| stresses(&loads[i], bonds.radius_m(bond(i)));
+        let normal_stress = |i: usize| {
+            let stresses = stresses(i);
+            stresses.axial_pa + stresses.bending_pa
+        };
+        let shear_stress = |i: usize| {
+            let stresses = stresses(i);
+            stresses.shear_pa + stresses.torsion_pa
+        };
         files.append(&Frame {
             time_s: state.time_s,
-            positions: &positions,
-            particle_arrays: &particle_arrays,
-            bonds: &self.ends,
-            bond_arrays: &bond_arrays,
+            particles: self.particles.len(),
+            position_m: &position,
+            particle_arrays: &[
+                scalars("radius_m", &|i| p.radii_m[particle(i)]),
+                counts("body", &|i| self.bodies[i]),
+                vectors("displacement_m", &displacement),
+                vectors("velocity_m_s", &|i| motions[particle(i)].velocity_m_s),
+                vectors("angular_velocity_rad_s", &|i| {
+                    motions[particle(i)].spin_rad_s
+                }),
+            ],
+            bonds: self.bonds.len(),
+            ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
+            bond_arrays: &[
+                scalars("bond_radius_m", &|i| bonds.radius_m(bond(i))),
+                scalars("normal_force_n", &|i| loads[i].normal_n),
+                scalars("shear_force_n", &|i| loads[i].shear_n),
+                scalars("torsion_n_m", &|i| loads[i].torsion_n_m),
+                scalars("bending_n_m", &|i| loads[i].bending_n_m),
+                scalars("normal_stress_pa", &normal_stress),
+                scalars("shear_stress_pa", &shear_stress),
+                scalars("utilisation", &|i| {
+                    utilisation_under(state, bond(i), &loads[i])
+                }),
+                counts("broken", &|i| u32::from(bonds.is_broken(bond(i)))),
+            ],
         })
     }
 }
 
-fn array<'a>(name: &'a str, values: Values<'a>) -> NamedArray<'a> {
+fn scalars<'a>(name: &'a str, value: &'a dyn Fn(usize) -> f64) -> NamedArray<'a> {
+    let values = Values::Scalars(value);
+    NamedArray { name, values }
+}
+
+fn vectors<'a>(name: &'a str, value: &'a dyn Fn(usize) -> [f64; 3]) -> NamedArray<'a> {
+    let values = Values::Vectors(value);
+    NamedArray { name, values }
+}
+
+fn counts<'a>(name: &'a str, value: &'a dyn Fn(usize) -> u32) -> NamedArray<'a> {
+    let values = Values::Counts(value);
     NamedArray { name, values }
 }
