@@ -9,7 +9,7 @@ use crate::measure;
 use crate::physics::bond::incremental::History;
 use crate::run::Progress;
 use crate::state::State;
-use crate::state::particles::{Motion, Pose};
+use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
 
 /// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
@@ -132,10 +132,8 @@ impl Snapshot {
         let p = &mut state.particles;
         for (i, &([x, y, z], turned, velocity_m_s, spin_rad_s)) in self.particles.iter().enumerate()
         {
-            p.poses[i] = Pose {
-                position_m: [x, y, z, 0.0],
-                turned,
-            };
+            p.poses[i].put_at([x, y, z]);
+            p.poses[i].turned = turned;
             p.motions[i] = Motion {
                 velocity_m_s,
                 spin_rad_s,
@@ -170,7 +168,6 @@ pub fn fingerprint(state: &State) -> u64 {
     };
     let (p, b) = (&state.particles, &state.bonds);
     for numbers in [
-        &p.radii_m,
         &p.inverse_masses,
         &b.torsion_per_bending,
         &b.strength_factors,

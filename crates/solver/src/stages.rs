@@ -8,4 +8,5 @@ pub mod incremental;
 mod lanes;
 pub mod loads;
 pub mod motion;
+pub mod neighbours;
 pub mod supports;

@@ -261,11 +261,11 @@ fn add_stiffness_times(
     sum: &mut Field,
 ) {
     let moved = |i: usize| scaled(&field[i], &roots[i]);
-    let radii = &state.particles.radii_m;
+    let poses = &state.particles.poses;
     let largest = (0..field.len())
         .flat_map(|i| {
             let [x, y, z, rx, ry, rz] = moved(i).map(f64::abs);
-            [x.max(y).max(z) / radii[i], rx, ry, rz]
+            [x.max(y).max(z) / poses[i].radius_m(), rx, ry, rz]
         })
         .fold(0.0, f64::max);
     if largest == 0.0 {
@@ -275,8 +275,8 @@ fn add_stiffness_times(
     for side in [1.0, -1.0] {
         for (i, (pose, rest)) in displaced.iter_mut().zip(&state.particles.poses).enumerate() {
             let [x, y, z, rx, ry, rz] = moved(i).map(|m| side * step * m);
-            let [px, py, pz, zero] = rest.position_m;
-            pose.position_m = [px + x, py + y, pz + z, zero];
+            let [px, py, pz, radius_m] = rest.position_m;
+            pose.position_m = [px + x, py + y, pz + z, radius_m];
             pose.turned = turn(rest.turned, [rx, ry, rz]);
         }
         bonds_as_total(state, displaced);

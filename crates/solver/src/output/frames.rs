@@ -86,7 +86,7 @@ impl FrameOrder {
             particles: self.particles.len(),
             position_m: &position,
             particle_arrays: &[
-                scalars("radius_m", &|i| p.radii_m[particle(i)]),
+                scalars("radius_m", &|i| p.poses[particle(i)].radius_m()),
                 counts("body", &|i| self.bodies[i]),
                 vectors("displacement_m", &displacement),
                 vectors("velocity_m_s", &|i| motions[particle(i)].velocity_m_s),

@@ -154,7 +154,7 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
         format!("particle {number}"),
         format!(
             "with a radius of {:.3e} m and a mass of {:.3e} kg it is nothing that a program can reckon with",
-            particles.radii_m[i],
+            particles.poses[i].radius_m(),
             1.0 / inert[0]
         ),
         "check the units of places, radii and density",
@@ -206,7 +206,7 @@ fn place_bonds(
         placed.bonds.push(original);
         let original = original as usize;
         let [a, b] = ends.map(|end| end as usize);
-        let radii = [a, b].map(|end| particles.radii_m[end]);
+        let radii = [a, b].map(|end| particles.poses[end].radius_m());
         let apart = particles.poses[b].place() - particles.poses[a].place();
         let distance = apart.norm();
         let given = body.bond_lengths[original];

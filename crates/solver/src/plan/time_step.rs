@@ -85,7 +85,7 @@ fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
     let p = &state.particles;
     (0..p.len())
         .map(|i| {
-            let radius = p.radii_m[i];
+            let radius = p.poses[i].radius_m();
             let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
             let density = 1.0 / (p.inverse_masses[i] * volume);
             std::f64::consts::PI * radius * density.sqrt() * smallest

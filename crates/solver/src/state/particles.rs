@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct Pose {
-    /// Centre, m: x, y, z and a 0 that makes four.
+    /// Centre x, y, z and, beside it for all who ask who is near, the radius of the sphere, m.
     pub position_m: [f64; 4],
     /// Rotation since the start as a unit quaternion x, y, z, w. Length 4.
     pub turned: [f64; 4],
@@ -18,6 +18,18 @@ impl Pose {
     pub fn place(&self) -> Vector3<f64> {
         let [x, y, z, _] = self.position_m;
         Vector3::new(x, y, z)
+    }
+
+    /// Radius of the sphere, m.
+    #[inline(always)]
+    pub fn radius_m(&self) -> f64 {
+        self.position_m[3]
+    }
+
+    /// Puts the centre elsewhere, m.
+    #[inline(always)]
+    pub fn put_at(&mut self, [x, y, z]: [f64; 3]) {
+        self.position_m = [x, y, z, self.radius_m()];
     }
 
     /// Rotation since the start.
@@ -71,8 +83,6 @@ pub struct Particles {
     pub inverse_masses: Vec<f64>,
     /// 1/moment of inertia, 1/(kg m2).
     pub inverse_inertias: Vec<f64>,
-    /// Radii, m.
-    pub radii_m: Vec<f64>,
 }
 
 impl Particles {
@@ -100,14 +110,13 @@ impl Particles {
         self.wrenches.reserve_exact(count);
         self.inverse_masses.reserve_exact(count);
         self.inverse_inertias.reserve_exact(count);
-        self.radii_m.reserve_exact(count);
     }
 
     /// Adds a sphere at rest.
     pub fn push_sphere(&mut self, position_m: [f64; 3], radius_m: f64, density_kg_m3: f64) {
         let mass = density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
         self.poses.push(Pose {
-            position_m: [position_m[0], position_m[1], position_m[2], 0.0],
+            position_m: [position_m[0], position_m[1], position_m[2], radius_m],
             turned: [0.0, 0.0, 0.0, 1.0],
         });
         self.motions.push(Motion::default());
@@ -115,6 +124,5 @@ impl Particles {
         self.inverse_masses.push(1.0 / mass);
         self.inverse_inertias
             .push(1.0 / (0.4 * mass * radius_m * radius_m));
-        self.radii_m.push(radius_m);
     }
 }

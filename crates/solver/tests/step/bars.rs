@@ -77,7 +77,7 @@ pub(crate) fn add_bonds(
     bonds.rules.push(of.rule);
     for &[a, b] in pairs {
         let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
-        let radii = [a, b].map(|end| particles.radii_m[end as usize]);
+        let radii = [a, b].map(|end| particles.poses[end as usize].radius_m());
         let shape = BondShape {
             length_m: apart.norm(),
             radius_m: of.radius_factor * radii[0].min(radii[1]),
@@ -205,9 +205,9 @@ pub(crate) fn scattered() -> impl FnMut() -> f64 {
 pub(crate) fn shake(state: &mut State, velocity_m_s: f64) {
     let mut next = scattered();
     let p = &mut state.particles;
-    for (motion, radius) in p.motions.iter_mut().zip(&p.radii_m) {
+    for (motion, pose) in p.motions.iter_mut().zip(&p.poses) {
         motion.velocity_m_s = [0; 3].map(|_| velocity_m_s * next());
-        motion.spin_rad_s = [0; 3].map(|_| velocity_m_s / radius * next());
+        motion.spin_rad_s = [0; 3].map(|_| velocity_m_s / pose.radius_m() * next());
     }
     reopen(state);
 }
@@ -299,7 +299,7 @@ pub(crate) fn turned(particles: &Particles, by: UnitQuaternion<f64>) -> Particle
     let mut particles = particles.clone();
     for pose in &mut particles.poses {
         let [x, y, z]: [f64; 3] = (by * pose.place()).into();
-        pose.position_m = [x, y, z, 0.0];
+        pose.put_at([x, y, z]);
     }
     for motion in &mut particles.motions {
         motion.velocity_m_s = (by * Vector3::from(motion.velocity_m_s)).into();

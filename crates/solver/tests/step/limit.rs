@@ -131,7 +131,7 @@ fn the_limit_of_a_large_body_is_found_from_any_start() {
     for i in (0..=last).rev() {
         back.push_sphere(
             particles.poses[i].place().into(),
-            particles.radii_m[i],
+            particles.poses[i].radius_m(),
             2050.0,
         );
     }

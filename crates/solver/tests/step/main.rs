@@ -13,6 +13,7 @@ mod energy;
 mod frequencies;
 mod ledger;
 mod limit;
+mod neighbours;
 mod rigid;
 mod threads;
 mod watchdog;

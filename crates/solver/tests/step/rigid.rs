@@ -7,7 +7,7 @@ use dem_io::scene::Factor;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::stages::loads::SetLoad;
 use dem_run::state::State;
-use dem_run::state::particles::{Particles, Pose};
+use dem_run::state::particles::Particles;
 use dem_run::step::step;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -30,10 +30,8 @@ fn a_body_moved_as_a_whole_feels_no_force() {
                 let place: Vector3<f64> = by * rest.place() + shift;
                 let [x, y, z] = place.into();
                 let q = by.quaternion();
-                *pose = Pose {
-                    position_m: [x, y, z, 0.0],
-                    turned: [q.i, q.j, q.k, q.w],
-                };
+                pose.put_at([x, y, z]);
+                pose.turned = [q.i, q.j, q.k, q.w];
             }
             let p = &mut state.particles;
             bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
@@ -192,7 +190,7 @@ fn numbers_do_not_matter() {
     for i in (0..=last).rev() {
         let pose = particles.poses[i];
         let [x, y, z] = pose.place().into();
-        other.push_sphere([x, y, z], particles.radii_m[i], 2050.0);
+        other.push_sphere([x, y, z], particles.poses[i].radius_m(), 2050.0);
         *other.motions.last_mut().unwrap() = particles.motions[i];
     }
     let mut back: Vec<[u32; 2]> = pairs

@@ -33,9 +33,9 @@ fn scene(shares: usize) -> State {
     let (mut particles, pairs) = random_spheres();
     let one = particles.clone();
     for shift in [0.01, 0.02] {
-        for (pose, radius) in one.poses.iter().zip(&one.radii_m) {
+        for pose in &one.poses {
             let [x, y, z] = pose.place().into();
-            particles.push_sphere([x + shift, y, z], *radius, 2050.0);
+            particles.push_sphere([x + shift, y, z], pose.radius_m(), 2050.0);
         }
     }
     let mut bonds = Bonds::default();

@@ -1,0 +1,230 @@
+//! Which particles may touch soon: pairs of different clusters that are closer than a skin, found with a grid of cells and listed until one of them
+//! may have crossed half the skin.
+//!
+//! Particles far from every other cluster are not put into the grid: of a body that flies alone, none is.
+
+use rayon::prelude::*;
+
+use crate::stages::motion::CHUNK;
+use crate::state::particles::Pose;
+
+/// Clusters of fewer particles are not asked what they are near to: they always are in the grid.
+const SMALL: u32 = 16;
+/// Cells per particle at most: a wide, empty scene gets larger cells.
+const CELLS_PER_PARTICLE: usize = 4;
+
+/// A box with sides along the axes, m.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+impl Bounds {
+    const EMPTY: Self = Self {
+        min: [f64::INFINITY; 3],
+        max: [f64::NEG_INFINITY; 3],
+    };
+
+    fn include(&mut self, low: [f64; 3], high: [f64; 3]) {
+        for k in 0..3 {
+            self.min[k] = self.min[k].min(low[k]);
+            self.max[k] = self.max[k].max(high[k]);
+        }
+    }
+
+    fn common(&self, other: &Self) -> Self {
+        Self {
+            min: [0, 1, 2].map(|k| self.min[k].max(other.min[k])),
+            max: [0, 1, 2].map(|k| self.max[k].min(other.max[k])),
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        (0..3).any(|k| self.min[k] > self.max[k])
+    }
+}
+
+/// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the smaller index first, sorted. `clusters`: one for each particle.
+pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
+    let active = near_others(poses, clusters, skin_m);
+    let Some(grid) = Grid::new(poses, &active, skin_m) else {
+        return Vec::new();
+    };
+    let of_chunk = |some: &[u32]| {
+        let mut pairs = Vec::new();
+        let mut of_one = Vec::new();
+        for &i in some {
+            grid.above(poses, clusters, i, skin_m, &mut of_one);
+            of_one.sort_unstable();
+            pairs.extend(of_one.iter().map(|&j| [i, j]));
+        }
+        pairs
+    };
+    let chunks: Vec<Vec<[u32; 2]>> = active.par_chunks(CHUNK).map(of_chunk).collect();
+    chunks.concat()
+}
+
+/// Particles that stand where another cluster may reach them, rising.
+fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
+    let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
+    let mut sizes = vec![0_u32; count];
+    let mut bounds = vec![Bounds::EMPTY; count];
+    let reach = |pose: &Pose| {
+        let (place, reach) = (pose.place(), pose.radius_m() + 0.5 * skin_m);
+        let low: [f64; 3] = place.map(|x| x - reach).into();
+        let high: [f64; 3] = place.map(|x| x + reach).into();
+        (low, high)
+    };
+    for (pose, &cluster) in poses.iter().zip(clusters) {
+        let (low, high) = reach(pose);
+        sizes[cluster as usize] += 1;
+        bounds[cluster as usize].include(low, high);
+    }
+    // All small clusters together are one thing that a large one may be near to.
+    let mut small = Bounds::EMPTY;
+    let mut large: Vec<usize> = Vec::new();
+    for cluster in 0..count {
+        if sizes[cluster] >= SMALL {
+            large.push(cluster);
+        } else if sizes[cluster] > 0 {
+            small.include(bounds[cluster].min, bounds[cluster].max);
+        }
+    }
+    let mut meets = vec![Bounds::EMPTY; count];
+    large.sort_by(|&a, &b| {
+        bounds[a].min[0]
+            .total_cmp(&bounds[b].min[0])
+            .then(a.cmp(&b))
+    });
+    for (n, &a) in large.iter().enumerate() {
+        let common = bounds[a].common(&small);
+        if !common.is_empty() {
+            meets[a].include(common.min, common.max);
+        }
+        for &b in large[n + 1..]
+            .iter()
+            .take_while(|&&b| bounds[b].min[0] <= bounds[a].max[0])
+        {
+            let common = bounds[a].common(&bounds[b]);
+            if !common.is_empty() {
+                meets[a].include(common.min, common.max);
+                meets[b].include(common.min, common.max);
+            }
+        }
+    }
+    let is_near = |i: usize| {
+        let cluster = clusters[i] as usize;
+        if sizes[cluster] < SMALL {
+            return true;
+        }
+        let (low, high) = reach(&poses[i]);
+        let mut own = Bounds::EMPTY;
+        own.include(low, high);
+        !own.common(&meets[cluster]).is_empty()
+    };
+    (0..poses.len())
+        .filter(|&i| is_near(i))
+        .map(|i| i as u32)
+        .collect()
+}
+
+/// Cells as wide as the largest particle with its skin, and the particles in each.
+struct Grid {
+    origin: [f64; 3],
+    per_width: f64,
+    counts: [usize; 3],
+    /// For each cell the first of its particles in `particles`; and at the end their number.
+    starts: Vec<u32>,
+    particles: Vec<u32>,
+}
+
+impl Grid {
+    /// None where there are fewer than two particles.
+    fn new(poses: &[Pose], active: &[u32], skin_m: f64) -> Option<Self> {
+        if active.len() < 2 {
+            return None;
+        }
+        let mut bounds = Bounds::EMPTY;
+        let mut largest = 0.0_f64;
+        for &i in active {
+            let pose = &poses[i as usize];
+            bounds.include(pose.place().into(), pose.place().into());
+            largest = largest.max(pose.radius_m());
+        }
+        let mut width = 2.0 * largest + skin_m;
+        let counts_of = |width: f64| {
+            [0, 1, 2].map(|k| ((bounds.max[k] - bounds.min[k]) / width).min(1e6) as usize + 1)
+        };
+        let room = CELLS_PER_PARTICLE * active.len() + 64;
+        let product = |counts: [usize; 3]| counts.iter().map(|&n| n as f64).product::<f64>();
+        while product(counts_of(width)) > room as f64 {
+            width *= 1.25;
+        }
+        let mut grid = Self {
+            origin: bounds.min,
+            per_width: 1.0 / width,
+            counts: counts_of(width),
+            starts: Vec::new(),
+            particles: vec![0; active.len()],
+        };
+        let cells: Vec<u32> = active
+            .iter()
+            .map(|&i| grid.number(grid.cell(&poses[i as usize])) as u32)
+            .collect();
+        let mut starts = vec![0_u32; grid.counts.iter().product::<usize>() + 1];
+        for &cell in &cells {
+            starts[cell as usize + 1] += 1;
+        }
+        for cell in 1..starts.len() {
+            starts[cell] += starts[cell - 1];
+        }
+        let mut next = starts.clone();
+        for (&cell, &i) in cells.iter().zip(active) {
+            let place = &mut next[cell as usize];
+            grid.particles[*place as usize] = i;
+            *place += 1;
+        }
+        grid.starts = starts;
+        Some(grid)
+    }
+
+    fn cell(&self, pose: &Pose) -> [usize; 3] {
+        [0, 1, 2].map(|k| {
+            let along = (pose.position_m[k] - self.origin[k]) * self.per_width;
+            (along as usize).min(self.counts[k] - 1)
+        })
+    }
+
+    fn number(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.counts[1] + y) * self.counts[0] + x
+    }
+
+    /// The particles of other clusters with a larger index than `i` that are near it, in no order.
+    fn above(&self, poses: &[Pose], clusters: &[u32], i: u32, skin_m: f64, found: &mut Vec<u32>) {
+        found.clear();
+        let (pose, cluster) = (&poses[i as usize], clusters[i as usize]);
+        let [x, y, z] = self.cell(pose);
+        let around = |at: usize, k: usize| at.saturating_sub(1)..(at + 2).min(self.counts[k]);
+        let reach = pose.radius_m() + skin_m;
+        for z in around(z, 2) {
+            for y in around(y, 1) {
+                let xs = around(x, 0);
+                // Cells beside each other follow one another.
+                let first = self.starts[self.number([xs.start, y, z])] as usize;
+                let end = self.starts[self.number([xs.end - 1, y, z]) + 1] as usize;
+                for &j in &self.particles[first..end] {
+                    if j <= i || clusters[j as usize] == cluster {
+                        continue;
+                    }
+                    let other = &poses[j as usize];
+                    let apart = (other.place() - pose.place()).norm_squared();
+                    let near = reach + other.radius_m();
+                    if apart < near * near {
+                        found.push(j);
+                    }
+                }
+            }
+        }
+    }
+}
