@@ -14,6 +14,9 @@ pub trait Number:
     /// Times a constant.
     fn times(self, factor: f64) -> Self;
 
+    /// Plus a constant.
+    fn plus(self, term: f64) -> Self;
+
     /// One over this.
     fn inverse(self) -> Self;
 
@@ -22,6 +25,9 @@ pub trait Number:
 
     /// The larger of two numbers.
     fn larger(self, other: Self) -> Self;
+
+    /// The smaller of two numbers.
+    fn smaller(self, other: Self) -> Self;
 
     /// 1 or -1, as the sign is; -1 for -0.
     fn sign(self) -> Self;
@@ -37,6 +43,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn plus(self, term: f64) -> Self {
+        self + term
+    }
+
+    #[inline(always)]
     fn inverse(self) -> Self {
         1.0 / self
     }
@@ -49,6 +60,11 @@ impl Number for f64 {
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        if self < other { self } else { other }
     }
 
     #[inline(always)]
@@ -80,6 +96,16 @@ impl<T: Number> Triple<T> {
             self.1 * other.2 - self.2 * other.1,
             self.2 * other.0 - self.0 * other.2,
             self.0 * other.1 - self.1 * other.0,
+        )
+    }
+
+    /// Times a constant.
+    #[inline(always)]
+    pub fn times(self, factor: f64) -> Self {
+        Self(
+            self.0.times(factor),
+            self.1.times(factor),
+            self.2.times(factor),
         )
     }
 

@@ -157,6 +157,11 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn plus(self, term: f64) -> Self {
+            self.with(self.simd.avx._mm256_add_pd(self.v, self.constant(term)))
+        }
+
+        #[inline(always)]
         fn inverse(self) -> Self {
             self.with(self.simd.avx._mm256_div_pd(self.constant(1.0), self.v))
         }
@@ -169,6 +174,11 @@ mod avx2 {
         #[inline(always)]
         fn larger(self, other: Self) -> Self {
             self.with(self.simd.avx._mm256_max_pd(self.v, other.v))
+        }
+
+        #[inline(always)]
+        fn smaller(self, other: Self) -> Self {
+            self.with(self.simd.avx._mm256_min_pd(self.v, other.v))
         }
 
         #[inline(always)]

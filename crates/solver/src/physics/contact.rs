@@ -1,0 +1,249 @@
+//! Contacts between two spheres, or a sphere and a wall: a normal law with friction, and rolling friction.
+//!
+//! With n the unit normal from a to b, d the overlap, v the velocity of b's surface against a's and v_t its part across n, the force on b is
+//!
+//!   N n - k_t xi - c_t v_t,   N = elastic(d) - c_n v . n >= 0,   |k_t xi + c_t v_t| <= mu N
+//!
+//! and the moment on b is -k_r theta - c_r w_t, with the relative spin w in place of v. The [normal law](NormalLaw) says what elastic, k_t, c_n and
+//! c_t are, the [rolling friction](RollingFriction) what becomes of the moment.
+//!
+//! The springs xi and theta are what a contact remembers. They are summed up from velocities that leapfrog has halfway through a step, in the axes
+//! of the middle of the step (half the turn of the normal, half the mean spin about it), so that the step is the same backwards.
+//!
+//! The books are exact to second order in the time step. The springs' own losses come as energies of the step just made: the mean of the forces at
+//! its two ends times the motion between, less what is stored. Damping comes as forces: half of their power with the velocity before the kick, half with that after it
+//! ([`Damping::power_w`]).
+
+pub mod hertz_mindlin;
+pub mod linear;
+pub mod manner;
+pub mod relaxation;
+pub mod restitution;
+pub mod rolling;
+pub mod slider;
+pub mod touch;
+
+use crate::physics::number::{Number, Triple};
+use rolling::RollingFriction;
+use slider::slide;
+use touch::{Carry, Touch};
+
+/// What a contact remembers. All 0 when it begins, and again once the ends are apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct History<T = f64> {
+    /// Tangential spring: how far b's surface is displaced against a's, across the normal, m.
+    pub tangential_m: Triple<T>,
+    /// Rolling spring: how far b has rolled against a, across the normal, rad.
+    pub rolling_rad: Triple<T>,
+    /// Overlap when forces were computed last, m.
+    pub overlap_m: T,
+}
+
+impl Default for History {
+    fn default() -> Self {
+        Self {
+            tangential_m: Triple(0.0, 0.0, 0.0),
+            rolling_rad: Triple(0.0, 0.0, 0.0),
+            overlap_m: 0.0,
+        }
+    }
+}
+
+/// What a contact does and stores.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response<T = f64> {
+    /// To be remembered.
+    pub history: History<T>,
+    /// Force on b, N. The first end feels the opposite.
+    pub force_on_b: Triple<T>,
+    /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force come [on top](touch::torques).
+    pub moment_on_b: Triple<T>,
+    /// Elastic energy.
+    pub energy: ContactEnergy<T>,
+    /// Lost by the springs in the step just made.
+    pub lost: Lost<T>,
+    /// The part of force and moment that is damping.
+    pub damping: Damping<T>,
+}
+
+/// Elastic energy of a contact by mode, J.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactEnergy<T = f64> {
+    /// Of the overlap.
+    pub normal: T,
+    /// Of the tangential spring.
+    pub tangential: T,
+    /// Of the rolling spring.
+    pub rolling: T,
+}
+
+/// Energy the springs lost in a step, J: sliding, and what a spring loses as the normal load changes.
+///
+/// Not below -1/8 k x^2, with k the stiffness before the step and x the motion in it, and that only in a step that turns a force round.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Lost<T = f64> {
+    /// By sliding.
+    pub sliding: T,
+    /// By rolling.
+    pub rolling: T,
+}
+
+/// Forces and moments of damping on b. The first end feels the opposite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping<T = f64> {
+    /// Along the normal, N: the normal force less its elastic part.
+    pub normal_n: Triple<T>,
+    /// Across it, N.
+    pub tangential_n: Triple<T>,
+    /// Rolling, N m.
+    pub rolling_n_m: Triple<T>,
+}
+
+/// Power lost by damping, W.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DampingPower<T = f64> {
+    /// Along the normal.
+    pub normal: T,
+    /// Across it.
+    pub tangential: T,
+    /// Rolling.
+    pub rolling: T,
+}
+
+impl<T: Number> Damping<T> {
+    /// Power lost at this [relative velocity](touch::relative_velocity), m/s, and spin of b against a, rad/s, where the forces act.
+    ///
+    /// Over a step: half of it with the forces at its beginning, half with those at its end, both with the velocity halfway.
+    #[inline(always)]
+    pub fn power_w(&self, velocity_m_s: Triple<T>, spin_rad_s: Triple<T>) -> DampingPower<T> {
+        DampingPower {
+            normal: -self.normal_n.dot(velocity_m_s),
+            tangential: -self.tangential_n.dot(velocity_m_s),
+            rolling: -self.rolling_n_m.dot(spin_rad_s),
+        }
+    }
+}
+
+/// What a normal law says of a contact at an overlap, and of the same contact a step before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grip<T = f64> {
+    /// Elastic force, N.
+    pub elastic_n: T,
+    /// Elastic energy, J.
+    pub energy_j: T,
+    /// Tangent stiffness along the normal, before the step and now, N/m.
+    pub normal_n_m: [T; 2],
+    /// Stiffness of the tangential spring, before the step and now, N/m.
+    pub tangential_n_m: [T; 2],
+    /// Stiffness before the step over that now; 0 where there is no contact now.
+    pub softer: T,
+    /// Damping force per speed along the normal, N s/m.
+    pub normal_damping_n_s_m: T,
+    /// The same across it.
+    pub tangential_damping_n_s_m: T,
+}
+
+/// A law for the normal force, and what friction needs to know of it.
+pub trait NormalLaw<T: Number> {
+    /// The contact now and, at the overlap of its history, a step before.
+    fn grip(&self, touch: &Touch<T>, overlap_before_m: T) -> Grip<T>;
+
+    /// How the pair damps and rubs.
+    fn manner(&self) -> &manner::Manner<T>;
+}
+
+/// What a contact does after a step of `dt` (s) which the touch and the history before it describe.
+///
+/// Meant for the inside of a loop over contacts: there is no branch in it, and what the caller does not read is not computed.
+#[inline(always)]
+pub fn response<T: Number>(
+    law: &impl NormalLaw<T>,
+    rolling: &impl RollingFriction<T>,
+    touch: &Touch<T>,
+    history: &History<T>,
+    dt: f64,
+) -> Response<T> {
+    let grip = law.grip(touch, history.overlap_m);
+    let manner = law.manner();
+    let carry = Carry::new(touch, dt);
+
+    let apart = touch.velocity_m_s.dot(touch.middle);
+    let damped = grip.elastic_n - grip.normal_damping_n_s_m * apart;
+    let held = damped.larger(manner.least_n);
+    let normal = touch.overlap_m.if_positive(held);
+    let pressed = normal.if_positive(normal);
+
+    let across = touch.velocity_m_s - touch.middle * apart;
+    let slid = slide(
+        carry.to_middle(history.tangential_m),
+        across.times(dt),
+        grip.tangential_n_m,
+        grip.softer.larger(manner.kept[0]).smaller(manner.kept[1]),
+        manner.friction * pressed,
+        across * grip.tangential_damping_n_s_m,
+    );
+    let rolled = rolling.roll(&grip, touch, &carry, history.rolling_rad, pressed, dt);
+
+    let tangential = carry.to_end(slid.force);
+    let tangential_damping = -carry.to_end(slid.damping);
+    let rolling_damping = -carry.to_end(rolled.damping);
+    Response {
+        history: History {
+            tangential_m: carry.to_end(slid.spring),
+            rolling_rad: carry.to_end(rolled.spring),
+            overlap_m: touch.overlap_m.if_positive(touch.overlap_m),
+        },
+        force_on_b: touch.normal * normal - tangential + tangential_damping,
+        moment_on_b: rolling_damping - carry.to_end(rolled.force),
+        energy: ContactEnergy {
+            normal: grip.energy_j,
+            tangential: slid.stored_j,
+            rolling: rolled.stored_j,
+        },
+        lost: Lost {
+            sliding: slid.lost_j,
+            rolling: rolled.lost_j,
+        },
+        damping: Damping {
+            normal_n: touch.normal * (normal - grip.elastic_n),
+            tangential_n: tangential_damping,
+            rolling_n_m: rolling_damping,
+        },
+    }
+}
+
+/// A contact as the limit of the time step sees it: linearised, at rest at its overlap.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Linearised<T = f64> {
+    /// Stiffness along the normal, N/m.
+    pub normal_n_m: T,
+    /// Across it, N/m.
+    pub tangential_n_m: T,
+    /// Of rolling, N m/rad.
+    pub rolling_n_m_rad: T,
+    /// Damping along the normal, N s/m.
+    pub normal_damping_n_s_m: T,
+    /// Across it, N s/m.
+    pub tangential_damping_n_s_m: T,
+    /// Of rolling, N m s/rad.
+    pub rolling_damping_n_m_s: T,
+}
+
+/// The linearised contact. All its numbers grow with the overlap, so at the largest overlap there will be they are the largest.
+#[inline(always)]
+pub fn linearised<T: Number>(
+    law: &impl NormalLaw<T>,
+    rolling: &impl RollingFriction<T>,
+    touch: &Touch<T>,
+) -> Linearised<T> {
+    let grip = law.grip(touch, touch.overlap_m);
+    let [stiffness, damping] = rolling.linearised(&grip, touch);
+    Linearised {
+        normal_n_m: grip.normal_n_m[1],
+        tangential_n_m: grip.tangential_n_m[1],
+        rolling_n_m_rad: stiffness,
+        normal_damping_n_s_m: grip.normal_damping_n_s_m,
+        tangential_damping_n_s_m: grip.tangential_damping_n_s_m,
+        rolling_damping_n_m_s: damping,
+    }
+}

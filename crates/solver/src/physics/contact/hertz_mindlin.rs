@@ -1,0 +1,80 @@
+//! The law of Hertz and Mindlin.
+//!
+//! With 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b, 1/G* = (2 - nu_a)/G_a + (2 - nu_b)/G_b, 1/R* = 1/R_a + 1/R_b:
+//!
+//! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz);
+//! - k_t = 8 G* sqrt(R* d) (Mindlin 1949, no slip);
+//! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al. 1992), and the [ratio zeta](super::restitution)
+//!   that gives the wanted restitution.
+
+use super::manner::{Behaviour, Elastic, Manner};
+use super::touch::Touch;
+use super::{Grip, NormalLaw};
+use crate::physics::number::Number;
+
+/// The law for a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HertzMindlin<T = f64> {
+    /// E*, Pa.
+    pub young_modulus_pa: T,
+    /// G*, Pa.
+    pub shear_modulus_pa: T,
+    /// How it damps and rubs.
+    pub manner: Manner<T>,
+}
+
+impl HertzMindlin {
+    /// Of two materials, one of them at most rigid.
+    pub fn new(materials: [Elastic; 2], behaviour: &Behaviour) -> Self {
+        let [a, b] = materials;
+        let softness = |m: Elastic| (1.0 - m.poisson_ratio.powi(2)) / m.young_modulus_pa;
+        let shear_softness = |m: Elastic| {
+            2.0 * (1.0 + m.poisson_ratio) * (2.0 - m.poisson_ratio) / m.young_modulus_pa
+        };
+        Self {
+            young_modulus_pa: 1.0 / (softness(a) + softness(b)),
+            shear_modulus_pa: 1.0 / (shear_softness(a) + shear_softness(b)),
+            manner: Manner::new(behaviour),
+        }
+    }
+
+    /// Largest overlap of an impact at this speed without damping, m: with damping it is less.
+    pub fn overlap_at_impact_m(&self, radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
+        let k = 4.0 / 3.0 * self.young_modulus_pa * radius_m.sqrt();
+        (1.25 * mass_kg * speed_m_s * speed_m_s / k).powf(0.4)
+    }
+}
+
+/// 2 sqrt(5/6), times the damping ratio.
+const TSUJI: f64 = 1.825_741_858_350_553_8;
+
+impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
+    #[inline(always)]
+    fn grip(&self, touch: &Touch<T>, overlap_before_m: T) -> Grip<T> {
+        let overlap = touch.overlap_m.if_positive(touch.overlap_m);
+        let contact_radius = (touch.radius_m * overlap).root();
+        let contact_radius_before = (touch.radius_m * overlap_before_m).root();
+        let (e, g) = (
+            self.young_modulus_pa.times(2.0),
+            self.shear_modulus_pa.times(8.0),
+        );
+        let (normal, tangential) = (e * contact_radius, g * contact_radius);
+        let elastic = (normal * overlap).times(2.0 / 3.0);
+        let ratio = self.manner.damping_ratio.times(TSUJI);
+        let tangential_ratio = self.manner.tangential_damping_ratio.times(TSUJI);
+        Grip {
+            elastic_n: elastic,
+            energy_j: (elastic * overlap).times(0.4),
+            normal_n_m: [e * contact_radius_before, normal],
+            tangential_n_m: [g * contact_radius_before, tangential],
+            softer: overlap.if_positive(contact_radius_before / contact_radius),
+            normal_damping_n_s_m: ratio * (normal * touch.mass_kg).root(),
+            tangential_damping_n_s_m: tangential_ratio * (tangential * touch.mass_kg).root(),
+        }
+    }
+
+    #[inline(always)]
+    fn manner(&self) -> &Manner<T> {
+        &self.manner
+    }
+}

@@ -1,0 +1,62 @@
+//! The linear law: springs and dashpots of constant stiffness.
+//!
+//! F_n = k_n d, k_t a constant share of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n, across it with k_t, and the
+//! [ratio zeta](super::restitution) that gives the wanted restitution at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
+
+use super::manner::{Behaviour, Manner};
+use super::touch::Touch;
+use super::{Grip, NormalLaw};
+use crate::physics::number::Number;
+
+/// The law for a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linear<T = f64> {
+    /// k_n, N/m.
+    pub normal_n_m: T,
+    /// k_t, N/m.
+    pub tangential_n_m: T,
+    /// How it damps and rubs.
+    pub manner: Manner<T>,
+}
+
+impl Linear {
+    /// Of this stiffness, N/m, and this ratio k_t / k_n.
+    pub fn new(normal_n_m: f64, tangential_ratio: f64, behaviour: &Behaviour) -> Self {
+        Self {
+            normal_n_m,
+            tangential_n_m: tangential_ratio * normal_n_m,
+            manner: Manner::new(behaviour),
+        }
+    }
+}
+
+impl<T: Number> NormalLaw<T> for Linear<T> {
+    #[inline(always)]
+    fn grip(&self, touch: &Touch<T>, overlap_before_m: T) -> Grip<T> {
+        let overlap = touch.overlap_m.if_positive(touch.overlap_m);
+        let normal = overlap.if_positive(self.normal_n_m);
+        let tangential = overlap.if_positive(self.tangential_n_m);
+        let normal_before = overlap_before_m.if_positive(self.normal_n_m);
+        let elastic = normal * overlap;
+        Grip {
+            elastic_n: elastic,
+            energy_j: (elastic * overlap).times(0.5),
+            normal_n_m: [normal_before, normal],
+            tangential_n_m: [
+                overlap_before_m.if_positive(self.tangential_n_m),
+                tangential,
+            ],
+            softer: overlap.if_positive(normal_before / normal),
+            normal_damping_n_s_m: (self.manner.damping_ratio * (normal * touch.mass_kg).root())
+                .times(2.0),
+            tangential_damping_n_s_m: (self.manner.tangential_damping_ratio
+                * (tangential * touch.mass_kg).root())
+            .times(2.0),
+        }
+    }
+
+    #[inline(always)]
+    fn manner(&self) -> &Manner<T> {
+        &self.manner
+    }
+}

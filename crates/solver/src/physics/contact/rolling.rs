@@ -1,0 +1,163 @@
+//! Rolling friction: a moment against rolling. Twisting about the normal is free.
+//!
+//! Rolling w_t is the part of the relative spin across the normal; the moment is mu_r R* N at most.
+//!
+//! - Constant moment (type A of Ai et al. 2011): against w_t, whatever its size. Slow rolling meets a viscous moment instead, which would take a
+//!   [small share](ConstantMoment::SHARE) of the rolling in a step: so a body at rest neither jitters nor is turned back. It does not hold either: a constant torque
+//!   below the limit makes it creep, more slowly as the time step is smaller.
+//! - Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with k_n the tangent normal stiffness, slipping at the
+//!   limit; c_r = 2 eta sqrt(J k_r) with J the reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts in the limit,
+//!   so that it fades out instead of jumping to 0 when the spring begins to slip; and the spring is treated as the tangential one when the load changes.
+
+use super::Grip;
+use super::slider::{Slid, slide};
+use super::touch::{Carry, Touch};
+use crate::physics::number::{Number, Triple};
+
+/// What becomes of rolling.
+pub trait RollingFriction<T: Number> {
+    /// The spring after a step that began with the elongation `before`, pressed by the normal force `pressed`, N.
+    fn roll(
+        &self,
+        grip: &Grip<T>,
+        touch: &Touch<T>,
+        carry: &Carry<T>,
+        before: Triple<T>,
+        pressed: T,
+        dt: f64,
+    ) -> Slid<T>;
+
+    /// Stiffness, N m/rad, and damping, N m s/rad, of small rolling.
+    fn linearised(&self, grip: &Grip<T>, touch: &Touch<T>) -> [T; 2];
+}
+
+/// No rolling friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoRolling;
+
+/// Constant moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConstantMoment<T = f64> {
+    /// mu_r, of R*.
+    pub friction: T,
+}
+
+/// Elastic-plastic spring and dashpot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElasticPlastic<T = f64> {
+    /// mu_r, of R*.
+    pub friction: T,
+    /// eta, share of critical damping: 0.3 in Ai et al. 2011.
+    pub damping_ratio: T,
+}
+
+impl ConstantMoment {
+    /// Slow rolling loses this share of itself in a step, reckoned with the inertia about the contact point. That is 3.5 times a sphere's inertia
+    /// about its centre: a dozen contacts with equal spheres, each with half of it, still take no more than all of its spin.
+    pub const SHARE: f64 = 1.0 / 21.0;
+}
+
+impl<T: Number> RollingFriction<T> for NoRolling {
+    #[inline(always)]
+    fn roll(
+        &self,
+        _: &Grip<T>,
+        touch: &Touch<T>,
+        _: &Carry<T>,
+        _: Triple<T>,
+        _: T,
+        _: f64,
+    ) -> Slid<T> {
+        damped(touch.middle.times(0.0))
+    }
+
+    #[inline(always)]
+    fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
+        let none = touch.radius_m.times(0.0);
+        [none, none]
+    }
+}
+
+impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
+    #[inline(always)]
+    fn roll(
+        &self,
+        _: &Grip<T>,
+        touch: &Touch<T>,
+        _: &Carry<T>,
+        _: Triple<T>,
+        pressed: T,
+        dt: f64,
+    ) -> Slid<T> {
+        let limit = self.friction * touch.radius_m * pressed;
+        let rolling = rolling(touch);
+        let speed = rolling.square().root();
+        let slow = limit.times(dt / ConstantMoment::SHARE) / touch.rolling_inertia_kg_m2;
+        let coefficient = speed.if_positive(limit.if_positive(limit / speed.larger(slow)));
+        damped(rolling * coefficient)
+    }
+
+    /// Nothing: its viscous part follows the time step and is stable at any.
+    #[inline(always)]
+    fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
+        let none = touch.radius_m.times(0.0);
+        [none, none]
+    }
+}
+
+impl<T: Number> RollingFriction<T> for ElasticPlastic<T> {
+    #[inline(always)]
+    fn roll(
+        &self,
+        grip: &Grip<T>,
+        touch: &Touch<T>,
+        carry: &Carry<T>,
+        before: Triple<T>,
+        pressed: T,
+        dt: f64,
+    ) -> Slid<T> {
+        let rolling = rolling(touch);
+        let [stiffness, damping] = self.linearised(grip, touch);
+        let arm = self.friction * touch.radius_m;
+        let stiffness_before = (grip.normal_n_m[0] * arm * arm).times(STIFFNESS);
+        let one = touch.radius_m.times(0.0).plus(1.0);
+        slide(
+            carry.to_middle(before),
+            rolling.times(dt),
+            [stiffness_before, stiffness],
+            grip.softer.smaller(one),
+            arm * pressed,
+            rolling * damping,
+        )
+    }
+
+    #[inline(always)]
+    fn linearised(&self, grip: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
+        let arm = self.friction * touch.radius_m;
+        let stiffness = (grip.normal_n_m[1] * arm * arm).times(STIFFNESS);
+        let critical = (stiffness * touch.rolling_inertia_kg_m2).root().times(2.0);
+        [stiffness, self.damping_ratio * critical]
+    }
+}
+
+/// k_r over k_n mu_r^2 R*^2 (Ai et al. 2011, after Jiang et al. 2005).
+const STIFFNESS: f64 = 2.25;
+
+/// Relative spin across the normal, in the middle of the step, rad/s.
+#[inline(always)]
+fn rolling<T: Number>(touch: &Touch<T>) -> Triple<T> {
+    touch.spin_rad_s - touch.middle * touch.spin_rad_s.dot(touch.middle)
+}
+
+/// A damper without a spring.
+#[inline(always)]
+fn damped<T: Number>(damping: Triple<T>) -> Slid<T> {
+    let none = damping.times(0.0);
+    Slid {
+        spring: none,
+        force: none,
+        damping,
+        stored_j: none.0,
+        lost_j: none.0,
+    }
+}

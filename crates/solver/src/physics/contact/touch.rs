@@ -1,0 +1,211 @@
+//! Where and how two ends touch: the only geometry that contact laws know.
+
+use crate::physics::number::{Number, Triple};
+
+/// A sphere that may touch: one of its own, or one of a clump, which then has the clump's mass and moment of inertia.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball<T = f64> {
+    /// Velocity of the centre halfway through the step, m/s: what it moved in the step over the time step.
+    pub velocity_m_s: Triple<T>,
+    /// Spin halfway through the step, rad/s.
+    pub spin_rad_s: Triple<T>,
+    /// Radius, m.
+    pub radius_m: T,
+    /// One over the mass, 1/kg: 0 if it is held.
+    pub inverse_mass_per_kg: T,
+    /// One over the moment of inertia, 1/(kg m^2): 0 if it is held.
+    pub inverse_inertia_per_kg_m2: T,
+}
+
+/// A wall where it touches a sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot<T = f64> {
+    /// Unit normal from the wall to the centre of the sphere.
+    pub normal: Triple<T>,
+    /// The same a step before.
+    pub normal_before: Triple<T>,
+    /// Distance of the centre from the wall, m.
+    pub distance_m: T,
+    /// Velocity of the wall's surface there, halfway through the step, m/s.
+    pub velocity_m_s: Triple<T>,
+    /// Spin of the wall halfway through the step, rad/s.
+    pub spin_rad_s: Triple<T>,
+}
+
+/// How b touches a, at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch<T = f64> {
+    /// Unit normal from a to b.
+    pub normal: Triple<T>,
+    /// The unit vector halfway between the normal a step before and now.
+    pub middle: Triple<T>,
+    /// Overlap, m; where it is not above 0 the ends are apart.
+    pub overlap_m: T,
+    /// From each centre to the contact point, m: radius less half the overlap, 0 for a wall. Together they are the distance of the centres, so torques balance.
+    pub levers_m: [T; 2],
+    /// Velocity of b's surface against a's at the contact point, halfway through the step, m/s.
+    pub velocity_m_s: Triple<T>,
+    /// Spin of b against a halfway through the step, rad/s.
+    pub spin_rad_s: Triple<T>,
+    /// Mean spin of the two about the normal, rad/s.
+    pub mean_spin_rad_s: T,
+    /// R_a R_b / (R_a + R_b), m; at a wall the sphere's radius.
+    pub radius_m: T,
+    /// m_a m_b / (m_a + m_b), kg; at a wall the sphere's mass. 0 between two held ends.
+    pub mass_kg: T,
+    /// J_a J_b / (J_a + J_b) with J = I + m R^2, kg m^2: inertia against rolling (Ai et al. 2011). 0 between two held ends.
+    pub rolling_inertia_kg_m2: T,
+}
+
+/// How two spheres touch whose centres are `apart_m` (from a to b) after a step of `dt`, s. The centres must not coincide.
+#[inline(always)]
+pub fn touch<T: Number>(apart_m: Triple<T>, [a, b]: [Ball<T>; 2], dt: f64) -> Touch<T> {
+    let moving = b.velocity_m_s - a.velocity_m_s;
+    let (normal, length) = unit(apart_m);
+    let (normal_before, length_before) = unit(apart_m - moving.times(dt));
+    let (middle, _) = unit(normal_before + normal);
+
+    let reach = a.radius_m + b.radius_m;
+    let overlap = reach - length;
+    let halfway = (overlap + reach - length_before).times(0.25);
+    let (arm_a, arm_b) = (a.radius_m - halfway, b.radius_m - halfway);
+    let levers_m = [
+        a.radius_m - overlap.times(0.5),
+        b.radius_m - overlap.times(0.5),
+    ];
+    let per_inertia = per_rolling_inertia(&a) + per_rolling_inertia(&b);
+    Touch {
+        normal,
+        middle,
+        overlap_m: overlap,
+        levers_m,
+        velocity_m_s: moving - (a.spin_rad_s * arm_a + b.spin_rad_s * arm_b).cross(middle),
+        spin_rad_s: b.spin_rad_s - a.spin_rad_s,
+        mean_spin_rad_s: (a.spin_rad_s + b.spin_rad_s).dot(middle).times(0.5),
+        radius_m: a.radius_m * b.radius_m / reach,
+        mass_kg: reduced(a.inverse_mass_per_kg + b.inverse_mass_per_kg),
+        rolling_inertia_kg_m2: reduced(per_inertia),
+    }
+}
+
+/// How a sphere (b) touches a wall (a), which has endless mass and radius, after a step of `dt`, s.
+#[inline(always)]
+pub fn touch_at_wall<T: Number>(foot: &Foot<T>, b: Ball<T>, dt: f64) -> Touch<T> {
+    let moving = b.velocity_m_s - foot.velocity_m_s;
+    let (middle, _) = unit(foot.normal_before + foot.normal);
+    let overlap = b.radius_m - foot.distance_m;
+    let lever = b.radius_m - overlap.times(0.5);
+    let arm = lever - moving.dot(middle).times(0.25 * dt);
+    Touch {
+        normal: foot.normal,
+        middle,
+        overlap_m: overlap,
+        levers_m: [lever.times(0.0), lever],
+        velocity_m_s: moving - (b.spin_rad_s * arm).cross(middle),
+        spin_rad_s: b.spin_rad_s - foot.spin_rad_s,
+        mean_spin_rad_s: (foot.spin_rad_s + b.spin_rad_s).dot(middle).times(0.5),
+        radius_m: b.radius_m,
+        mass_kg: reduced(b.inverse_mass_per_kg),
+        rolling_inertia_kg_m2: reduced(per_rolling_inertia(&b)),
+    }
+}
+
+/// Velocity of b's surface against a's at the contact point, m/s, of ends that have these velocities and spins (a first), where the touch is now.
+///
+/// For a wall: the velocity of its surface there.
+#[inline(always)]
+pub fn relative_velocity<T: Number>(
+    touch: &Touch<T>,
+    [velocity_a, velocity_b]: [Triple<T>; 2],
+    [spin_a, spin_b]: [Triple<T>; 2],
+) -> Triple<T> {
+    let [lever_a, lever_b] = touch.levers_m;
+    velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
+}
+
+/// Torques on a and b about their centres, N m, of a force on b at the contact point, N, and a moment on b, N m.
+///
+/// For a wall: about the contact point.
+#[inline(always)]
+pub fn torques<T: Number>(
+    touch: &Touch<T>,
+    force_on_b: Triple<T>,
+    moment_on_b: Triple<T>,
+) -> [Triple<T>; 2] {
+    let [lever_a, lever_b] = touch.levers_m;
+    let turn = force_on_b.cross(touch.normal);
+    [turn * lever_a - moment_on_b, turn * lever_b + moment_on_b]
+}
+
+/// How vectors across the normal turn along with it in a step: as its two halves.
+#[derive(Debug, Clone, Copy)]
+pub struct Carry<T> {
+    normal: Triple<T>,
+    swing: Triple<T>,
+    per_swing: T,
+    spin: Triple<T>,
+    per_spin: T,
+}
+
+impl<T: Number> Carry<T> {
+    /// Of a step of `dt`, s.
+    #[inline(always)]
+    pub fn new(touch: &Touch<T>, dt: f64) -> Self {
+        let spin = touch.middle * touch.mean_spin_rad_s.times(0.25 * dt);
+        Self {
+            normal: touch.normal,
+            swing: touch.middle.cross(touch.normal),
+            per_swing: touch.middle.dot(touch.normal).plus(1.0).inverse(),
+            spin,
+            per_spin: spin.square().plus(1.0).times(0.5).inverse(),
+        }
+    }
+
+    /// From the beginning of the step to its middle.
+    #[inline(always)]
+    pub fn to_middle(&self, vector: Triple<T>) -> Triple<T> {
+        self.spun(self.swung(vector))
+    }
+
+    /// From the middle of the step to its end. What rounding leaves along the normal is taken away.
+    #[inline(always)]
+    pub fn to_end(&self, vector: Triple<T>) -> Triple<T> {
+        let there = self.swung(self.spun(vector));
+        there - self.normal * there.dot(self.normal)
+    }
+
+    /// Turned as the normal is in half the step: `swing` is the axis times the sine of the angle, `per_swing` 1 / (1 + cosine).
+    #[inline(always)]
+    fn swung(&self, vector: Triple<T>) -> Triple<T> {
+        let once = self.swing.cross(vector);
+        vector + once + self.swing.cross(once) * self.per_swing
+    }
+
+    /// Turned by half the mean spin about the normal: `spin` is the axis times t = a quarter of the turn in the step, for the tangent of
+    /// half the angle, `per_spin` 2 / (1 + t^2).
+    #[inline(always)]
+    fn spun(&self, vector: Triple<T>) -> Triple<T> {
+        vector + self.spin.cross(vector + self.spin.cross(vector)) * self.per_spin
+    }
+}
+
+/// A vector's direction and length.
+#[inline(always)]
+fn unit<T: Number>(vector: Triple<T>) -> (Triple<T>, T) {
+    let length = vector.square().root();
+    (vector * length.inverse(), length)
+}
+
+/// One over a sum of inverses, 0 where that is 0.
+#[inline(always)]
+fn reduced<T: Number>(sum: T) -> T {
+    sum.if_positive(sum.inverse())
+}
+
+/// One over I + m R^2; 0 for an end that is held.
+#[inline(always)]
+fn per_rolling_inertia<T: Number>(ball: &Ball<T>) -> T {
+    let (per_mass, per_inertia) = (ball.inverse_mass_per_kg, ball.inverse_inertia_per_kg_m2);
+    let sum = per_mass + per_inertia * ball.radius_m * ball.radius_m;
+    sum.if_positive(per_mass * per_inertia / sum)
+}
