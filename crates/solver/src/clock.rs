@@ -10,6 +10,8 @@ pub const EVERY: u64 = 16;
 pub enum Stage {
     /// Forces of bonds.
     Bonds,
+    /// Contacts, and the search for them.
+    Contacts,
     /// Damping of bonds and particles.
     Damping,
     /// Loads, supports, breakage and the ledger.
@@ -20,12 +22,19 @@ pub enum Stage {
 
 impl Stage {
     /// All, in the order of the table.
-    pub const ALL: [Self; 4] = [Self::Bonds, Self::Damping, Self::Motion, Self::Rest];
+    pub const ALL: [Self; 5] = [
+        Self::Bonds,
+        Self::Contacts,
+        Self::Damping,
+        Self::Motion,
+        Self::Rest,
+    ];
 
     /// For a person.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bonds => "bonds",
+            Self::Contacts => "contacts",
             Self::Damping => "damping",
             Self::Rest => "rest",
             Self::Motion => "motion",
@@ -36,7 +45,7 @@ impl Stage {
 /// Times of the stages in the steps that were timed.
 #[derive(Debug, Clone, Default)]
 pub struct StageClock {
-    times: [Duration; 4],
+    times: [Duration; 5],
     since: Option<Instant>,
 }
 

@@ -3,6 +3,7 @@
 mod blocks;
 pub mod bonds;
 pub mod breakage;
+pub mod contacts;
 pub mod damping;
 pub mod incremental;
 mod lanes;

@@ -1,6 +1,7 @@
 //! What moves and what joins it, as plain arrays; and all that a step needs besides.
 
 pub mod bonds;
+pub mod contacts;
 pub mod order;
 pub mod particles;
 pub mod shares;
@@ -12,6 +13,7 @@ use crate::stages::loads::SetLoad;
 use crate::stages::supports::SetSupport;
 
 use self::bonds::Bonds;
+use self::contacts::Contacts;
 use self::particles::{Particles, Wrench};
 use self::shares::{Share, divide};
 
@@ -24,6 +26,8 @@ pub struct State {
     pub bonds: Bonds,
     /// Who works on what.
     pub shares: Vec<Share>,
+    /// Contacts between particles. None: nothing can touch.
+    pub contacts: Option<Contacts>,
     /// Loads.
     pub loads: Vec<SetLoad>,
     /// Supports.
@@ -69,6 +73,7 @@ impl State {
             particles,
             bonds,
             shares,
+            contacts: None,
             loads: Vec::new(),
             supports: Vec::new(),
             gravity_m_s2: [0.0; 3],
@@ -84,6 +89,16 @@ impl State {
         };
         state.ledger = Ledger::opened(&state);
         state
+    }
+
+    /// The lists of damping forces: of bonds, on particles, of contacts; each with one for each particle, or empty.
+    pub fn resistances(&self) -> [&[Wrench]; 3] {
+        let of_contacts = self.contacts.as_ref().map(|c| &c.resistance[..]);
+        [
+            &self.bond_resistance,
+            &self.particle_resistance,
+            of_contacts.unwrap_or_default(),
+        ]
     }
 
     /// Length of the kick of this step: half of the step before and half of the step to come, s.

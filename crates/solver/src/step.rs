@@ -3,6 +3,7 @@
 use crate::clock::Stage;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::breakage::break_bonds;
+use crate::stages::contacts::{contact_wrenches, list_contacts};
 use crate::stages::damping::damping_wrenches;
 use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
 use crate::stages::loads::add_loads;
@@ -31,6 +32,11 @@ pub fn act(state: &mut State) {
         add_incremental_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
     }
     state.clock.book(Stage::Bonds);
+    if let Some(contacts) = &mut state.contacts {
+        list_contacts(contacts, p);
+        contact_wrenches(contacts, p, before_s);
+    }
+    state.clock.book(Stage::Contacts);
 
     // Before bonds break: a break gives its ends their half of the kick at once.
     remember(&mut state.supports, &p.motions);
@@ -71,16 +77,15 @@ pub fn act(state: &mut State) {
     state.clock.book(Stage::Damping);
 
     let kick_s = 0.5 * (before_s + state.time_step_s);
-    state.ledger.before_kick(
-        &state.loads,
-        &state.bond_resistance,
-        &state.particle_resistance,
-        p,
-        state.time_s,
-        before_s,
-    );
+    crate::check::ledger::before_kick(state);
     state.clock.book(Stage::Rest);
-    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
+    let p = &mut state.particles;
+    let of_contacts = state.contacts.as_ref().map(|c| &c.resistance[..]);
+    let resistance = [
+        &state.bond_resistance[..],
+        &state.particle_resistance,
+        of_contacts.unwrap_or_default(),
+    ];
     kick(p, resistance, state.gravity_m_s2, kick_s);
     state.clock.book(Stage::Motion);
     hold(
@@ -97,7 +102,10 @@ pub fn act(state: &mut State) {
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
-    drift(&mut state.particles, state.time_step_s);
+    let fastest_m_s = drift(&mut state.particles, state.time_step_s);
+    if let Some(contacts) = &mut state.contacts {
+        contacts.room_m -= fastest_m_s * state.time_step_s;
+    }
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;
     state.previous_time_step_s = state.time_step_s;

@@ -4,7 +4,8 @@
 //! as the step: its error falls with the square of the time step.
 
 use crate::physics::bond::total::BondEnergy;
-use crate::stages::loads::{SetLoad, add_resultant, loads_power_w, loads_resultant};
+use crate::stages::contacts::{elastic_energy_j, friction_j};
+use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
@@ -46,6 +47,7 @@ struct Work {
     supports: f64,
     bond_damping: f64,
     particle_damping: f64,
+    contact_damping: f64,
 }
 
 /// The ledger at a moment.
@@ -71,6 +73,12 @@ pub struct Balance {
     pub bond_damping_j: f64,
     /// Dissipated by damping of particles, J.
     pub particle_damping_j: f64,
+    /// Elastic, of contacts, J.
+    pub contact_elastic_j: f64,
+    /// Dissipated by damping of contacts, J.
+    pub contact_damping_j: f64,
+    /// Dissipated by friction of contacts, sliding and rolling, J.
+    pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub released_j: f64,
     /// What is there less what should be, J.
@@ -84,12 +92,13 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Of bonds, all modes, J.
+    /// Of bonds, all modes, and of contacts, J.
     pub fn elastic_j(&self) -> f64 {
         self.elastic_normal_j
             + self.elastic_shear_j
             + self.elastic_torsion_j
             + self.elastic_bending_j
+            + self.contact_elastic_j
     }
 }
 
@@ -113,33 +122,14 @@ impl Ledger {
             0.5 * bonds.normal(at) * stretch * stretch
         };
         ledger.floor_j = ordered_sum(bonds.len(), stretched);
-        ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic;
+        let pressed = state.contacts.as_ref();
+        let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
+        ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic + pressed;
         ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
         let (momentum, scales) = momenta(p, about_m);
         [ledger.momentum, ledger.angular_momentum] = momentum;
         [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
         ledger
-    }
-
-    /// Work of the half step that ends with this kick.
-    pub fn before_kick(
-        &mut self,
-        loads: &[SetLoad],
-        bond_resistance: &[Wrench],
-        particle_resistance: &[Wrench],
-        particles: &Particles,
-        time_s: f64,
-        step_before_s: f64,
-    ) {
-        self.settle();
-        let powers = powers(
-            loads,
-            bond_resistance,
-            particle_resistance,
-            &particles.motions,
-            time_s,
-        );
-        self.work.add(&powers, 0.5 * step_before_s);
     }
 
     /// Energy of all bonds stretched by a millionth: less is rounding, J.
@@ -173,27 +163,34 @@ impl Work {
         self.supports += factor * other.supports;
         self.bond_damping += factor * other.bond_damping;
         self.particle_damping += factor * other.particle_damping;
+        self.contact_damping += factor * other.contact_damping;
     }
 }
 
 /// Powers of loads and damping, W.
-fn powers(
-    loads: &[SetLoad],
-    bond_resistance: &[Wrench],
-    particle_resistance: &[Wrench],
-    motions: &[Motion],
-    time_s: f64,
-) -> Work {
+fn powers(state: &State) -> Work {
+    let motions = &state.particles.motions;
+    let [bonds, particles, contacts] = state.resistances();
     Work {
-        loads: loads_power_w(loads, time_s, motions),
+        loads: loads_power_w(&state.loads, state.time_s, motions),
         supports: 0.0,
-        bond_damping: -power_w(bond_resistance, motions),
-        particle_damping: -power_w(particle_resistance, motions),
+        bond_damping: -power_w(bonds, motions),
+        particle_damping: -power_w(particles, motions),
+        contact_damping: -power_w(contacts, motions),
     }
+}
+
+/// Books the work of the half step that ends with the kick to come.
+pub fn before_kick(state: &mut State) {
+    let powers = powers(state);
+    state.ledger.settle();
+    let half_s = 0.5 * state.previous_time_step_s;
+    state.ledger.work.add(&powers, half_s);
 }
 
 /// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
 pub fn after_kick(state: &mut State) {
+    let pending = powers(state);
     let State {
         ledger,
         particles,
@@ -204,13 +201,6 @@ pub fn after_kick(state: &mut State) {
     let (before_s, after_s) = (state.previous_time_step_s, state.time_step_s);
     let supported = reactions_work_j(supports, particles, [before_s, after_s]);
     ledger.work.supports += supported[0];
-    let pending = powers(
-        loads,
-        &state.bond_resistance,
-        &state.particle_resistance,
-        &particles.motions,
-        state.time_s,
-    );
     ledger.pending.add(&pending, 0.5 * after_s);
     ledger.pending.supports = supported[1];
     for broken in &state.broken {
@@ -260,17 +250,25 @@ pub fn balance(state: &mut State) -> Balance {
     let p = &state.particles;
     let kinetic = kinetic_energy(p, |i| motions[i]);
     let elastic = elastic_energy(state);
+    let (contact_elastic, friction) = match &state.contacts {
+        Some(contacts) => (elastic_energy_j(contacts, p), friction_j(contacts)),
+        None => (0.0, 0.0),
+    };
     let (present, scales) = momenta(p, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
-    let gone = work.bond_damping + work.particle_damping + ledger.released_j;
-    let error =
-        kinetic + elastic.total() + gravity + gone - work.loads - work.supports - ledger.opening_j;
+    let gone = work.bond_damping
+        + work.particle_damping
+        + work.contact_damping
+        + friction
+        + ledger.released_j;
+    let stored = elastic.total() + contact_elastic;
+    let error = kinetic + stored + gravity + gone - work.loads - work.supports - ledger.opening_j;
     let largest = [
-        kinetic + elastic.total(),
+        kinetic + stored,
         gravity.abs(),
         work.loads.abs(),
         work.supports.abs(),
@@ -298,6 +296,9 @@ pub fn balance(state: &mut State) -> Balance {
         support_work_j: work.supports,
         bond_damping_j: work.bond_damping,
         particle_damping_j: work.particle_damping,
+        contact_elastic_j: contact_elastic,
+        contact_damping_j: work.contact_damping,
+        friction_j: friction,
         released_j: ledger.released_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),
@@ -319,15 +320,13 @@ fn over(value: f64, scale: f64) -> f64 {
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
     let half_s = 0.5 * state.time_step_s;
+    let resistances = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
         let (per_mass, per_inertia) =
             (half_s * p.inverse_masses[i], half_s * p.inverse_inertias[i]);
-        for wrenches in [
-            &p.wrenches,
-            &state.bond_resistance,
-            &state.particle_resistance,
-        ] {
+        let [bonds, particles, contacts] = resistances;
+        for wrenches in [&p.wrenches, bonds, particles, contacts] {
             if let Some(wrench) = wrenches.get(i) {
                 for k in 0..3 {
                     motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];

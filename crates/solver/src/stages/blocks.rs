@@ -1,4 +1,4 @@
-//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
+//! Bonds, and contacts, are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
 //! in the order of the bonds.
 
 use std::ops::Range;
@@ -20,27 +20,33 @@ pub(super) struct Four {
 }
 
 impl Four {
+    /// Bonds of these numbers, of which some are wanted. `ends` are those of all.
+    #[inline(always)]
+    pub(super) fn new(numbers: [usize; BLOCK], ends: &[[u32; 2]], wanted: Range<usize>) -> Self {
+        Self {
+            numbers,
+            ends: numbers.map(|at| ends[at]),
+            wanted,
+        }
+    }
+
     /// Those of a block, of which the ones in `range` are wanted.
     #[inline(always)]
     pub(super) fn of_block(bonds: &Bonds, block: usize, range: &Range<usize>) -> Self {
         let (first, last) = (block * BLOCK, bonds.len() - 1);
-        let numbers = [0, 1, 2, 3].map(|i| (first + i).min(last));
-        Self {
-            numbers,
-            ends: numbers.map(|at| bonds.ends[at]),
-            wanted: range.start.saturating_sub(first)..(range.end - first).min(BLOCK),
-        }
+        let wanted = range.start.saturating_sub(first)..(range.end - first).min(BLOCK);
+        Self::new(
+            [0, 1, 2, 3].map(|i| (first + i).min(last)),
+            &bonds.ends,
+            wanted,
+        )
     }
 
     /// Those of a part of a list: one to four.
     #[inline(always)]
     pub(super) fn of_list(bonds: &Bonds, some: &[u32]) -> Self {
         let numbers = [0, 1, 2, 3].map(|i: usize| some[i.min(some.len() - 1)] as usize);
-        Self {
-            numbers,
-            ends: numbers.map(|at| bonds.ends[at]),
-            wanted: 0..some.len(),
-        }
+        Self::new(numbers, &bonds.ends, 0..some.len())
     }
 
     /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are particles of a share. `wrenches` are those of the
@@ -113,7 +119,7 @@ pub(super) fn ways<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &[Pose])
     unsafe_code,
     reason = "a hint that reads and writes nothing; the safe language has none"
 )]
-fn fetch_soon<T>(value: &T) {
+pub(super) fn fetch_soon<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64 processor has it.
     unsafe {

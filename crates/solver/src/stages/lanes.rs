@@ -12,6 +12,12 @@ pub(super) trait Lanes: Number {
     /// `COUNT` numbers from a column of a block, from place `first` on.
     fn load(proof: Self::Proof, column: &[f64; FOUR], first: usize) -> Self;
 
+    /// All lanes the same.
+    fn all(proof: Self::Proof, value: f64) -> Self;
+
+    /// A number for each lane.
+    fn gathered(proof: Self::Proof, of_lane: impl Fn(usize) -> f64) -> Self;
+
     /// The lanes; those there are not are 0.
     fn values(self) -> [f64; FOUR];
 
@@ -32,6 +38,16 @@ impl Lanes for f64 {
     #[inline(always)]
     fn load((): (), column: &[f64; FOUR], first: usize) -> Self {
         column[first]
+    }
+
+    #[inline(always)]
+    fn all((): (), value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn gathered((): (), of_lane: impl Fn(usize) -> f64) -> Self {
+        of_lane(0)
     }
 
     #[inline(always)]
@@ -227,6 +243,21 @@ mod avx2 {
             Self {
                 simd,
                 v: cast(*column),
+            }
+        }
+
+        #[inline(always)]
+        fn all(simd: V3, value: f64) -> Self {
+            let v = simd.avx._mm256_set1_pd(value);
+            Self { simd, v }
+        }
+
+        #[inline(always)]
+        fn gathered(simd: V3, of_lane: impl Fn(usize) -> f64) -> Self {
+            let lanes = [of_lane(0), of_lane(1), of_lane(2), of_lane(3)];
+            Self {
+                simd,
+                v: cast(lanes),
             }
         }
 

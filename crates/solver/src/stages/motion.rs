@@ -13,7 +13,7 @@ pub const CHUNK: usize = 1024;
 /// Velocities changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
 pub fn kick(
     particles: &mut Particles,
-    resisting: [&[Wrench]; 2],
+    resisting: [&[Wrench]; 3],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 ) {
@@ -48,23 +48,30 @@ pub fn kick(
         });
 }
 
-/// Places and orientations after moving on for `time_step_s`.
-pub fn drift(particles: &mut Particles, time_step_s: f64) {
+/// Places and orientations after moving on for `time_step_s`. Returns the largest speed of a particle, m/s.
+pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
     let Particles { poses, motions, .. } = particles;
     poses
         .par_chunks_mut(CHUNK)
         .zip(motions.par_chunks(CHUNK))
-        .for_each(|(poses, motions)| {
+        .map(|(poses, motions)| {
+            let mut fastest = 0.0_f64;
             for (pose, motion) in poses.iter_mut().zip(motions) {
+                let mut square = 0.0;
                 for k in 0..3 {
                     pose.position_m[k] += time_step_s * motion.velocity_m_s[k];
+                    square += motion.velocity_m_s[k] * motion.velocity_m_s[k];
                 }
+                fastest = fastest.max(square);
                 pose.turned = turn(
                     pose.turned,
                     motion.spin_rad_s.map(|spin| spin * time_step_s),
                 );
             }
-        });
+            fastest
+        })
+        .reduce(|| 0.0, f64::max)
+        .sqrt()
 }
 
 /// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each component of force and torque, against the motion.

@@ -1,0 +1,166 @@
+//! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of contacts are.
+
+use std::ops::Range;
+
+use super::particles::Wrench;
+use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::linear::Linear;
+use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+
+/// Normal law of a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Hertz and Mindlin.
+    HertzMindlin(HertzMindlin),
+    /// Springs and dashpots.
+    Linear(Linear),
+}
+
+/// Rolling friction of a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rolling {
+    /// None.
+    Free,
+    /// Constant moment.
+    Constant(ConstantMoment),
+    /// Spring and dashpot.
+    Spring(ElasticPlastic),
+}
+
+/// How a pair of materials meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactKind {
+    /// Along and across the normal.
+    pub law: Law,
+    /// Against rolling.
+    pub rolling: Rolling,
+}
+
+/// What a contact remembers: tangential spring x, y, z (m) and the overlap of the law (m); rolling spring x, y, z (rad) and the overlap at which the
+/// law begins (m), which is 0 but for pairs that [parted overlapping](crate::physics::contact::relaxation).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Memory {
+    /// Tangential spring and overlap.
+    pub slid: [f64; 4],
+    /// Rolling spring and origin.
+    pub rolled: [f64; 4],
+}
+
+/// Contacts of all particles. None where the scene has one body and no other can come.
+#[derive(Debug, Clone, Default)]
+pub struct Contacts {
+    /// Kinds of contacts.
+    pub kinds: Vec<ContactKind>,
+    /// For each material and each other the number of the kind: row by row, length materials squared.
+    pub kind_of: Vec<u8>,
+    /// Material of each particle.
+    pub materials: Vec<u8>,
+    /// Cluster of each particle: those of one cluster do not touch each other.
+    pub clusters: Vec<u32>,
+    /// Pairs that touch or are near, the smaller index first, sorted.
+    pub pairs: Vec<[u32; 2]>,
+    /// What each remembers. Length as `pairs`.
+    pub memories: Vec<Memory>,
+    /// Who works on what.
+    pub shares: Vec<ContactShare>,
+    /// Surfaces closer than this were near when pairs were looked for, m.
+    pub skin_m: f64,
+    /// What every particle may move before pairs have to be looked for again, m.
+    pub room_m: f64,
+    /// A pair that parted overlapping is ordinary below this share of its reduced radius.
+    pub least_overlap: f64,
+    /// Damping forces of contacts on particles. Empty: no contacts.
+    pub resistance: Vec<Wrench>,
+    /// Energy lost by sliding and by rolling, booked at the first particle of each pair, J.
+    pub lost_j: Vec<[f64; 2]>,
+}
+
+/// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactShare {
+    /// Its particles.
+    pub particles: Range<usize>,
+    /// Its contacts: their first particles are its own.
+    pub own: Range<usize>,
+    /// Contacts of which only the second particle is its own.
+    pub border: Vec<u32>,
+    /// What those remembered before this step.
+    pub border_memories: Vec<Memory>,
+    /// For each kind the contacts that touch in this step: numbers in `border`, and in all.
+    pub touching: Vec<[Vec<u32>; 2]>,
+}
+
+impl Contacts {
+    /// The kind of a contact between two particles.
+    #[inline(always)]
+    pub fn kind(&self, [a, b]: [u32; 2]) -> usize {
+        if self.kinds.len() == 1 {
+            return 0;
+        }
+        let count = self.kind_of.len().isqrt();
+        let [a, b] = [a, b].map(|i| usize::from(self.materials[i as usize]));
+        usize::from(self.kind_of[a * count + b])
+    }
+
+    /// Takes a new list of pairs; pairs that were listed before keep what they remember. The overlap of one that is listed for the first time is the
+    /// origin of its law: there was nothing between the two before, be it a bond or nothing at all.
+    pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64) {
+        let mut before = self.pairs.iter().zip(&self.memories).peekable();
+        let memories = pairs
+            .iter()
+            .map(|pair| {
+                while before.next_if(|(old, _)| *old < pair).is_some() {}
+                match before.peek() {
+                    Some((old, memory)) if *old == pair => **memory,
+                    _ => {
+                        let mut memory = Memory::default();
+                        memory.rolled[3] = overlap_m(*pair).max(0.0);
+                        memory
+                    }
+                }
+            })
+            .collect();
+        self.memories = memories;
+        self.pairs = pairs;
+    }
+
+    /// Divides the contacts into `count` shares of about the same number each.
+    pub fn divide(&mut self, particles: usize, count: usize) {
+        let wanted = self.pairs.len().div_ceil(count).max(1);
+        let mut starts = vec![0];
+        for k in 1..count {
+            let first = (k * wanted).min(self.pairs.len());
+            let particle = self
+                .pairs
+                .get(first)
+                .map_or(particles, |&[a, _]| a as usize);
+            starts.push(particle);
+        }
+        starts.push(particles);
+        starts.dedup();
+        self.shares = starts
+            .windows(2)
+            .map(|w| {
+                let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
+                ContactShare {
+                    particles: w[0]..w[1],
+                    own: first_of(w[0])..first_of(w[1]),
+                    border: Vec::new(),
+                    border_memories: Vec::new(),
+                    touching: vec![Default::default(); self.kinds.len()],
+                }
+            })
+            .collect();
+        for s in 0..self.shares.len() {
+            for at in self.shares[s].own.clone() {
+                let b = self.pairs[at][1] as usize;
+                if b >= self.shares[s].particles.end {
+                    let of_b = self
+                        .shares
+                        .partition_point(|share| share.particles.end <= b);
+                    self.shares[of_b].border.push(at as u32);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however often near pairs are looked for.
+
+use dem_run::check::ledger::{Ledger, balance};
+use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::linear::Linear;
+use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+use dem_run::state::State;
+use dem_run::state::bonds::Bonds;
+use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use dem_run::state::particles::{Particles, Wrench};
+use dem_run::step::{act, move_on, step};
+
+/// Numbers between -1 and 1 that look random.
+fn scattered() -> impl FnMut() -> f64 {
+    let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        hash ^= hash << 13;
+        hash ^= hash >> 7;
+        hash ^= hash << 17;
+        (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+fn behaviour() -> Behaviour {
+    Behaviour::new(0.6, 0.4)
+}
+
+fn hertz() -> Law {
+    let material = Elastic {
+        young_modulus_pa: 1e7,
+        poisson_ratio: 0.3,
+    };
+    Law::HertzMindlin(HertzMindlin::new([material; 2], &behaviour()))
+}
+
+fn kinds() -> [ContactKind; 3] {
+    [
+        ContactKind {
+            law: hertz(),
+            rolling: Rolling::Free,
+        },
+        ContactKind {
+            law: Law::Linear(Linear::new(2e3, 2.0 / 7.0, &behaviour())),
+            rolling: Rolling::Constant(ConstantMoment { friction: 0.1 }),
+        },
+        ContactKind {
+            law: hertz(),
+            rolling: Rolling::Spring(ElasticPlastic {
+                friction: 0.1,
+                damping_ratio: 0.3,
+            }),
+        },
+    ]
+}
+
+/// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common centre.
+fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
+    let mut any = scattered();
+    let mut particles = Particles::default();
+    for n in 0..512_u32 {
+        let grid = [n % 8, n / 8 % 8, n / 64].map(|k| 1.15e-3 * (f64::from(k) - 3.5));
+        let place = grid.map(|x| x + 0.05e-3 * any());
+        particles.push_sphere(place, 0.5e-3 * (1.0 + 0.05 * any()), 2500.0);
+        let motion = particles.motions.last_mut().unwrap();
+        motion.velocity_m_s = grid.map(|x| -100.0 * x + 0.1 * any());
+        motion.spin_rad_s = [300.0 * any(), 300.0 * any(), 300.0 * any()];
+    }
+    let count = particles.len();
+    let mut state = State::new(particles, Bonds::default(), time_step_s, 1);
+    let [one, mixed, other] = kinds();
+    let mut contacts = Contacts {
+        kinds: vec![one, mixed, other],
+        kind_of: vec![0, 1, 1, 2],
+        materials: (0..count).map(|i| u8::from(i % 3 == 0)).collect(),
+        clusters: (0..count as u32).collect(),
+        skin_m,
+        room_m: -1.0,
+        least_overlap: 1e-3,
+        resistance: vec![Wrench::default(); count],
+        lost_j: vec![[0.0; 2]; count],
+        ..Contacts::default()
+    };
+    contacts.divide(count, shares);
+    state.contacts = Some(contacts);
+    state.ledger = Ledger::opened(&state);
+    state
+}
+
+/// Largest error of the energy over the largest energy while the cloud meets and flies apart.
+fn worst_energy_error(time_step_s: f64) -> f64 {
+    let mut state = cloud(0.1e-3, 1, time_step_s);
+    let mut worst = 0.0_f64;
+    while state.time_s < 2e-3 {
+        act(&mut state);
+        if state.steps.is_multiple_of(20) {
+            let balance = balance(&mut state);
+            worst = worst.max(balance.energy_error.abs());
+            assert!(balance.momentum_error < 1e-12, "{balance:?}");
+            assert!(balance.angular_momentum_error < 1e-12, "{balance:?}");
+        }
+        move_on(&mut state);
+    }
+    act(&mut state);
+    let balance = balance(&mut state);
+    assert!(balance.friction_j > 0.0 && balance.contact_damping_j > 0.0);
+    eprintln!("dt {time_step_s:e}: worst energy error {worst:.2e}, {balance:?}");
+    worst
+}
+
+#[test]
+fn the_books_of_a_meeting_cloud_balance() {
+    let errors = [4e-7, 2e-7, 1e-7].map(worst_energy_error);
+    eprintln!("{errors:?}");
+    assert!(errors[2] < 1e-5, "{errors:?}");
+    assert!(
+        errors[0] > 3.0 * errors[1] && errors[1] > 3.0 * errors[2],
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn shares_and_skins_change_no_bit() {
+    let run = |skin_m: f64, shares: usize| {
+        let mut state = cloud(skin_m, shares, 2e-7);
+        for _ in 0..4000 {
+            step(&mut state);
+        }
+        let contacts = state.contacts.unwrap();
+        (
+            state.particles.poses,
+            state.particles.motions,
+            contacts.lost_j,
+        )
+    };
+    let one = run(0.1e-3, 1);
+    for (skin_m, shares) in [(0.1e-3, 2), (0.1e-3, 5), (0.02e-3, 3), (0.5e-3, 1)] {
+        let other = run(skin_m, shares);
+        assert!(one == other, "skin {skin_m}, {shares} shares");
+    }
+}
