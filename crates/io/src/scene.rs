@@ -1,10 +1,13 @@
 //! A scene: what stands where, of what, what is done to it and what is asked. Plain data in SI units, as read from TOML.
 //!
-//! Every table of the file has one struct here; names are unique within their table. The reader of the file refuses what cannot be simulated.
+//! Every table of the file has one struct, here or beside its reader; names are unique within their table. The reader of the file refuses what cannot be simulated.
 
 mod body;
 mod bond;
+mod clusters;
+mod contact;
 mod describe;
+mod direction;
 mod field;
 mod load;
 mod material;
@@ -13,16 +16,25 @@ mod names;
 mod output;
 mod overrides;
 mod read;
+mod relaxation;
 mod run;
+mod search;
 mod set;
 mod support;
 mod table;
+mod targets;
 mod tree;
+mod wall;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+pub use clusters::Clusters;
+pub use contact::{Contact, ContactLaw, Rolling};
 pub use read::{read_scene, scene_from_text};
+pub use relaxation::Relaxation;
+pub use search::Search;
+pub use wall::{Wall, WallMotion, WallShape};
 
 /// Version of the scene format.
 pub const SCENE_VERSION: u64 = 1;
@@ -36,10 +48,14 @@ pub struct Scene {
     pub run: Run,
     /// `[materials.NAME]`
     pub materials: BTreeMap<String, Material>,
+    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls need may be missing.
+    pub contacts: Vec<Contact>,
     /// `[bonds.NAME]`
     pub bonds: BTreeMap<String, BondKind>,
     /// `[bodies.NAME]`. At least one.
     pub bodies: BTreeMap<String, BodyEntry>,
+    /// `[walls.NAME]`. No body or set has the name of a wall.
+    pub walls: BTreeMap<String, Wall>,
     /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
     pub sets: BTreeMap<String, ParticleSet>,
     /// `[supports.NAME]`
@@ -48,6 +64,12 @@ pub struct Scene {
     pub loads: BTreeMap<String, Load>,
     /// `[measures.NAME]`
     pub measures: BTreeMap<String, Measure>,
+    /// `[clusters]`
+    pub clusters: Clusters,
+    /// `[relaxation]`
+    pub relaxation: Relaxation,
+    /// `[search]`
+    pub search: Search,
     /// `[output]`. None: nothing is written to disk unless the command line names a folder.
     pub output: Option<Output>,
 }
@@ -69,6 +91,17 @@ pub struct Run {
     pub particle_damping: f64,
     /// `seed` of everything random (scatter of strengths); 0 unless given.
     pub seed: u64,
+    /// `start_overlap`, "refuse" unless given.
+    pub start_overlap: StartOverlap,
+}
+
+/// What happens where bodies or walls overlap at the start, although no bond joins them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartOverlap {
+    /// "refuse": the scene is refused.
+    Refuse,
+    /// "relax": the overlap is the origin of their contact law.
+    Relax,
 }
 
 /// What particles are made of.
@@ -275,10 +308,11 @@ pub struct Load {
     pub factor: Factor,
 }
 
-/// What is measured. Of a set, positions and velocities are means, energies, forces and counts are sums.
+/// What is measured. Of a set, positions and velocities are means, energies, forces and counts are sums. Walls have positions, forces and
+/// torques, fragments a count and masses, sets all else and positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// "position_x", ... m. Axis 0, 1, 2.
+    /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
     Position(u8),
     /// "displacement_x", ... since the start, m.
     Displacement(u8),
@@ -300,6 +334,16 @@ pub enum Quantity {
     BrokenBonds,
     /// "largest_utilisation": stress over strength of the bond nearest to failure.
     LargestUtilisation,
+    /// "force_x", ... force of particles on the wall, N.
+    Force(u8),
+    /// "torque_x", ... torque of particles on the wall about its pivot, N m.
+    Torque(u8),
+    /// "count" of fragments.
+    Count,
+    /// "mass_fraction_of_largest": mass of the heaviest fragment over that of all.
+    MassFractionOfLargest,
+    /// "mass_of_largest": mass of the heaviest fragment, kg.
+    MassOfLargest,
 }
 
 /// Which value of a measure's history is its result.
@@ -318,7 +362,7 @@ pub enum At {
 /// A named quantity, with what it should be where that is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
-    /// `of`: a set, a body or `all` (unless given).
+    /// `of`: a set, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,

@@ -156,6 +156,35 @@ pub const TORQUE: Dimension = Dimension {
     example: "2 N m",
 };
 
+/// Mass, kg.
+pub const MASS: Dimension = Dimension {
+    name: "mass",
+    si: "kg",
+    units: &[
+        ("ug", 1e-9),
+        ("mg", 1e-6),
+        ("g", 1e-3),
+        ("kg", 1.0),
+        ("t", 1e3),
+    ],
+    example: "20 g",
+};
+
+/// Stiffness, N/m.
+pub const STIFFNESS: Dimension = Dimension {
+    name: "stiffness",
+    si: "N/m",
+    units: &[
+        ("mN/m", 1e-3),
+        ("N/m", 1.0),
+        ("N/mm", 1e3),
+        ("kN/m", 1e3),
+        ("kN/mm", 1e6),
+        ("MN/m", 1e6),
+    ],
+    example: "100 kN/m",
+};
+
 /// Energy, J.
 pub const ENERGY: Dimension = Dimension {
     name: "energy",
@@ -373,6 +402,8 @@ mod tests {
             STRESS,
             FORCE,
             TORQUE,
+            MASS,
+            STIFFNESS,
             ENERGY,
             RATE,
             VISCOUS_DAMPING,

@@ -148,6 +148,12 @@ impl Gauge {
             Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
                 largest.max(bond_utilisation(state, at))
             }),
+            // Plans refuse measures of walls and fragments.
+            Quantity::Force(_)
+            | Quantity::Torque(_)
+            | Quantity::Count
+            | Quantity::MassFractionOfLargest
+            | Quantity::MassOfLargest => f64::NAN,
         }
     }
 

@@ -6,7 +6,7 @@ pub mod time_step;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::Scene;
+use dem_io::scene::{Measure, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
 use crate::stages::loads::SetLoad;
@@ -50,14 +50,15 @@ pub struct PlannedStage {
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
 ///
 /// # Errors
-/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom,
-/// a time step above the limit.
+/// Walls, contacts and measures of fragments, which are not simulated yet. What does not fit together: bonds without a kind, no density,
+/// a set without particles, a freedom held twice, a load on a held freedom, a time step above the limit.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
+    refuse_what_is_not_simulated(scene)?;
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let enough = 1 + (particles.len() + bonds.len()) / WORTH_A_THREAD;
@@ -79,6 +80,32 @@ pub fn plan(
         step,
         stages,
     })
+}
+
+/// Scenes may say more than is simulated.
+fn refuse_what_is_not_simulated(scene: &Scene) -> Result<()> {
+    let remedy = match (scene.walls.is_empty(), scene.contacts.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some("remove [walls]"),
+        (true, false) => Some("remove [contacts]"),
+        (false, false) => Some("remove [walls] and [contacts]"),
+    };
+    if let Some(remedy) = remedy {
+        let problem = "walls and contacts are not simulated yet";
+        return Err(Diagnostic::input(&scene.source, problem, remedy));
+    }
+    let of_fragments = |(_, measure): &(&String, &Measure)| {
+        matches!(
+            measure.quantity,
+            Quantity::Count | Quantity::MassFractionOfLargest | Quantity::MassOfLargest
+        )
+    };
+    if let Some((name, _)) = scene.measures.iter().find(of_fragments) {
+        let place = format!("{}: [measures.{name}]", scene.source);
+        let problem = "fragments are not measured yet";
+        return Err(Diagnostic::input(place, problem, "remove this measure"));
+    }
+    Ok(())
 }
 
 fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetSupport>> {

@@ -3,12 +3,14 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use super::direction::rotation;
 use super::field::Field;
+use super::names::meaning;
 use super::read::named_path;
 use super::table::Table;
 use super::{BodyEntry, BodySource, BondKind, Material};
 use crate::Result;
-use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, NUMBER, VELOCITY};
+use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 const KEYS: [&str; 9] = [
     "file",
@@ -36,8 +38,8 @@ pub(super) fn read_all(
     let mut bodies = BTreeMap::new();
     let mut piped: Option<String> = None;
     for (name, field) in tables {
-        if name == "all" {
-            let problem = format!("{} is named like all particles of the scene", field.path);
+        if let Some(of) = meaning(&name) {
+            let problem = format!("{} is named like {of}", field.path);
             return Err(field.refuse(problem, "give it another name"));
         }
         let body = read(&field, materials, bonds, folder)?;
@@ -170,21 +172,4 @@ fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>
         bonds.push(pair);
     }
     Ok(bonds)
-}
-
-/// `{ axis, angle }` as a rotation vector, rad.
-fn rotation(field: &Field<'_>) -> Result<[f64; 3]> {
-    let table = field.table(&["axis", "angle"])?;
-    let axis = table.need("axis", "[0, 0, 1]")?;
-    let direction = axis.vector(&NUMBER)?;
-    let angle = table.need("angle", "\"45 deg\"")?.quantity(&ANGLE)?;
-    // Scaled first: squares of very large or small numbers leave the range of f64.
-    let largest = direction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    if largest == 0.0 {
-        let problem = format!("{} is [0, 0, 0], which points nowhere", axis.path);
-        return Err(axis.refuse(problem, "give an axis such as [0, 0, 1]"));
-    }
-    let scaled = direction.map(|c| c / largest);
-    let length = scaled.iter().map(|c| c * c).sum::<f64>().sqrt();
-    Ok(scaled.map(|c| c / length * angle))
 }

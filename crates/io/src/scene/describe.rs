@@ -1,8 +1,12 @@
 //! Every value of a scene in SI, defaults included, for a person.
 
+mod contacts;
+mod walls;
+
 use std::fmt::Write;
 
 use super::measure::TIMES;
+use super::run::START_OVERLAPS;
 use super::support::FREEDOMS;
 use super::{
     BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Load, Material, Measure,
@@ -20,11 +24,17 @@ impl Scene {
         for (name, material) in &self.materials {
             lines.material(&format!("materials.{name}"), material);
         }
+        for contact in &self.contacts {
+            lines.contact(contact);
+        }
         for (name, kind) in &self.bonds {
             lines.bond_kind(&format!("bonds.{name}"), kind);
         }
         for (name, body) in &self.bodies {
             lines.body(&format!("bodies.{name}"), body);
+        }
+        for (name, wall) in &self.walls {
+            lines.wall(&format!("walls.{name}"), wall);
         }
         for (name, set) in &self.sets {
             lines.set(&format!("sets.{name}"), set);
@@ -38,6 +48,7 @@ impl Scene {
         for (name, measure) in &self.measures {
             lines.measure(&format!("measures.{name}"), measure);
         }
+        lines.about_contacts(self);
         match &self.output {
             Some(output) => lines.output(output),
             None => lines.add("output", "none"),
@@ -76,6 +87,8 @@ impl Lines {
         self.add("run.gravity", vector(run.gravity_m_s2, "m/s2"));
         self.add("run.particle_damping", number(run.particle_damping));
         self.add("run.seed", run.seed.to_string());
+        let start = word(&START_OVERLAPS, run.start_overlap);
+        self.add("run.start_overlap", start);
     }
 
     fn material(&mut self, path: &str, material: &Material) {
@@ -260,8 +273,7 @@ impl Lines {
         let unit = measure.quantity.dimension().si;
         self.add(format!("{path}.of"), measure.of.clone());
         self.add(format!("{path}.quantity"), measure.quantity.name());
-        let at = TIMES.iter().find(|(_, at)| *at == measure.at);
-        self.add(format!("{path}.at"), at.map_or("", |(name, _)| *name));
+        self.add(format!("{path}.at"), word(&TIMES, measure.at));
         self.add(
             format!("{path}.reference"),
             optional(measure.reference, unit, "none"),
@@ -296,6 +308,12 @@ impl Lines {
     }
 }
 
+/// The word that stands for `meant` in a scene.
+fn word<T: PartialEq>(known: &[(&'static str, T)], meant: T) -> &'static str {
+    let found = known.iter().find(|(_, other)| *other == meant);
+    found.map_or("", |(word, _)| *word)
+}
+
 /// A number with at most 12 digits, which hides the rounding of units.
 fn number(number: f64) -> String {
     let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
@@ -315,5 +333,6 @@ fn optional(given: Option<f64>, unit: &str, otherwise: &str) -> String {
 }
 
 fn vector(components: [f64; 3], unit: &str) -> String {
-    format!("[{}] {unit}", components.map(number).join(", "))
+    let listed = components.map(number).join(", ");
+    format!("[{listed}] {unit}").trim_end().to_owned()
 }

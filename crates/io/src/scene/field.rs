@@ -185,6 +185,15 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// A whole number from 1.
+    pub(super) fn count(&self, remedy: &str) -> Result<u64> {
+        match &self.node.value {
+            Value::Number(written, _) => written.parse().ok().filter(|number| *number > 0),
+            _ => None,
+        }
+        .ok_or_else(|| self.wrong("a whole number from 1", remedy))
+    }
+
     /// Number of one of `count` particles, from 0.
     pub(super) fn particle(&self, count: u32) -> Result<u32> {
         let remedy = "particles are numbered from 0: correct or remove it";

@@ -1,8 +1,8 @@
-//! `[loads.NAME]`, and the factor over time that loads and supports share.
+//! `[loads.NAME]`, and the factor over time that loads, supports and walls share.
 
 use super::field::Field;
-use super::read::Targets;
 use super::table::Table;
+use super::targets::Targets;
 use super::{Factor, Load};
 use crate::Result;
 use crate::units::{FORCE, NUMBER, TIME, TORQUE};
@@ -27,6 +27,11 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
         return Err(table.refuse(problem, remedy));
     }
     Ok(load)
+}
+
+/// The key that says how a factor changes with time, if there is one.
+pub(super) fn over_time<'a>(table: &Table<'a>) -> Option<Field<'a>> {
+    table.get("ramp").or_else(|| table.get("table"))
 }
 
 /// `ramp` or `table`; 1 without either.

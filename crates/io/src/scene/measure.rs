@@ -1,15 +1,17 @@
 //! `[measures.NAME]`
 
 use super::field::Field;
-use super::read::Targets;
+use super::names::ALL;
+use super::table::Table;
+use super::targets::{Subject, Targets};
 use super::{At, Measure, Quantity};
 use crate::Result;
 use crate::units::{
-    ANGLE, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, NUMBER, TORQUE, VELOCITY,
+    ANGLE, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TORQUE, VELOCITY,
 };
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 25] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 34] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -35,6 +37,15 @@ pub(super) const QUANTITIES: [(&str, Quantity); 25] = [
     ("elastic_energy", Quantity::ElasticEnergy),
     ("broken_bonds", Quantity::BrokenBonds),
     ("largest_utilisation", Quantity::LargestUtilisation),
+    ("force_x", Quantity::Force(0)),
+    ("force_y", Quantity::Force(1)),
+    ("force_z", Quantity::Force(2)),
+    ("torque_x", Quantity::Torque(0)),
+    ("torque_y", Quantity::Torque(1)),
+    ("torque_z", Quantity::Torque(2)),
+    ("count", Quantity::Count),
+    ("mass_fraction_of_largest", Quantity::MassFractionOfLargest),
+    ("mass_of_largest", Quantity::MassOfLargest),
 ];
 
 /// Every choice of a value from a history.
@@ -59,20 +70,36 @@ impl Quantity {
             Self::Velocity(_) => &VELOCITY,
             Self::Rotation(_) => &ANGLE,
             Self::AngularVelocity(_) => &ANGULAR_VELOCITY,
-            Self::Reaction(_) => &FORCE,
-            Self::ReactionTorque(_) => &TORQUE,
+            Self::Reaction(_) | Self::Force(_) => &FORCE,
+            Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
             Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
-            Self::BrokenBonds | Self::LargestUtilisation => &NUMBER,
+            Self::MassOfLargest => &MASS,
+            Self::BrokenBonds
+            | Self::LargestUtilisation
+            | Self::Count
+            | Self::MassFractionOfLargest => &NUMBER,
+        }
+    }
+
+    /// Whether it is a quantity of such things.
+    fn is_of(self, subject: Subject) -> bool {
+        match self {
+            Self::Position(_) => subject != Subject::Fragments,
+            Self::Force(_) | Self::Torque(_) => subject == Subject::Wall,
+            Self::Count | Self::MassFractionOfLargest | Self::MassOfLargest => {
+                subject == Subject::Fragments
+            }
+            _ => subject == Subject::Particles,
         }
     }
 }
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> {
     let table = field.table(&["of", "quantity", "at", "reference", "tolerance"])?;
-    let of = table.read("of", |field| targets.name(&field))?;
-    let quantity = table
-        .need("quantity", "\"displacement_x\"")?
-        .choice(&QUANTITIES)?;
+    let (of, subject) = table
+        .read("of", |field| targets.measured(&field))?
+        .unwrap_or_else(|| (ALL.to_owned(), Subject::Particles));
+    let quantity = quantity(&table, &of, subject)?;
     let reference = table.read("reference", |field| field.quantity(quantity.dimension()))?;
     let tolerance = table.read("tolerance", |field| field.positive(&NUMBER))?;
     if let Some(field) = table.get("tolerance") {
@@ -90,7 +117,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         }
     }
     Ok(Measure {
-        of: of.unwrap_or_else(|| "all".to_owned()),
+        of,
         quantity,
         at: table
             .read("at", |field| field.choice(&TIMES))?
@@ -98,4 +125,49 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         reference,
         tolerance,
     })
+}
+
+/// The quantity that is asked, if `of`, which is a `subject`, has it.
+fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
+    let mut known = QUANTITIES.to_vec();
+    known.retain(|(_, quantity)| quantity.is_of(subject));
+    let example = match subject {
+        Subject::Particles => "\"displacement_x\"",
+        Subject::Wall => "\"force_x\"",
+        Subject::Fragments => "\"count\"",
+    };
+    let field = table.need("quantity", example)?;
+    let name = field.text()?;
+    let Some((_, elsewhere)) = QUANTITIES
+        .iter()
+        .find(|(other, quantity)| *other == name && !quantity.is_of(subject))
+    else {
+        return field.choice(&known);
+    };
+    let (owner, remedy) = if elsewhere.is_of(Subject::Particles) {
+        (
+            "particles",
+            "write of = \"NAME\", with the name of a set or a body",
+        )
+    } else if elsewhere.is_of(Subject::Wall) {
+        ("walls", "write of = \"NAME\", with the name of a wall")
+    } else {
+        ("fragments", "write of = \"fragments\"")
+    };
+    let is = match subject {
+        Subject::Particles => "names particles",
+        Subject::Wall => "is a wall",
+        Subject::Fragments => "are none",
+    };
+    let problem = format!(
+        "{} is \"{name}\", a quantity of {owner}, but \"{of}\" {is}",
+        field.path
+    );
+    let remedy = if subject == Subject::Particles {
+        remedy.to_owned()
+    } else {
+        let has: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        format!("{remedy}, or ask for {}", has.join(", "))
+    };
+    Err(field.refuse(problem, remedy))
 }

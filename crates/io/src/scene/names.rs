@@ -24,6 +24,21 @@ pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -
     }
 }
 
+/// All particles of the scene.
+pub(super) const ALL: &str = "all";
+
+/// The pieces that bodies are in.
+pub(super) const FRAGMENTS: &str = "fragments";
+
+/// What a name stands for in every scene; None for those that are free to be given.
+pub(super) fn meaning(name: &str) -> Option<&'static str> {
+    match name {
+        ALL => Some("all particles of the scene"),
+        FRAGMENTS => Some("the fragments of the scene"),
+        _ => None,
+    }
+}
+
 /// Longest list of names in a message.
 const MOST_NAMES: usize = 30;
 

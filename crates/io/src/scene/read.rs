@@ -4,26 +4,32 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::names::suggestion;
 use super::table::Table;
+use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
-    BodyEntry, SCENE_VERSION, Scene, body, bond, load, material, measure, output, run, set, support,
+    SCENE_VERSION, Scene, body, bond, clusters, contact, load, material, measure, output,
+    relaxation, run, search, set, support, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 15] = [
     "version",
     "run",
     "materials",
+    "contacts",
     "bonds",
     "bodies",
+    "walls",
     "sets",
     "supports",
     "loads",
     "measures",
+    "clusters",
+    "relaxation",
+    "search",
     "output",
 ];
 
@@ -74,8 +80,14 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let materials = each(&root, "materials", material::read)?;
     let bonds = each(&root, "bonds", bond::read)?;
     let bodies = body::read_all(&root, &materials, &bonds, folder)?;
+    let contacts = contact::read_all(&root, &materials)?;
     let sets = set::read_all(&root, &bodies)?;
-    let targets = Targets::new(&sets, &bodies);
+    let walls = wall::read_all(&root, &materials, &bodies, &sets, folder)?;
+    let targets = Targets {
+        sets: &sets,
+        bodies: &bodies,
+        walls: &walls,
+    };
     Ok(Scene {
         source: source.to_owned(),
         run,
@@ -84,8 +96,19 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         supports: each(&root, "supports", |field| support::read(field, &targets))?,
         loads: each(&root, "loads", |field| load::read(field, &targets))?,
         measures: each(&root, "measures", |field| measure::read(field, &targets))?,
+        clusters: root
+            .read("clusters", |field| clusters::read(&field))?
+            .unwrap_or_default(),
+        relaxation: root
+            .read("relaxation", |field| relaxation::read(&field))?
+            .unwrap_or_default(),
+        search: root
+            .read("search", |field| search::read(&field))?
+            .unwrap_or_default(),
         output: root.read("output", |field| output::read(&field, folder))?,
+        contacts,
         bodies,
+        walls,
         sets,
     })
 }
@@ -132,32 +155,4 @@ pub(super) fn named_path(field: &Field<'_>, folder: &Path) -> Result<PathBuf> {
     } else {
         folder.join(name)
     })
-}
-
-/// What supports, loads and measures can act on: sets, bodies and `all`.
-pub(super) struct Targets<'a> {
-    names: Vec<&'a str>,
-}
-
-impl<'a> Targets<'a> {
-    fn new<T>(sets: &'a BTreeMap<String, T>, bodies: &'a BTreeMap<String, BodyEntry>) -> Self {
-        let names = sets.keys().chain(bodies.keys()).map(String::as_str);
-        Self {
-            names: names.chain(["all"]).collect(),
-        }
-    }
-
-    /// The name that `field` gives, if it is one of these.
-    pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
-        let name = field.text()?;
-        if self.names.contains(&name) {
-            return Ok(name.to_owned());
-        }
-        let problem = format!(
-            "{} is {}, but no set or body has this name",
-            field.path,
-            field.shown()
-        );
-        Err(field.refuse(problem, suggestion(name, self.names.iter().copied())))
-    }
 }

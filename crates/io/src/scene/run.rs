@@ -1,13 +1,13 @@
 //! `[run]`
 
-use super::Run;
 use super::field::Field;
 use super::table::Table;
 use super::tree::Value;
+use super::{Run, StartOverlap};
 use crate::Result;
 use crate::units::{ACCELERATION, NUMBER, TIME};
 
-const KEYS: [&str; 7] = [
+const KEYS: [&str; 8] = [
     "end_time",
     "rest",
     "time_step",
@@ -15,6 +15,13 @@ const KEYS: [&str; 7] = [
     "gravity",
     "particle_damping",
     "seed",
+    "start_overlap",
+];
+
+/// What may happen to overlaps at the start.
+pub(super) const START_OVERLAPS: [(&str, StartOverlap); 2] = [
+    ("refuse", StartOverlap::Refuse),
+    ("relax", StartOverlap::Relax),
 ];
 
 /// `safety` unless given.
@@ -60,6 +67,9 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
                 field.whole(u64::MAX, "write any such number")
             })?
             .unwrap_or_default(),
+        start_overlap: table
+            .read("start_overlap", |field| field.choice(&START_OVERLAPS))?
+            .unwrap_or(StartOverlap::Refuse),
     })
 }
 

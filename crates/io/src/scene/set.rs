@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashSet};
 
 use super::field::Field;
+use super::names::{FRAGMENTS, meaning};
 use super::table::Table;
-use super::tree::Node;
 use super::{BodyEntry, BodySource, ParticleSet, Pick};
 use crate::Result;
 use crate::units::LENGTH;
@@ -18,14 +18,15 @@ pub(super) fn read_all(
 ) -> Result<BTreeMap<String, ParticleSet>> {
     let mut sets = BTreeMap::new();
     for (name, field) in root.named("sets")? {
-        if name == "all" || bodies.contains_key(&name) {
-            let of = if name == "all" {
-                "all particles of the scene".to_owned()
-            } else {
-                format!("the body [bodies.{name}]")
-            };
+        let body = format!("the body [bodies.{name}]");
+        let is_body = bodies.contains_key(&name);
+        if let Some(of) = meaning(&name).or(is_body.then_some(&body)) {
             let problem = format!("{} is named like {of}", field.path);
-            let remedy = "give it another name, or remove it: the name stands for those particles without it";
+            let remedy = if name == FRAGMENTS {
+                "give it another name"
+            } else {
+                "give it another name, or remove it: the name stands for those particles without it"
+            };
             return Err(field.refuse(problem, remedy));
         }
         sets.insert(name, read(&field, bodies)?);
@@ -36,11 +37,7 @@ pub(super) fn read_all(
 fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleSet> {
     let table = field.table(&["body", "all", "particles", "box", "sphere"])?;
     let body = table.read("body", |field| field.reference(bodies.keys(), "bodies"))?;
-    let ways = |(key, _): &(String, Node)| {
-        let way = PICKS.into_iter().find(|way| way == key)?;
-        Some((way, table.get(way)?))
-    };
-    let mut given = table.entries.iter().filter_map(ways);
+    let mut given = table.given(&PICKS);
     let Some((key, first)) = given.next() else {
         let problem = format!("{} picks nothing", table.path);
         let remedy =
@@ -75,7 +72,7 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
         }
         "box" => Ok(ParticleSet {
             body,
-            pick: corners(&first)?,
+            pick: region(&first)?,
         }),
         "sphere" => {
             let sphere = first.table(&["centre", "radius"])?;
@@ -117,19 +114,34 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     Ok(picked)
 }
 
-fn corners(field: &Field<'_>) -> Result<Pick> {
+fn region(field: &Field<'_>) -> Result<Pick> {
+    let [min, max] = corners(field, "at most", |low, high| low <= high)?;
+    Ok(Pick::Box { min, max })
+}
+
+/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each axis; `limit` says in words what min must be to max.
+pub(super) fn corners(
+    field: &Field<'_>,
+    limit: &str,
+    holds: impl Fn(f64, f64) -> bool,
+) -> Result<[[f64; 3]; 2]> {
     let table = field.table(&["min", "max"])?;
     let min = table.need("min", "[0, 0, 0]")?.vector(&LENGTH)?;
     let upper = table.need("max", "[1, 1, 1]")?;
     let max = upper.vector(&LENGTH)?;
-    for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.iter().zip(max)) {
-        if *low > high {
+    for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.into_iter().zip(max)) {
+        if !holds(low, high) {
             let problem = format!(
                 "{} is {high} m along {axis}, but min is {low} m",
                 upper.path
             );
-            return Err(upper.refuse(problem, "min must be at most max: swap them"));
+            let remedy = if low > high {
+                format!("min must be {limit} max: swap them")
+            } else {
+                format!("min must be {limit} max: move one of them")
+            };
+            return Err(upper.refuse(problem, remedy));
         }
     }
-    Ok(Pick::Box { min, max })
+    Ok([min, max])
 }

@@ -1,10 +1,9 @@
 //! `[supports.NAME]`
 
 use super::field::Field;
-use super::load::factor;
+use super::load::{factor, over_time};
 use super::names::suggestion;
-use super::read::Targets;
-use super::table::Table;
+use super::targets::Targets;
 use super::tree::Value;
 use super::{Hold, Support};
 use crate::Result;
@@ -52,10 +51,6 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
         holds,
         factor: factor(&table)?,
     })
-}
-
-fn over_time<'a>(table: &Table<'a>) -> Option<Field<'a>> {
-    table.get("ramp").or_else(|| table.get("table"))
 }
 
 /// `true`, or a list of degrees of freedom.

@@ -56,6 +56,17 @@ impl<'a> Table<'a> {
         self.get(key).map(read).transpose()
     }
 
+    /// Those of `keys` that are there, in the order of the file, with their values.
+    pub(super) fn given(
+        &self,
+        keys: &[&'static str],
+    ) -> impl Iterator<Item = (&'static str, Field<'a>)> {
+        self.entries.iter().filter_map(|(name, node)| {
+            let key = keys.iter().find(|key| *key == name)?;
+            Some((*key, self.field(name, node)))
+        })
+    }
+
     /// The value of a key that must be there; `example` is how it may look.
     pub(super) fn need(&self, key: &str, example: &str) -> Result<Field<'a>> {
         self.get(key).ok_or_else(|| {
@@ -97,7 +108,8 @@ impl<'a> Table<'a> {
         Ok(found)
     }
 
-    fn field(&self, key: &str, node: &'a Node) -> Field<'a> {
+    /// The value `node` of a key.
+    pub(super) fn field(&self, key: &str, node: &'a Node) -> Field<'a> {
         Field {
             document: self.document,
             path: joined(&self.path, key),

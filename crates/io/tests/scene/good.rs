@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
-    At, BodySource, BondDamping, BondFailure, BondModel, Factor, Formulation, Hold, Pick, Quantity,
-    Scene,
+    At, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
+    Formulation, Hold, Pick, Quantity, Relaxation, Rolling, Scene, Search, StartOverlap, Wall,
+    WallMotion, WallShape,
 };
 use dem_io::{read_scene, scene_from_text};
 
@@ -24,6 +25,34 @@ fn assert_near(got: f64, wanted: f64) {
     );
 }
 
+/// What the documentation shows is a scene.
+#[test]
+fn the_documentation() {
+    let text = include_str!("../../../../doc/scenes.md");
+    let (_, rest) = text.split_once("```toml\n").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let scene = scene_from_text(example, "doc.toml", &[]).unwrap();
+    assert_eq!(scene.walls.len(), 2);
+    // Each way that stands in a comment is one as well.
+    let ways = [
+        ("box = ", "# plane = "),
+        ("box = ", "# cylinder = "),
+        ("velocity = [0, 0, \"-10", "# displacement = [0, 0, \"-1 mm"),
+        ("velocity = [0, 0, \"-10", "# servo = "),
+    ];
+    for (taken, comment) in ways {
+        let walls = example.find("[walls.").unwrap();
+        let (before, walls) = example.split_at(walls);
+        let other =
+            walls
+                .replacen(taken, &format!("# {taken}"), 1)
+                .replacen(comment, &comment[2..], 1);
+        let text = format!("{before}{other}");
+        let read = scene_from_text(&text, "doc.toml", &[]).unwrap();
+        assert_ne!(read.walls, scene.walls, "{comment}");
+    }
+}
+
 #[test]
 fn the_run() {
     let run = good("every-key.toml").run;
@@ -34,6 +63,7 @@ fn the_run() {
     assert_eq!(run.gravity_m_s2, [0.0, -9.81, 0.0]);
     assert_eq!(run.particle_damping, 0.7);
     assert_eq!(run.seed, u64::MAX);
+    assert_eq!(run.start_overlap, StartOverlap::Relax);
 }
 
 #[test]
@@ -47,6 +77,183 @@ fn materials() {
     assert_eq!(steel.density_kg_m3, None);
     assert_eq!(steel.young_modulus_pa, Some(210e9));
     assert_eq!(steel.poisson_ratio, 0.3);
+}
+
+fn contact(materials: [&str; 2], law: ContactLaw, restitution: f64, rolling: Rolling) -> Contact {
+    Contact {
+        materials: materials.map(str::to_owned),
+        law,
+        restitution,
+        friction: 0.0,
+        rolling,
+    }
+}
+
+#[test]
+fn contacts() {
+    let linear = |normal_n_m, tangential_ratio| ContactLaw::Linear {
+        normal_n_m,
+        tangential_ratio,
+    };
+    let sprung = |friction, damping| Rolling::SpringDashpot { friction, damping };
+    let torque = |friction| Rolling::ConstantTorque { friction };
+    let hertz = ContactLaw::HertzMindlin;
+    assert_eq!(
+        good("every-key.toml").contacts,
+        [
+            contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2)),
+            contact(["cake", "cake"], hertz, 1.0, sprung(0.1, 0.5)),
+            Contact {
+                friction: 0.4,
+                ..contact(["cake", "steel"], hertz, 0.3, torque(0.05))
+            },
+        ]
+    );
+    let usual = 2.0 / 7.0;
+    assert_eq!(
+        good("touching.toml").contacts,
+        [
+            contact(["a", "a"], hertz, 0.7, Rolling::None),
+            contact(["a", "a-a"], hertz, 0.5, Rolling::None),
+            contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3)),
+            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::None),
+        ]
+    );
+}
+
+#[test]
+fn walls() {
+    let walls = good("every-key.toml").walls;
+    assert_eq!(
+        walls["floor"],
+        Wall {
+            shape: WallShape::Plane {
+                point_m: [0.0, 0.0, -0.01],
+                normal: [0.0, 0.0, 1.0]
+            },
+            material: "steel".to_owned(),
+            rotation_rad: [0.0; 3],
+            tilt_rad: 0.0,
+            pivot_m: [0.0; 3],
+            motion: WallMotion::Fixed,
+            surface_velocity_m_s: [0.0; 3],
+        }
+    );
+    let belt = &walls["belt"];
+    assert_eq!(
+        belt.shape,
+        WallShape::Box {
+            min: [-2.0, -0.3, -0.02],
+            max: [0.0, 0.3, 0.0]
+        }
+    );
+    assert_eq!(belt.material, "belt-rubber");
+    assert_near(belt.rotation_rad[2], std::f64::consts::FRAC_PI_2);
+    assert_near(belt.tilt_rad, 25_f64.to_radians());
+    assert_eq!(belt.pivot_m, [0.0, 0.0, 0.01]);
+    assert_eq!(belt.surface_velocity_m_s, [3.0, 0.0, 0.0]);
+    assert_eq!(
+        walls["pin"].shape,
+        WallShape::Cylinder {
+            from_m: [0.0, -0.01, 0.0],
+            to_m: [0.0, 0.01, 0.0],
+            radius_m: 0.005
+        }
+    );
+    assert_eq!(
+        walls["plate"].shape,
+        WallShape::Stl {
+            path: folder().join("shapes/plate.stl"),
+            unit_m: 1e-3,
+            scale: 0.5
+        }
+    );
+    let WallShape::Plane { normal, .. } = good("touching.toml").walls["ground"].shape else {
+        panic!("no plane");
+    };
+    assert_near(normal[1], 0.6);
+    assert_near(normal[2], 0.8);
+}
+
+#[test]
+fn motions_of_walls() {
+    let walls = good("every-key.toml").walls;
+    assert_eq!(
+        walls["pin"].motion,
+        WallMotion::Velocity {
+            velocity_m_s: [0.0, 0.0, -0.01],
+            spin_rad_s: [0.0, std::f64::consts::PI, 0.0],
+            factor: Factor::Ramp { until_s: 0.01 },
+        }
+    );
+    assert_eq!(
+        walls["plate"].motion,
+        WallMotion::Displacement {
+            displacement_m: [0.0, 0.0, -0.001],
+            turn_rad: [0.0, 4.0 * std::f64::consts::PI, 0.0],
+            factor: Factor::Table(vec![[0.0, 0.0], [0.005, 1.0]]),
+        }
+    );
+    assert_eq!(
+        walls["punch"].motion,
+        WallMotion::Servo {
+            force_n: 1000.0,
+            direction: [0.0, 0.0, -1.0],
+            largest_velocity_m_s: 0.01,
+            factor: Factor::Ramp { until_s: 0.001 },
+        }
+    );
+    // One key of a way to move says nothing of the others.
+    let walls = good("touching.toml").walls;
+    assert_eq!(
+        walls["roller"].motion,
+        WallMotion::Velocity {
+            velocity_m_s: [0.0; 3],
+            spin_rad_s: [0.0, 1.0, 0.0],
+            factor: Factor::One,
+        }
+    );
+    assert_eq!(
+        walls["sieve"].motion,
+        WallMotion::Displacement {
+            displacement_m: [0.0; 3],
+            turn_rad: [0.0; 3],
+            factor: Factor::One,
+        }
+    );
+}
+
+#[test]
+fn how_contacts_are_found() {
+    let scene = good("every-key.toml");
+    let clusters = Clusters {
+        interval: 20,
+        min_broken: 3,
+        force_every: 100,
+    };
+    let relaxation = Relaxation {
+        enabled: false,
+        min_overlap: 0.0,
+    };
+    assert_eq!(scene.clusters, clusters);
+    assert_eq!(scene.relaxation, relaxation);
+    assert_eq!(scene.search, Search { skin: Some(0.5) });
+    for name in ["touching.toml", "shortest.toml"] {
+        let scene = good(name);
+        let clusters = Clusters {
+            interval: 50,
+            min_broken: 1,
+            force_every: 0,
+        };
+        let relaxation = Relaxation {
+            enabled: true,
+            min_overlap: 1e-3,
+        };
+        assert_eq!(scene.clusters, clusters);
+        assert_eq!(scene.relaxation, relaxation);
+        assert_eq!(scene.search, Search { skin: None });
+        assert_eq!(scene.run.start_overlap, StartOverlap::Refuse);
+    }
 }
 
 #[test]
@@ -188,6 +395,30 @@ fn measures_and_output() {
     let energy = &scene.measures["energy"];
     assert_eq!((energy.of.as_str(), energy.at), ("all", At::End));
     assert_eq!((energy.reference, energy.tolerance), (None, None));
+    let push = &scene.measures["push"];
+    assert_eq!(
+        (push.of.as_str(), push.quantity),
+        ("punch", Quantity::Force(2))
+    );
+    assert_eq!(push.reference, Some(-1000.0));
+    let pieces = &scene.measures["pieces"];
+    assert_eq!(pieces.of, "fragments");
+    assert_eq!(pieces.quantity, Quantity::MassOfLargest);
+    assert_eq!(
+        (pieces.quantity.name(), pieces.reference),
+        ("mass_of_largest", Some(0.02))
+    );
+    let others = good("touching.toml").measures;
+    for (name, quantity, unit) in [
+        ("hit", Quantity::Force(2), "N"),
+        ("twist", Quantity::Torque(1), "N m"),
+        ("place", Quantity::Position(2), "m"),
+        ("pieces", Quantity::Count, ""),
+        ("largest", Quantity::MassFractionOfLargest, ""),
+    ] {
+        assert_eq!(others[name].quantity, quantity);
+        assert_eq!(quantity.dimension().si, unit);
+    }
     let output = scene.output.unwrap();
     assert_eq!(output.folder, Some(folder().join("results")));
     assert_eq!(output.frames_s, Some(0.005));
@@ -208,6 +439,7 @@ run.safety                      0.9
 run.gravity                     [0, 0, 0] m/s2
 run.particle_damping            0
 run.seed                        0
+run.start_overlap               refuse
 materials.clay.density          from the body's file
 materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
@@ -231,6 +463,40 @@ fn values_in_words() {
     let text = good("every-key.toml").describe();
     for line in [
         "materials.cake.young_modulus 2.5e7 Pa",
+        "run.start_overlap relax",
+        "contacts.belt-rubber-cake.law linear",
+        "contacts.belt-rubber-cake.normal_stiffness 100000 N/m",
+        "contacts.belt-rubber-cake.tangential_ratio 0.5",
+        "contacts.belt-rubber-cake.rolling constant-torque",
+        "contacts.cake-cake.law hertz-mindlin",
+        "contacts.cake-cake.restitution 1",
+        "contacts.cake-cake.friction 0",
+        "contacts.cake-cake.rolling spring-dashpot",
+        "contacts.cake-cake.rolling_friction 0.1",
+        "contacts.cake-cake.rolling_damping 0.5",
+        "walls.floor.plane.point [0, 0, -0.01] m",
+        "walls.floor.plane.normal [0, 0, 1]",
+        "walls.floor.motion fixed",
+        "walls.belt.box.min [-2, -0.3, -0.02] m",
+        "walls.belt.tilt 0.436332312999 rad",
+        "walls.belt.surface_velocity [3, 0, 0] m/s",
+        "walls.pin.cylinder.radius 0.005 m",
+        "walls.pin.angular_velocity [0, 3.14159265359, 0] rad/s",
+        "walls.pin.ramp 0.01 s",
+        "walls.plate.unit 0.001 m",
+        "walls.plate.scale 0.5",
+        "walls.plate.turn [0, 12.5663706144, 0] rad",
+        "walls.plate.table 0 s: 0, 0.005 s: 1",
+        "walls.punch.servo.force 1000 N",
+        "walls.punch.servo.direction [0, 0, -1]",
+        "walls.punch.servo.velocity 0.01 m/s",
+        "measures.pieces.reference 0.02 kg",
+        "clusters.interval 20 steps",
+        "clusters.min_broken 3",
+        "clusters.force_every 100 intervals",
+        "relaxation.enabled false",
+        "relaxation.min_overlap 0",
+        "search.skin 0.5",
         "bonds.parallel.kappa 2.5",
         "bonds.parallel.damping.force 3 N s/m",
         "bodies.bar.particles 3 in the scene",
@@ -250,4 +516,34 @@ fn values_in_words() {
             "{line}\n{text}"
         );
     }
+}
+
+/// Where things can touch, all that says how is said, with its defaults; where nothing can, only what is asked.
+#[test]
+fn words_on_contacts() {
+    let said = |scene: &Scene| -> Vec<String> {
+        let of_contacts = |line: &&str| {
+            ["clusters.", "relaxation.", "search."]
+                .iter()
+                .any(|table| line.starts_with(table))
+        };
+        let text = scene.describe();
+        let lines = text.lines().filter(of_contacts);
+        let words = lines.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+        words.collect()
+    };
+    assert_eq!(
+        said(&good("touching.toml")),
+        [
+            "clusters.interval 50 steps",
+            "clusters.min_broken 1",
+            "clusters.force_every never",
+            "relaxation.enabled true",
+            "relaxation.min_overlap 0.001",
+            "search.skin chosen by the program",
+        ]
+    );
+    let options = ["search.skin=0.1".to_owned()];
+    let scene = read_scene(&folder().join("shortest.toml"), &options).unwrap();
+    assert_eq!(said(&scene), ["search.skin 0.1"]);
 }

@@ -1,6 +1,6 @@
 //! `--set`: values from the command line.
 
-use dem_io::scene::{BodySource, Scene};
+use dem_io::scene::{BodySource, Scene, WallMotion, WallShape};
 use dem_io::scene_from_text;
 
 const SCENE: &str = r#"version = 1
@@ -55,6 +55,33 @@ fn options_add_keys_and_tables() {
     assert_eq!(folder, Some("elsewhere".into()));
     let file = &scene.bodies["other"].source;
     assert_eq!(*file, BodySource::File("a=b.vtp".into()));
+}
+
+/// Pairs of materials and walls are set like all else.
+#[test]
+fn options_add_contacts_and_walls() {
+    let scene = with(&[
+        "materials.clay.young_modulus=1 MPa",
+        "contacts.clay-clay.restitution=50 %",
+        "walls.plate.stl=plate.stl",
+        "walls.plate.unit=mm",
+        "walls.plate.material=clay",
+        "walls.plate.servo.force=-2 N",
+        "walls.plate.servo.direction=[0, 0, 1]",
+        "walls.plate.servo.velocity=1 mm/s",
+        "search.skin=0.2",
+    ])
+    .unwrap();
+    assert_eq!(scene.contacts[0].restitution, 0.5);
+    let WallShape::Stl { path, .. } = &scene.walls["plate"].shape else {
+        panic!("no STL");
+    };
+    assert_eq!(path.to_str(), Some("plate.stl"));
+    let WallMotion::Servo { force_n, .. } = scene.walls["plate"].motion else {
+        panic!("no servo");
+    };
+    assert_eq!(force_n, -2.0);
+    assert_eq!(scene.search.skin, Some(0.2));
 }
 
 #[test]

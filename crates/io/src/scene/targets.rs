@@ -1,0 +1,87 @@
+//! What supports, loads and measures are of.
+
+use std::collections::BTreeMap;
+
+use super::field::Field;
+use super::names::{ALL, FRAGMENTS, suggestion};
+use super::{BodyEntry, ParticleSet, Wall};
+use crate::{Diagnostic, Result};
+
+/// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can only be measured.
+pub(super) struct Targets<'a> {
+    pub(super) sets: &'a BTreeMap<String, ParticleSet>,
+    pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
+    pub(super) walls: &'a BTreeMap<String, Wall>,
+}
+
+/// What has quantities that can be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Subject {
+    /// A set, a body or `all`.
+    Particles,
+    /// A wall.
+    Wall,
+    /// `fragments`
+    Fragments,
+}
+
+impl Targets<'_> {
+    /// The name that `field` gives, if it is that of a set, of a body or `all`.
+    pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
+        let name = field.text()?;
+        match self.subject(name) {
+            Some(Subject::Particles) => Ok(name.to_owned()),
+            Some(Subject::Wall) => {
+                let problem = format!("{} is \"{name}\", which is a wall", field.path);
+                let remedy = format!(
+                    "name a set or a body: how a wall moves and pushes stands in [walls.{name}]"
+                );
+                Err(field.refuse(problem, remedy))
+            }
+            Some(Subject::Fragments) | None => {
+                Err(unknown(field, name, "set or body", self.of_particles()))
+            }
+        }
+    }
+
+    /// The name that `field` gives, if it can be measured, and what it is.
+    pub(super) fn measured(&self, field: &Field<'_>) -> Result<(String, Subject)> {
+        let name = field.text()?;
+        let subject = self.subject(name).ok_or_else(|| {
+            let others = self.walls.keys().map(String::as_str).chain([FRAGMENTS]);
+            let known = self.of_particles().chain(others);
+            unknown(field, name, "set, body or wall", known)
+        })?;
+        Ok((name.to_owned(), subject))
+    }
+
+    fn subject(&self, name: &str) -> Option<Subject> {
+        if name == ALL || self.sets.contains_key(name) || self.bodies.contains_key(name) {
+            Some(Subject::Particles)
+        } else if self.walls.contains_key(name) {
+            Some(Subject::Wall)
+        } else {
+            (name == FRAGMENTS).then_some(Subject::Fragments)
+        }
+    }
+
+    fn of_particles(&self) -> impl Iterator<Item = &str> {
+        let names = self.sets.keys().chain(self.bodies.keys());
+        names.map(String::as_str).chain([ALL])
+    }
+}
+
+/// No `kinds` has the name that `field` gives; `known` do.
+fn unknown<'n>(
+    field: &Field<'_>,
+    name: &str,
+    kinds: &str,
+    known: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let problem = format!(
+        "{} is {}, but no {kinds} has this name",
+        field.path,
+        field.shown()
+    );
+    field.refuse(problem, suggestion(name, known))
+}
