@@ -21,6 +21,8 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Contacts between those that are looked at and those whose second particles are fetched into the cache.
 const AHEAD: usize = 32;
+/// The same for contacts that touch.
+const SOON: usize = 32;
 
 /// Adds the elastic and frictional forces of contacts to the wrenches, sets their resistance to the damping forces, books what friction took, and
 /// takes down what each contact remembers: after a step of `dt`, s, in which the particles moved as their motions say.
@@ -323,7 +325,19 @@ impl ShareWork<'_> {
                 );
             }
         }
-        for some in own.chunks(FOUR) {
+        for (n, some) in own.chunks(FOUR).enumerate() {
+            let soon = n * FOUR + SOON;
+            for &at in own.get(soon..soon + FOUR).unwrap_or_default() {
+                let b = pairs[at as usize][1] as usize;
+                fetch_soon(&scene.motions[b]);
+                fetch_soon(&scene.inverse_masses[b]);
+                fetch_soon(&scene.inverse_inertias[b]);
+                fetch_soon(&books.memories[at as usize - share.own.start]);
+                if particles.contains(&b) {
+                    fetch_soon(&books.wrenches[b - particles.start]);
+                    fetch_soon(&books.resistance[b - particles.start]);
+                }
+            }
             let of_four = |i: usize| some[i.min(some.len() - 1)] as usize;
             let numbers = [0, 1, 2, 3].map(of_four);
             let memories = numbers.map(|at| books.memories[at - share.own.start]);
