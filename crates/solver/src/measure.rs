@@ -116,7 +116,7 @@ impl Gauge {
         let reactions = |k: usize| {
             let held = state.supports.iter().flat_map(|support| &support.held);
             held.filter(|held| self.particles.binary_search(&held.particle).is_ok())
-                .map(|held| held.reaction[k])
+                .map(|held| held.reactions[0][k])
                 .sum::<f64>()
         };
         match self.measure.quantity {

@@ -4,7 +4,7 @@ mod events;
 mod progress;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use dem_io::checkpoint::write_checkpoint;
 use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
@@ -22,6 +22,7 @@ use crate::output::series;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::snapshot::{Snapshot, fingerprint};
+use crate::stages::bonds::largest_strain;
 use crate::state::State;
 use crate::step::{act, move_on};
 
@@ -29,10 +30,13 @@ use self::events::{change_step, follow_limit, new_step, write_breaks};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
 
-/// Steps between two looks at the limit of the step, while bonds are strained.
-const LIMIT_EVERY: u64 = 20_000;
-/// Elastic energy over that of all bonds stretched by 1e-6, above which the limit may have fallen: a mean strain of 1e-3.
-const STRAINED: f64 = 1e6;
+/// Steps between two looks at the strains of the bonds.
+const STRAIN_EVERY: u64 = 64;
+/// The limit of the step is looked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
+/// stiffer across.
+const MORE_STRAIN: f64 = 0.02;
+/// Wall time between two checkpoints where the scene names no other rhythm.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
 /// How a run is told to go.
 #[derive(Debug)]
@@ -115,6 +119,7 @@ pub fn run(
         let place = settings
             .folder
             .map(|f| f.checkpoint().display().to_string());
+        snapshot.check_scene(&scene.describe())?;
         snapshot
             .restore(&mut state)
             .map_err(|error| error.within(&place.unwrap_or_default()))?;
@@ -144,6 +149,7 @@ pub fn run(
     let watchdog = Watchdog::new(choice.share_of_limit());
     let first_step = state.steps;
     let clock = Instant::now();
+    let mut saved = clock;
     let (ended_by, last) = loop {
         act(&mut state);
         if let Some(files) = &mut files {
@@ -183,6 +189,9 @@ pub fn run(
             progress.next_frame = rhythm.frame_s.map_or(0, |s| next(&state, s));
             files.order.write(&state, &mut files.frames)?;
         }
+        // The ledger of this step has been looked at: what is saved is sound. Looking at it only to save would change its later figures.
+        let checkpoint_due = checkpoint_due
+            || (row_due && rhythm.checkpoint_s.is_none() && saved.elapsed() >= CHECKPOINT_EVERY);
         if checkpoint_due {
             progress.next_checkpoint = rhythm.checkpoint_s.map_or(0, |s| next(&state, s));
         }
@@ -192,20 +201,24 @@ pub fn run(
         }
         move_on(&mut state);
 
+        if state.steps.is_multiple_of(STRAIN_EVERY) {
+            let strain = largest_strain(&state.bonds, &state.particles.poses);
+            if strain > progress.limit_strain + MORE_STRAIN {
+                progress.limit_strain = strain;
+                progress.limit_s = limit(&mut state).step_s;
+                follow_limit(&mut state, progress.limit_s, scene, files.as_mut())?;
+            }
+        }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
-            save(&state, fingerprint, &gauges, &mut progress, files)?;
+            saved = Instant::now();
+            save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
         }
         if interrupted {
             return Err(interruption(&state, files.as_ref()));
         }
-        if state.steps.is_multiple_of(LIMIT_EVERY)
-            && progress.elastic_j > STRAINED * state.ledger.floor_j()
-        {
-            progress.limit_s = limit(&mut state).step_s;
-            follow_limit(&mut state, progress.limit_s, scene, files.as_mut())?;
-        }
     };
+    let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
     let summary = Summary {
@@ -224,9 +237,9 @@ pub fn run(
         share_of_limit: state.time_step_s / progress.limit_s,
         steps_per_s,
         bond_steps_per_s: steps_per_s * state.bonds.len() as f64,
-        energy_error: progress.largest_errors[0],
-        momentum_error: progress.largest_errors[1],
-        angular_momentum_error: progress.largest_errors[2],
+        energy_error,
+        momentum_error,
+        angular_momentum_error,
         ledger: last,
         measures: gauges.iter().map(Gauge::result).collect(),
         time_by_stage: Stage::ALL
@@ -246,7 +259,7 @@ pub fn run(
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
-        save(&state, fingerprint, &gauges, &mut progress, files)?;
+        save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
         write_json(&files.folder.summary(), &summary)?;
         write_plots(files.folder, &gauges)?;
     }
@@ -255,6 +268,7 @@ pub fn run(
 
 fn save(
     state: &State,
+    scene: &Scene,
     fingerprint: u64,
     gauges: &[Gauge],
     progress: &mut Progress,
@@ -266,7 +280,13 @@ fn save(
     progress.events_bytes = files.events.length_bytes();
     progress.frame_times_s = files.frames.times_s().to_vec();
     let measures = gauges.iter().map(|gauge| gauge.history).collect();
-    let snapshot = Snapshot::taken(state, fingerprint, measures, progress.clone());
+    let snapshot = Snapshot::taken(
+        state,
+        scene.describe(),
+        fingerprint,
+        measures,
+        progress.clone(),
+    );
     write_checkpoint(&files.folder.checkpoint(), &snapshot.to_bytes()?)
 }
 

@@ -1,5 +1,7 @@
 //! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say is read again when it goes on.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -18,6 +20,8 @@ type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
 /// A run between two steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
+    /// The scene, as [`dem_io::Scene::describe`] tells it.
+    scene: String,
     fingerprint: u64,
     steps: u64,
     time_s: f64,
@@ -38,12 +42,14 @@ impl Snapshot {
     /// Of a run between two steps.
     pub fn taken(
         state: &State,
+        scene: String,
         fingerprint: u64,
         measures: Vec<measure::History>,
         progress: Progress,
     ) -> Self {
         let p = &state.particles;
         Self {
+            scene,
             fingerprint,
             steps: state.steps,
             time_s: state.time_s,
@@ -110,6 +116,51 @@ impl Snapshot {
                 "start the run again, without --resume",
             )
         })
+    }
+
+    /// Whether a scene is the one of the run, but for what may change on the way: when it ends, how it steps, what it writes, and where the files of
+    /// its bodies are.
+    ///
+    /// # Errors
+    /// Says what has changed.
+    pub fn check_scene(&self, scene: &str) -> Result<()> {
+        let may_change = |key: &str| {
+            const RUN: [&str; 4] = ["run.end_time", "run.rest", "run.time_step", "run.safety"];
+            RUN.contains(&key) || key.starts_with("output") || key.ends_with(".file")
+        };
+        let values = |text: &str| -> BTreeMap<String, String> {
+            text.lines()
+                .filter_map(|line| line.split_once(' '))
+                .map(|(key, value)| (key.to_owned(), value.trim().to_owned()))
+                .filter(|(key, _)| !may_change(key))
+                .collect()
+        };
+        let (before, now) = (values(&self.scene), values(scene));
+        let keys: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
+        let said = |value: Option<&String>| value.map_or("not there".to_owned(), String::clone);
+        let changed: Vec<String> = keys
+            .into_iter()
+            .filter(|&key| before.get(key) != now.get(key))
+            .map(|key| {
+                let (before, now) = (said(before.get(key)), said(now.get(key)));
+                format!("{key} was {before} and is {now}")
+            })
+            .collect();
+        if changed.is_empty() {
+            return Ok(());
+        }
+        let more = match changed.len() {
+            0..=3 => String::new(),
+            count => format!("; and {} more", count - 3),
+        };
+        Err(Diagnostic::input(
+            "--resume",
+            format!(
+                "the scene is not that of the run: {}{more}",
+                changed[..changed.len().min(3)].join("; ")
+            ),
+            "put it back, or start again without --resume; end_time, rest, time_step, safety and [output] may change",
+        ))
     }
 
     /// Puts a state that has been planned from the same scene where the run stood.

@@ -91,9 +91,9 @@ pub fn act(state: &mut State) {
     hold(
         &mut state.supports,
         p,
+        &state.broken,
         state.time_s,
-        state.time_step_s,
-        kick_s,
+        [before_s, state.time_step_s],
     );
     crate::check::ledger::after_kick(state);
     state.clock.book(Stage::Rest);

@@ -181,7 +181,7 @@ impl Bar {
         let poses = &state.particles.poses;
         let along = |i: usize| self.length_m * i as f64 / self.bonds() as f64;
         let places: Vec<Vector3<f64>> = poses.iter().map(|pose| back * pose.place()).collect();
-        let [fx, fy, fz, mx, my, mz] = state.supports[0].held[0].reaction;
+        let [fx, fy, fz, mx, my, mz] = state.supports[0].held[0].reactions[0];
         Rest {
             deflections_m: places.iter().map(|place| place.y).collect(),
             rotations: poses

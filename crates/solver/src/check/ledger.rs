@@ -85,10 +85,14 @@ pub struct Balance {
     pub energy_error_j: f64,
     /// The same over the largest energy or work so far.
     pub energy_error: f64,
+    /// That largest energy or work, J.
+    pub energy_scale_j: f64,
     /// Momentum that is there less what should be, over the largest sum of its parts' magnitudes so far.
     pub momentum_error: f64,
     /// The same for angular momentum about the initial centre of mass.
     pub angular_momentum_error: f64,
+    /// Those largest sums: of momentum, N s, and of angular momentum, N m s.
+    pub momentum_scales: [f64; 2],
 }
 
 impl Balance {
@@ -211,7 +215,9 @@ pub fn after_kick(state: &mut State) {
     let mut total = loads_resultant(loads, state.time_s, &particles.poses, about);
     for support in supports.iter() {
         for held in &support.held {
-            let [fx, fy, fz, tx, ty, tz] = held.reaction;
+            let [early, late] = held.reactions;
+            let mean = |k: usize| (before_s * early[k] + after_s * late[k]) / (before_s + after_s);
+            let [fx, fy, fz, tx, ty, tz] = [0, 1, 2, 3, 4, 5].map(mean);
             let pose = &particles.poses[held.particle as usize];
             add_resultant(&mut total, pose, [fx, fy, fz], [tx, ty, tz], about);
         }
@@ -302,17 +308,19 @@ pub fn balance(state: &mut State) -> Balance {
         released_j: ledger.released_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),
+        energy_scale_j: ledger.scale_j,
         momentum_error: off(present[0], ledger.momentum, ledger.momentum_scale),
         angular_momentum_error: off(
             present[1],
             ledger.angular_momentum,
             ledger.angular_momentum_scale,
         ),
+        momentum_scales: [ledger.momentum_scale, ledger.angular_momentum_scale],
     }
 }
 
 /// A ratio that is 0 where there is nothing to compare with.
-fn over(value: f64, scale: f64) -> f64 {
+pub fn over(value: f64, scale: f64) -> f64 {
     if scale == 0.0 { 0.0 } else { value / scale }
 }
 

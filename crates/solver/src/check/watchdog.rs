@@ -16,6 +16,7 @@ const EVERY: u64 = 64;
 /// Watches the energy of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Watchdog {
+    share_of_limit: f64,
     /// Energy that may appear from nowhere, over what was put in.
     allowed: f64,
 }
@@ -27,6 +28,7 @@ impl Watchdog {
     pub fn new(share_of_limit: f64) -> Self {
         let square = share_of_limit * share_of_limit;
         Self {
+            share_of_limit,
             allowed: if square < 1.0 {
                 2.0 / (1.0 - square)
             } else {
@@ -59,14 +61,19 @@ impl Watchdog {
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }
-        Err(unstable(state, balance, bodies))
+        Err(unstable(state, balance, self.share_of_limit, bodies))
     }
 }
 
-fn unstable(state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Diagnostic {
+fn unstable(
+    state: &State,
+    balance: &Balance,
+    share_of_limit: f64,
+    bodies: &[PlacedBody],
+) -> Diagnostic {
     let mut problem = format!(
-        "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere",
-        state.steps, state.time_s, balance.energy_error_j
+        "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere; the time step is {:.4e} s and began at {:.3} of the largest stable one",
+        state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
     );
     if let Some((at, own_step_s)) = culprit(state) {
         let [a, b] = state.bonds.ends[at];
@@ -84,15 +91,15 @@ fn unstable(state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Diagnost
             format!(" {number} of body '{}'", body.name)
         });
         problem += &format!(
-            "; most of it in bond{which}{where_}, whose two particles alone need a step below {own_step_s:.4e} s (taken: {:.4e} s)",
-            state.time_step_s
+            "; most of it in bond{which}{where_}, whose two particles alone, undamped, could take a step of {own_step_s:.4e} s"
         );
     }
-    Diagnostic::unstable(
-        "",
-        problem,
-        "take a smaller run.time_step, or \"auto\" for one below the limit",
-    )
+    let remedy = if share_of_limit > 1.0 {
+        "take a smaller run.time_step, or \"auto\" for one below the limit"
+    } else {
+        "take a smaller run.safety or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
+    };
+    Diagnostic::unstable("", problem, remedy)
 }
 
 /// The bond with the largest energy and the critical step of its two particles alone, s. Where energies are no numbers: the bond with the smallest step.

@@ -1,10 +1,10 @@
 //! Where a run stands besides its state: what is written next, and what has been seen.
 
-use dem_io::scene::Scene;
+use dem_io::scene::{Factor, Scene};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use crate::check::ledger::Balance;
+use crate::check::ledger::{Balance, over};
 use crate::state::State;
 
 /// Rows of the time series unless asked otherwise.
@@ -25,11 +25,12 @@ pub struct Progress {
     pub(super) series_bytes: u64,
     pub(super) events_bytes: u64,
     pub(super) frame_times_s: Vec<f64>,
-    pub(super) largest_errors: [f64; 3],
+    /// Largest errors of energy, momentum and angular momentum so far: J, N s, N m s.
+    largest_errors: [f64; 3],
     /// Largest stable step when it was last looked for, s.
     pub(super) limit_s: f64,
-    /// Elastic energy when the ledger was last looked at, J.
-    pub(super) elastic_j: f64,
+    /// Largest strain of a bond at that time.
+    pub(super) limit_strain: f64,
     /// Since when the kinetic energy has been small against the elastic, s.
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
@@ -57,6 +58,18 @@ pub(super) fn next(state: &State, every_s: f64) -> u64 {
 
 fn first_after(time_s: f64, every_s: f64) -> u64 {
     ((time_s / every_s).floor() as u64).saturating_add(1)
+}
+
+/// When the last load or support has changed for the last time, s.
+fn last_change_s(state: &State) -> f64 {
+    let loads = state.loads.iter().map(|load| &load.factor);
+    let supports = state.supports.iter().map(|support| &support.factor);
+    let ends = loads.chain(supports).map(|factor| match factor {
+        Factor::One => 0.0,
+        Factor::Ramp { until_s } => *until_s,
+        Factor::Table(points) => points.last().map_or(0.0, |[time_s, _]| *time_s),
+    });
+    ends.fold(0.0, f64::max)
 }
 
 impl Rhythm {
@@ -129,19 +142,31 @@ impl Progress {
     }
 
     pub(super) fn note(&mut self, state: &State, balance: &Balance, rest: Option<f64>) {
+        let [momentum, angular_momentum] = balance.momentum_scales;
         let errors = [
-            balance.energy_error,
-            balance.momentum_error,
-            balance.angular_momentum_error,
+            balance.energy_error_j,
+            momentum * balance.momentum_error,
+            angular_momentum * balance.angular_momentum_error,
         ];
-        self.elastic_j = balance.elastic_j();
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }
         if let Some(share) = rest {
-            let calm = balance.kinetic_j <= share * balance.elastic_j();
+            let settled = state.time_s >= last_change_s(state);
+            let calm = settled && balance.kinetic_j <= share * balance.elastic_j();
             self.calm_since_s = calm.then(|| self.calm_since_s.unwrap_or(state.time_s));
         }
+    }
+
+    /// Largest errors so far of energy, momentum and angular momentum, over the largest energy and momenta until now.
+    pub(super) fn largest_errors(&self, balance: &Balance) -> [f64; 3] {
+        let [energy, momentum, angular_momentum] = self.largest_errors;
+        let [of_momentum, of_angular_momentum] = balance.momentum_scales;
+        [
+            over(energy, balance.energy_scale_j),
+            over(momentum, of_momentum),
+            over(angular_momentum, of_angular_momentum),
+        ]
     }
 
     /// Whether it has been calm during the last fifth of the run.

@@ -2,12 +2,15 @@
 
 use std::f64::consts::PI;
 
+use rayon::prelude::*;
+
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::answer;
 use crate::physics::number::{Triple, Turn};
 use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, ways};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::stages::motion::CHUNK;
 use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
@@ -25,6 +28,22 @@ pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrench
             wrenches,
         });
     });
+}
+
+/// Largest change of length over initial length of the bonds that are not broken.
+pub fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
+    let strain = |at: usize| {
+        if bonds.is_broken(at) {
+            return 0.0;
+        }
+        let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
+        ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs()
+    };
+    (0..bonds.len())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(strain)
+        .reduce(|| 0.0, f64::max)
 }
 
 /// The work on one share.

@@ -20,6 +20,8 @@ pub struct Break {
     pub cause: Cause,
     /// Elastic energy that it held, J.
     pub released_j: f64,
+    /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted until the break.
+    pub ends: [(u32, [f64; 6]); 2],
 }
 
 /// Breaks the bonds that the shares list, if they fail, and adds them to `broken`, in the order of the bonds.
@@ -91,5 +93,10 @@ fn remove(
         place_m: (0.5 * (a + b)).into(),
         cause,
         released_j: forces.energy.total(),
+        ends: [0, 1].map(|end| {
+            let [fx, fy, fz]: [f64; 3] = on_ends[end].into();
+            let [tx, ty, tz]: [f64; 3] = forces.torques[end].into();
+            (ends[end] as u32, [fx, fy, fz, tx, ty, tz])
+        }),
     }
 }

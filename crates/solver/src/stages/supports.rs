@@ -2,6 +2,7 @@
 
 use dem_io::scene::{Factor, Hold};
 
+use super::breakage::Break;
 use super::loads::factor_at;
 use crate::state::particles::{Motion, Particles};
 
@@ -23,8 +24,9 @@ pub struct Held {
     pub particle: u32,
     /// Velocity and spin before the kick. Length 6.
     pub before: [f64; 6],
-    /// What the support exerts, N and N m. Length 6.
-    pub reaction: [f64; 6],
+    /// What the support exerts in the half steps before and after the kick, N and N m: the first is that at the time of the poses; they differ
+    /// where a bond of the particle has just broken. Length 6 each.
+    pub reactions: [[f64; 6]; 2],
 }
 
 /// Notes how the held particles move before the kick.
@@ -37,14 +39,17 @@ pub fn remember(supports: &mut [SetSupport], motions: &[Motion]) {
 }
 
 /// Gives held freedoms the velocities that are prescribed for the drift from `time_s` to `time_s + time_step_s`, and notes the reactions
-/// that this takes in a kick of `kick_s`.
+/// that this takes in a kick that makes up for half of the step before and half of the one to come, `steps_s`. The bonds that are `broken` acted in
+/// the first half only.
 pub fn hold(
     supports: &mut [SetSupport],
     particles: &mut Particles,
+    broken: &[Break],
     time_s: f64,
-    time_step_s: f64,
-    kick_s: f64,
+    steps_s: [f64; 2],
 ) {
+    let [before_s, time_step_s] = steps_s;
+    let kick_s = 0.5 * (before_s + time_step_s);
     for SetSupport {
         holds,
         factor,
@@ -63,6 +68,7 @@ pub fn hold(
         });
         for held in held {
             let i = held.particle as usize;
+            let parted = of_broken(broken, held.particle);
             let motion = &mut particles.motions[i];
             let mass = 1.0 / particles.inverse_masses[i];
             let inertia = 1.0 / particles.inverse_inertias[i];
@@ -73,12 +79,30 @@ pub fn hold(
                     (&mut motion.spin_rad_s[k - 3], inertia)
                 };
                 if let Some(prescribed) = prescribed {
-                    held.reaction[k] = inert * (prescribed - *now) / kick_s;
+                    let impulse = inert * (prescribed - *now) + 0.5 * before_s * parted[k];
+                    let after = impulse / kick_s;
+                    held.reactions[0][k] = after - parted[k];
+                    held.reactions[1][k] = after;
                     *now = *prescribed;
                 }
             }
         }
     }
+}
+
+/// Force and torque that bonds exerted on a particle until they broke, N and N m.
+fn of_broken(broken: &[Break], particle: u32) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    for (_, on_end) in broken
+        .iter()
+        .flat_map(|b| &b.ends)
+        .filter(|(end, _)| *end == particle)
+    {
+        for (sum, on_end) in sum.iter_mut().zip(on_end) {
+            *sum += on_end;
+        }
+    }
+    sum
 }
 
 /// Velocity of a held freedom at the moment of a kick: what the part of the kick that belongs to the step before leaves of the change.
@@ -109,9 +133,9 @@ pub fn reactions_work_j(
                 };
                 let now = velocity_at_kick(held.before[k], after[k], steps_s);
                 let jump = |by: f64| 0.5 * by * by / per_inert;
-                let power = |velocity: f64| held.reaction[k] * velocity;
-                work[0] += 0.5 * steps_s[0] * power(held.before[k]) + jump(now - held.before[k]);
-                work[1] += 0.5 * steps_s[1] * power(after[k]) - jump(after[k] - now);
+                let [early, late] = held.reactions.map(|reaction| reaction[k]);
+                work[0] += 0.5 * steps_s[0] * early * held.before[k] + jump(now - held.before[k]);
+                work[1] += 0.5 * steps_s[1] * late * after[k] - jump(after[k] - now);
             }
         }
     }
