@@ -49,13 +49,11 @@ fn check<L: NormalLaw<f64> + Copy, R: RollingFriction<f64> + Copy>(law: L, rolli
     let steps = [16e-7, 8e-7, 4e-7, 2e-7, 1e-7];
     let errors = steps.map(|dt| missing(law, rolling, dt).0);
     let (_, lost) = missing(law, rolling, 1e-7);
-    println!("{name}: {errors:?} {lost:?}");
     // Each loss takes part.
     for lost in lost {
         assert!(lost > 1e-7, "{name}");
     }
     let order = (errors[0].abs() / errors[4].abs()).log2() / 4.0;
-    println!("{name}: order {order}");
     assert!(order > 1.8, "{name}: {order}");
 }
 

@@ -11,6 +11,7 @@ mod hertz;
 mod impact;
 mod keeping;
 mod loops;
+mod motion;
 mod relaxation;
 mod restitution;
 mod rolling;
