@@ -170,14 +170,28 @@ fn check(
     let left = on_a + on_b + scene.apart.cross(found.force_on_b);
     prop_assert!(left.square().sqrt() <= 1e-13 * normal.abs());
 
-    // Turned as a whole, the same but turned. Directions come out of differences of places and velocities, so to 1e-10.
+    // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and where sliding begins the damper's share is the root
+    // of a difference that may be rounding: half the digits.
+    let grip = law.grip(&met, scene.history.overlap_m);
+    let speed = met.velocity_m_s.square().sqrt();
+    let size = grip.elastic_n + grip.normal_damping_n_s_m * speed;
+    let force_off = size * (1e-8 + 1e-16 / met.overlap_m.abs());
+    let moment_off = force_off * met.radius_m;
+    let rolling_n_m_rad = 2.25 * grip.normal_n_m[1] * (0.1 * met.radius_m).powi(2);
+    let offs = [
+        force_off,
+        moment_off,
+        force_off / grip.tangential_n_m[1] + 1e-8 * scene.history.tangential_m.square().sqrt(),
+        moment_off / rolling_n_m_rad + 1e-8 * scene.history.rolling_rad.square().sqrt(),
+    ];
     let other = answer(law, rolling, &turned(scene, by));
-    for (before, after) in vectors(&found).into_iter().zip(vectors(&other)) {
+    let pairs = vectors(&found).into_iter().zip(vectors(&other));
+    for ((before, after), most) in pairs.zip(offs) {
         let wanted = by * Vector3::new(before.0, before.1, before.2);
         let off = (triple(wanted) - after).square().sqrt();
         prop_assert!(
-            off <= 1e-9 * (after.square().sqrt()) + 1e-15,
-            "{off:e} {after:?}"
+            met.overlap_m <= 0.0 || off <= most,
+            "{off:e} {most:e} {after:?}"
         );
     }
 
