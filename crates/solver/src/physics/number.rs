@@ -1,4 +1,4 @@
-//! Formulas that are worked out for one bond or for several at once are written for any [`Number`]: an `f64`, or one `f64` for each bond.
+//! Formulas that are worked out for one bond or contact or for several at once are written for any [`Number`]: an `f64`, or one `f64` for each of them.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -2,6 +2,9 @@
 
 use crate::physics::number::Number;
 
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;
+
 /// A number of each of `COUNT` bonds.
 pub(super) trait Lanes: Number {
     /// Proof that the processor can do it.

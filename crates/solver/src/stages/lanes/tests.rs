@@ -1,0 +1,172 @@
+//! Several at once give the same bits as one by one.
+
+use super::avx2::Lanes4;
+use super::{FOUR, Lanes};
+use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::linear::Linear;
+use crate::physics::contact::manner::Manner;
+use crate::physics::contact::relaxation::relaxed;
+use crate::physics::contact::rolling::{
+    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
+};
+use crate::physics::contact::touch::{Ball, Foot, Touch, touch, touch_at_wall};
+use crate::physics::contact::{History, Response, response};
+use crate::physics::number::Triple;
+use proptest::prelude::*;
+
+/// Columns that a contact is made of.
+const COLUMNS: usize = 40;
+const DT: f64 = 1e-6;
+
+/// Numbers of one contact or several, taken one after the other.
+struct Taken<'a, T: Lanes> {
+    proof: T::Proof,
+    columns: &'a [[f64; FOUR]],
+    first: usize,
+    next: usize,
+}
+
+impl<T: Lanes> Taken<'_, T> {
+    fn number(&mut self, scale: f64) -> T {
+        let number = T::load(self.proof, &self.columns[self.next], self.first);
+        self.next += 1;
+        number.times(scale)
+    }
+
+    fn triple(&mut self, scale: f64) -> Triple<T> {
+        Triple(self.number(scale), self.number(scale), self.number(scale))
+    }
+
+    fn ball(&mut self) -> Ball<T> {
+        Ball {
+            velocity_m_s: self.triple(1.0),
+            spin_rad_s: self.triple(50.0),
+            radius_m: self.number(0.001).plus(0.01),
+            inverse_mass_per_kg: self.number(10.0).plus(100.0),
+            inverse_inertia_per_kg_m2: self.number(1e5).plus(1e6),
+        }
+    }
+}
+
+fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; FOUR]>) {
+    let damping = &response.damping;
+    for Triple(x, y, z) in [
+        response.history.tangential_m,
+        response.history.rolling_rad,
+        response.force_on_b,
+        response.moment_on_b,
+        damping.normal_n,
+        damping.tangential_n,
+        damping.rolling_n_m,
+    ] {
+        to.extend([x, y, z].map(T::values));
+    }
+    let (energy, lost) = (&response.energy, &response.lost);
+    for number in [
+        response.history.overlap_m,
+        energy.normal,
+        energy.tangential,
+        energy.rolling,
+        lost.sliding,
+        lost.rolling,
+    ] {
+        to.push(number.values());
+    }
+}
+
+fn add<T: Lanes>(
+    (hertz, linear): (&HertzMindlin<T>, &Linear<T>),
+    rolling: &impl RollingFriction<T>,
+    touch: &Touch<T>,
+    history: &History<T>,
+    to: &mut Vec<[f64; FOUR]>,
+) {
+    written(&response(hertz, rolling, touch, history, DT), to);
+    written(&response(linear, rolling, touch, history, DT), to);
+}
+
+/// All that contact laws say of the contacts from `first` on.
+fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; FOUR]], first: usize) -> Vec<[f64; FOUR]> {
+    let mut taken = Taken::<T> {
+        proof,
+        columns,
+        first,
+        next: 0,
+    };
+    let (a, b) = (taken.ball(), taken.ball());
+    let Triple(x, y, z) = taken.triple(0.2);
+    let normal = Triple(x, y, z.plus(1.0));
+    let normal = normal * normal.square().root().inverse();
+    let overlap = taken.number(1e-5);
+    let history = History {
+        tangential_m: taken.triple(1e-6),
+        rolling_rad: taken.triple(1e-4),
+        overlap_m: taken.number(1e-5).larger(overlap.times(0.0)),
+    };
+    let friction = taken.number(0.2).plus(0.3);
+    let zero = friction.times(0.0);
+    let manner = Manner {
+        damping_ratio: friction,
+        tangential_damping_ratio: friction,
+        friction,
+        least_n: zero,
+        kept: [zero, zero.plus(1.0)],
+    };
+    let hertz = HertzMindlin {
+        young_modulus_pa: friction.times(1e9),
+        shear_modulus_pa: friction.times(5e8),
+        manner,
+    };
+    let linear = Linear {
+        normal_n_m: friction.times(1e6),
+        tangential_n_m: friction.times(8e5),
+        manner,
+    };
+    let apart = normal * (a.radius_m + b.radius_m - overlap);
+    let foot = Foot {
+        normal,
+        normal_before: normal,
+        distance_m: b.radius_m - overlap,
+        velocity_m_s: a.velocity_m_s,
+        spin_rad_s: a.spin_rad_s,
+    };
+    let mut found = Vec::new();
+    for touch in [touch(apart, [a, b], DT), touch_at_wall(&foot, b, DT)] {
+        let spring = ElasticPlastic {
+            friction,
+            damping_ratio: friction,
+        };
+        let laws = (&hertz, &linear);
+        add(laws, &NoRolling, &touch, &history, &mut found);
+        add(
+            laws,
+            &ConstantMoment { friction },
+            &touch,
+            &history,
+            &mut found,
+        );
+        add(laws, &spring, &touch, &history, &mut found);
+    }
+    let relaxed = relaxed(overlap, history.overlap_m, friction.times(1e-6));
+    found.extend([relaxed.overlap_m, relaxed.origin_m].map(T::values));
+    found
+}
+
+proptest! {
+    #[test]
+    fn four_contacts_at_once_give_the_bits_of_one_by_one(
+        columns in prop::collection::vec(prop::array::uniform4(-1.0..1.0_f64), COLUMNS),
+    ) {
+        let Some(simd) = pulp::x86::V3::try_new() else {
+            return Ok(());
+        };
+        let at_once = answers::<Lanes4>(simd, &columns, 0);
+        for lane in 0..FOUR {
+            let alone = answers::<f64>((), &columns, lane);
+            prop_assert_eq!(at_once.len(), alone.len());
+            for (four, one) in at_once.iter().zip(&alone) {
+                prop_assert_eq!(four[lane].to_bits(), one[0].to_bits());
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Pairs that are moved as one body, and walls.
+
+use super::keeping::{DT, SPRING, hertz, linear, triple, vectors};
+use super::world::{Body, Z, ZERO};
+use dem_run::physics::contact::touch::{Ball, Foot, touch, touch_at_wall};
+use dem_run::physics::contact::{History, NormalLaw, response};
+use dem_run::physics::number::Triple;
+use nalgebra::{Rotation3, Vector3};
+use std::f64::consts::TAU;
+
+/// A pair that is turned as one body in so many steps a turn: how far its force leaves the pair, over the force.
+fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 {
+    let (radius, overlap) = (0.01, 1e-4);
+    let axis = axis.normalize();
+    let dt = 1.0 / f64::from(steps);
+    let spin = triple(axis * TAU);
+    let body = Body::sphere(radius, 2500.0, ZERO).ball();
+    let apart = Vector3::new(0.0, 0.0, 2.0 * radius - overlap);
+    let spring = Vector3::new(1e-5, 0.5e-5, 0.0);
+    let mut history = History {
+        tangential_m: triple(spring),
+        rolling_rad: Triple(2e-4, -1e-4, 0.0),
+        overlap_m: overlap,
+    };
+    let (mut before, mut first, mut worst) = (apart, None, 0.0_f64);
+    for step in 0..=steps {
+        let by = Rotation3::new(axis * (TAU * f64::from(step) * dt));
+        let now = by * apart;
+        let moved = if step == 0 {
+            Vector3::zeros()
+        } else {
+            now - before
+        };
+        let dt = if step == 0 { 0.0 } else { dt };
+        let velocity = if step == 0 { ZERO } else { triple(moved / dt) };
+        let balls = [ZERO, velocity].map(|velocity_m_s| Ball {
+            velocity_m_s,
+            spin_rad_s: if step == 0 { ZERO } else { spin },
+            ..body
+        });
+        let met = touch(triple(now), balls, dt);
+        let found = response(law, &SPRING, &met, &history, dt);
+        history = found.history;
+        let [force, moment] = [found.force_on_b, found.moment_on_b]
+            .map(|v| by.inverse() * Vector3::new(v.0, v.1, v.2));
+        let (first_force, first_moment) = *first.get_or_insert((force, moment));
+        worst = worst
+            .max((force - first_force).norm() / first_force.norm())
+            .max((moment - first_moment).norm() / first_moment.norm());
+        before = now;
+    }
+    worst
+}
+
+/// Turning of the whole changes no force. What is left is that of leapfrog, for which a turn by an angle moves the ends by the chord: at most angle^2 / 24
+/// of their distance for each radian, against a spring that is stretched by 1.1e-5 m.
+#[test]
+fn turning_of_the_whole_changes_no_force() {
+    for axis in [Vector3::z(), Vector3::x(), Vector3::new(1.0, -2.0, 1.5)] {
+        for steps in [1000, 10000] {
+            let angle = TAU / f64::from(steps);
+            let bound = TAU * 0.02 * angle * angle / 24.0 / 1.1e-5;
+            for found in [
+                whole_turn(&hertz(), axis, steps),
+                whole_turn(&linear(), axis, steps),
+            ] {
+                assert!(found < bound, "{axis:?} {steps}: {found:e} above {bound:e}");
+            }
+        }
+    }
+}
+
+/// A wall is the limit of a large held sphere, and what moves along with a wall feels no more than on one at rest.
+#[test]
+fn a_wall_is_an_end_of_endless_mass_and_radius() {
+    let ball = Ball {
+        velocity_m_s: Triple(0.3, -0.1, -0.2),
+        spin_rad_s: Triple(4.0, 5.0, 6.0),
+        ..Body::sphere(0.01, 2500.0, ZERO).ball()
+    };
+    let foot = Foot {
+        normal: Z,
+        normal_before: Z,
+        distance_m: 0.00999,
+        velocity_m_s: ZERO,
+        spin_rad_s: ZERO,
+    };
+    let history = History {
+        tangential_m: Triple(1e-6, 2e-6, 0.0),
+        rolling_rad: Triple(1e-5, -1e-5, 0.0),
+        overlap_m: 0.9e-5,
+    };
+    let at_wall = response(
+        &hertz(),
+        &SPRING,
+        &touch_at_wall(&foot, ball, DT),
+        &history,
+        DT,
+    );
+    // Against a sphere of this radius, held, whose surface is a plane to rounding.
+    let radius = 1e6;
+    let huge = Ball {
+        velocity_m_s: ZERO,
+        spin_rad_s: ZERO,
+        radius_m: radius,
+        inverse_mass_per_kg: 0.0,
+        inverse_inertia_per_kg_m2: 0.0,
+    };
+    let met = touch(Triple(0.0, 0.0, radius + 0.00999), [huge, ball], DT);
+    let at_sphere = response(&hertz(), &SPRING, &met, &history, DT);
+    for (wall, sphere) in vectors(&at_wall).into_iter().zip(vectors(&at_sphere)) {
+        let off = (wall - sphere).square().sqrt();
+        // The huge sphere's distance has an ulp of 1e-10 m, of an overlap of 1e-5 m.
+        assert!(off <= 3e-5 * wall.square().sqrt(), "{wall:?} {sphere:?}");
+    }
+    // Carried along by a moving wall, the same to rounding.
+    let drift = Triple(1.0, 2.0, 3.0);
+    let moving = touch_at_wall(
+        &Foot {
+            velocity_m_s: drift,
+            ..foot
+        },
+        Ball {
+            velocity_m_s: ball.velocity_m_s + drift,
+            ..ball
+        },
+        DT,
+    );
+    let carried = response(&hertz(), &SPRING, &moving, &history, DT);
+    for (rest, carried) in vectors(&at_wall).into_iter().zip(vectors(&carried)) {
+        assert!((rest - carried).square().sqrt() <= 1e-12 * rest.square().sqrt());
+    }
+}
