@@ -181,22 +181,32 @@ impl Mesh {
             found.extend(nearest);
         }
         for touch in &mut found[from..] {
-            touch.feature = self.feature(touch);
+            self.name_feature(touch, &c, NEAR * same_m);
         }
+    }
+
+    /// Gives a touch its feature. One within a flat part is at the foot on its plane, whichever triangle told of it.
+    fn name_feature(&self, touch: &mut Touch, c: &Vector3<f64>, near_m: f64) {
+        let triangle = &self.triangles[(touch.feature / REGIONS) as usize];
+        let feature = self.feature(touch);
+        let foot = triangle.over(c, feature);
+        if feature < self.content.flat_parts && are_near(touch, &foot, near_m) {
+            *touch = foot;
+        }
+        touch.feature = feature;
     }
 
     /// The nearest point of triangle `t`. Until the touches are sorted out, a touch has `REGIONS * triangle + region` for its feature.
     fn nearest(&self, t: u32, c: &Vector3<f64>) -> Touch {
         let triangle = &self.triangles[t as usize];
         let (point, region) = triangle.nearest(c);
-        let from_plane = (c - triangle.corners[0]).dot(&triangle.normal);
-        let inward = -triangle.normal * 1.0_f64.copysign(from_plane);
-        let mut touch = Touch::towards(*c, point, inward, REGIONS * t + region);
+        let feature = REGIONS * t + region;
+        let foot = triangle.over(c, feature);
         if region == 0 {
-            touch.normal = inward.into();
-            touch.distance_m = from_plane.abs();
+            foot
+        } else {
+            Touch::towards(*c, point, foot.normal.into(), feature)
         }
-        touch
     }
 
     /// Whether the point of touch `i` lies on a triangle that has a nearer one.

@@ -106,7 +106,11 @@ proptest! {
             let found = touches(&Shape::Mesh(surface), centre, reach);
             prop_assert_eq!(found.len(), wanted.len(), "{:?} {:?}", found, wanted);
             for (found, wanted) in found.iter().zip(&wanted) {
-                assert_same(found, wanted, 1e-12, "box");
+                // On an edge, and next to a vertex of its tiles within the tolerance, the point may be off along it.
+                let is_on_face = wanted.normal.iter().filter(|x| **x != 0.0).count() == 1;
+                let error = if is_on_face { 1e-12 } else { 5e-8 * reach };
+                assert_same(found, wanted, error, "box");
+                prop_assert!((found.distance_m - wanted.distance_m).abs() < 1e-12);
             }
         }
     }

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::super::Touch;
+
 /// Where on a triangle a point lies: 0 its face; 1, 2, 3 the edges from its first, second, third corner; 4, 5, 6 its corners.
 pub(super) const REGIONS: u32 = 7;
 
@@ -53,6 +55,18 @@ impl Triangle {
             return (b + to_c / (to_c + to_b) * (c - b), 2);
         }
         (p - from_a.dot(&self.normal) * self.normal, 0)
+    }
+
+    /// At the foot of `c` on its plane.
+    pub(super) fn over(&self, c: &Vector3<f64>, feature: u32) -> Touch {
+        let height = (c - self.corners[0]).dot(&self.normal);
+        let inward = -self.normal * 1.0_f64.copysign(height);
+        Touch {
+            point: (c + height.abs() * inward).into(),
+            normal: inward.into(),
+            distance_m: height.abs(),
+            feature,
+        }
     }
 
     /// Whether `p` lies on it, within a distance.
