@@ -4,6 +4,8 @@
 //! edges and corners too, and in a concave corner each side is touched. Triangles that overlap, or share no vertices where they meet, are no exception.
 //!
 //! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like one face, not like several, and a thin plate with one side.
+//!
+//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex than 1e-7 of the reach, a point may be off by as much.
 
 mod features;
 mod tree;
@@ -21,8 +23,8 @@ use triangle::{REGIONS, Triangle};
 /// Two points are one within this share of the mesh's diagonal, which is what rounding costs, and that share of the reach, which is what thin triangles cost.
 const SAME: [f64; 2] = [1e-12, 1e-9];
 
-/// A point is beaten by one farther from it than so many times that, and one with one nearer than so many times that: around a corner, a row of triangles may each
-/// have a point that does not beat the next.
+/// In these lengths: how far a nearer point must be away to beat another one, and within what two that are not beaten are one. The second is larger, because
+/// around a vertex there may be a row of triangles of which none beats the next.
 const FAR: f64 = 4.0;
 const NEAR: f64 = 32.0;
 

@@ -19,7 +19,7 @@ impl Plane {
     /// Numbers that are not finite, or a normal without direction.
     pub fn new(point_m: [f64; 3], normal: [f64; 3]) -> Result<Self> {
         let length = Vector3::from(normal).norm();
-        if !are_finite(&point_m) || !(length > 0.0 && length.is_finite()) {
+        if !(are_finite(&point_m) && length > 0.0 && length.is_finite()) {
             return Err(Diagnostic::input(
                 "",
                 format!("a plane through {point_m:?} with the normal {normal:?} has no place"),

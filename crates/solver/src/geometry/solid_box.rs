@@ -63,11 +63,8 @@ impl SolidBox {
     fn touch_from_inside(&self, centre: [f64; 3]) -> Touch {
         let mut least = f64::INFINITY;
         let mut out = (0, 0.0);
-        for k in 0..3 {
-            for (depth, sign) in [
-                (centre[k] - self.low[k], -1.0),
-                (self.high[k] - centre[k], 1.0),
-            ] {
+        for (k, x) in centre.into_iter().enumerate() {
+            for (depth, sign) in [(x - self.low[k], -1.0), (self.high[k] - x, 1.0)] {
                 if depth < least {
                     least = depth;
                     out = (k, sign);

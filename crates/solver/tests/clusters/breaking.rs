@@ -147,13 +147,12 @@ proptest! {
         let mut left: Vec<u32> = (0..bonds.len() as u32).collect();
         let mut order = order.into_iter();
         for (time, count) in steps.into_iter().enumerate() {
-            let broken: Vec<u32> = order
-                .by_ref()
-                .take(count)
-                .filter_map(|index| {
-                    (!left.is_empty()).then(|| left.swap_remove(index.index(left.len())))
-                })
-                .collect();
+            let mut broken = Vec::new();
+            for index in order.by_ref().take(count) {
+                if !left.is_empty() {
+                    broken.push(left.swap_remove(index.index(left.len())));
+                }
+            }
             break_and_compare(&mut clusters, &mut bonds, &broken, 1.0 + time as f64);
             let resumed = Clusters::resumed(clusters.of_particle.clone(), clusters.history.clone(), &bonds).unwrap();
             for id in 0..clusters.history.len() as u32 {

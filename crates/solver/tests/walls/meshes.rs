@@ -267,6 +267,47 @@ fn a_thin_plate_is_touched_on_one_side() {
     assert!((only(&plate, [0.4, 0.4, 0.2], 0.5).distance_m - 0.19).abs() < 1e-15);
 }
 
+/// A plate without the middle one of its nine squares. Its rim has two edges at every corner, in one flat part.
+#[test]
+fn over_a_hole_the_rim_is_touched() {
+    let mut surface = (Vec::new(), Vec::new());
+    add_tiles(&mut surface, 3, |i, j| [f64::from(i), f64::from(j), 0.0]);
+    surface.1.drain(8..10);
+    let plate = mesh(&surface);
+    let content = plate.content;
+    assert_eq!(
+        (content.flat_parts, content.straight_edges, content.corners),
+        (1, 8, 8)
+    );
+    let shape = Shape::Mesh(plate);
+    let count = |p: [f64; 3], reach: f64| touches(&shape, p, reach).len();
+    assert_eq!(count([1.5, 1.5, 0.1], 0.52), 4);
+    assert_eq!(count([1.5, 1.5, 0.1], 0.5), 0);
+    assert_eq!(count([1.2, 1.3, 0.1], 0.35), 2);
+    assert_eq!(count([1.0, 1.5, 0.1], 0.35), 1);
+    assert_eq!(count([1.0, 1.0, 0.1], 0.35), 1);
+    assert_eq!(count([0.9, 0.9, 0.1], 0.35), 1);
+    assert_eq!(count([3.1, 3.1, 0.1], 0.35), 1);
+    let rolling: Vec<u32> = (0..300)
+        .map(|i| only(&shape, [1.2, 1.3 + 0.4 * f64::from(i) / 299.0, 0.5], 0.54).feature)
+        .collect();
+    assert!(rolling.iter().all(|feature| *feature == rolling[0]));
+}
+
+/// A plate that a modeller gave two sides.
+#[test]
+fn facets_that_stand_there_both_ways_are_touched_once() {
+    let mut surface = tiled_plane(&[0.0]);
+    let turned: Vec<[u32; 3]> = surface.1.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    surface.1.extend(turned);
+    let shape = Shape::Mesh(mesh(&surface));
+    for x in [-0.5, 0.01, 0.125, 1.01] {
+        for z in [-0.1, 0.1] {
+            only(&shape, [x, 0.3, z], 0.2);
+        }
+    }
+}
+
 #[test]
 fn meshes_without_sense_are_refused_and_triangles_without_area_dropped() {
     let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.0, 0.0]];
