@@ -232,6 +232,23 @@ fn single_precision_costs_no_second_touch() {
     }
 }
 
+/// A rim that rounding has bent inwards in the middle: both halves are nearer to a sphere in front of it than the vertex between them.
+#[test]
+fn a_bent_straight_edge_is_touched_once() {
+    let vertices = [
+        [0.0, 0.0, 0.0],
+        [1.0, -1e-7, 0.0],
+        [2.0, 0.0, 0.0],
+        [1.0, -2.0, 0.0],
+    ];
+    let plate = Shape::Mesh(Mesh::new(&vertices, &[[0, 1, 3], [1, 2, 3]]).unwrap());
+    for x in [0.5, 1.0, 1.5] {
+        only(&plate, [x, 0.3, 0.0], 0.4);
+    }
+    let feature = |x| only(&plate, [x, 0.3, 0.0], 0.4).feature;
+    assert_eq!(feature(0.5), feature(1.5));
+}
+
 /// A drum of 90 flat strips, rolled around in: one touch, and never without.
 #[test]
 fn a_round_hollow_pushes_once() {
