@@ -14,6 +14,7 @@ mod holes;
 mod intersections;
 mod mesh;
 mod nesting;
+pub mod open;
 mod rays;
 mod refusals;
 mod sets;
@@ -25,6 +26,7 @@ mod warnings;
 mod weld;
 
 pub use build::{ReadSettings, surface_from_stl};
+pub use open::{OpenSurface, read_open_surface};
 
 use serde::Serialize;
 

@@ -3,6 +3,9 @@
 pub mod check;
 pub mod cli;
 pub mod clock;
+pub mod clusters;
+mod disjoint;
+pub mod geometry;
 pub mod interrupt;
 pub mod measure;
 pub mod output;

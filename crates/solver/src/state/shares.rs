@@ -95,7 +95,7 @@ pub fn divide_anew(bonds: &Bonds, shares: &mut [Share]) {
 }
 
 /// For each particle the first of the bonds that it is the first end of; and at the end the number of bonds. Length particles + 1.
-fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
+pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     let mut first_bond = vec![0_usize; particles + 1];
     for &[a, _] in &bonds.ends {
         first_bond[a as usize + 1] += 1;

@@ -1,0 +1,128 @@
+//! Facets -> welded triangles of a surface that need not enclose anything: a plate, a chute, a hopper without a lid.
+
+use super::frame::Frame;
+use super::mesh::{Edges, Mesh};
+use super::vector::{bounds, distance, length, normal};
+use super::{t_junctions, weld};
+use crate::hash::fnv1a;
+use crate::stl::read_facets;
+use crate::{Diagnostic, Result};
+
+/// A triangle lower than this share of the diagonal has no area.
+const NO_HEIGHT: f64 = 1e-12;
+
+/// A triangulated surface, open or closed, as it stands in the file: neither wound nor closed nor checked for crossings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenSurface {
+    /// Where it came from, for messages: file name or "standard input".
+    pub source: String,
+    /// Hash of the bytes it came from (FNV-1a, 64 bit).
+    pub source_hash: u64,
+    /// Corners, m.
+    pub vertices_m: Vec<[f64; 3]>,
+    /// Three indices into `vertices_m` each.
+    pub triangles: Vec<[u32; 3]>,
+    /// Facets in the file.
+    pub facets_read: usize,
+    /// Corners that were moved onto another one within 3e-5 of the diagonal, because that closed a gap.
+    pub welded_vertices: usize,
+    /// Edges that were split on one side only, and now are on both.
+    pub t_junctions: usize,
+    /// Facets without area, dropped.
+    pub degenerate_facets: usize,
+    /// Facets that stood there already (either way round), dropped.
+    pub duplicate_facets: usize,
+    /// One sentence for each thing that is odd about the file but harmless.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the STL in `bytes`, whose unit is `unit_m` metres, as a surface that may be open. `source` names it in messages.
+///
+/// Equal corners become one, and near ones where that closes a gap.
+///
+/// # Errors
+/// A unit that is no positive number, a file that is no whole STL (see [`read_facets`]), a size outside all reason, or facets of which none has an area.
+pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<OpenSurface> {
+    read(bytes, unit_m)
+        .map(|surface| OpenSurface {
+            source: source.to_owned(),
+            ..surface
+        })
+        .map_err(|error| error.within(source))
+}
+
+fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
+    if !(unit_m > 0.0 && unit_m.is_finite()) {
+        return Err(Diagnostic::input(
+            "",
+            format!("a unit of the file is {unit_m} m"),
+            "give a positive unit",
+        ));
+    }
+    let file = read_facets(bytes)?;
+    let facets_read = file.corners.len();
+    let frame = Frame::around(&file.corners, unit_m)?;
+    let mut mesh = weld::equal_corners(&frame.to_local(file.corners));
+    let (min, max) = bounds(mesh.vertices.iter().copied());
+    let diagonal = distance(min, max);
+
+    let mut dropped = drop_superfluous(&mut mesh, diagonal);
+    let edges = Edges::of(&mesh);
+    let welded = weld::near_vertices(&mut mesh, &edges, diagonal);
+    let t_junctions = t_junctions::split(&mut mesh, weld::LARGEST_TOLERANCE * diagonal);
+    let later = drop_superfluous(&mut mesh, diagonal);
+    dropped = [dropped[0] + later[0], dropped[1] + later[1]];
+    if mesh.triangles.is_empty() {
+        return Err(Diagnostic::input(
+            "",
+            format!("none of the {facets_read} facets has an area"),
+            "export the shape again",
+        ));
+    }
+    mesh.order_vertices();
+    Ok(OpenSurface {
+        source: String::new(),
+        source_hash: fnv1a(bytes),
+        vertices_m: mesh
+            .vertices
+            .iter()
+            .map(|v| frame.in_file(*v).map(|x| x * unit_m))
+            .collect(),
+        triangles: mesh.triangles,
+        facets_read,
+        welded_vertices: welded.map_or(0, |w| w.vertices_gone),
+        t_junctions,
+        degenerate_facets: dropped[0],
+        duplicate_facets: dropped[1],
+        warnings: file.warnings,
+    })
+}
+
+/// Drops triangles without area and all but one of equal ones, and sorts the rest. How many of each.
+///
+/// Not the rule for solids, which drops both of a pair that stands there both ways round: here such a pair is a plate.
+fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
+    let all = mesh.triangles.len();
+    let mut kept: Vec<([u32; 3], [u32; 3])> = (0..all as u32)
+        .filter(|t| has_area(mesh, *t, diagonal))
+        .map(|t| {
+            let triangle = mesh.triangles[t as usize];
+            let mut sorted = triangle;
+            sorted.sort_unstable();
+            (sorted, super::mesh::smallest_first(triangle))
+        })
+        .collect();
+    let with_area = kept.len();
+    kept.sort_unstable();
+    kept.dedup_by_key(|(sorted, _)| *sorted);
+    mesh.triangles = kept.into_iter().map(|(_, triangle)| triangle).collect();
+    [all - with_area, with_area - mesh.triangles.len()]
+}
+
+fn has_area(mesh: &Mesh, triangle: u32, diagonal: f64) -> bool {
+    let [a, b, c] = mesh.triangles[triangle as usize];
+    let corners = mesh.corners(triangle);
+    let [p, q, r] = corners;
+    let longest = distance(p, q).max(distance(q, r)).max(distance(r, p));
+    a != b && b != c && c != a && length(normal(corners)) > NO_HEIGHT * diagonal * longest
+}

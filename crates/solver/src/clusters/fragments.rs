@@ -1,0 +1,141 @@
+//! What clusters weigh, where they are and how they move.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
+
+use super::Clusters;
+use crate::state::particles::{Motion, Particles};
+
+/// A cluster as one body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Fragment {
+    /// Its number in [`Clusters::history`].
+    pub id: u32,
+    /// The cluster that it broke off.
+    pub parent: Option<u32>,
+    /// Number of its particles.
+    pub particles: u32,
+    /// Sum over its particles, kg.
+    pub mass_kg: f64,
+    /// Centre of mass, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// Of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// Of the rigid body with the same angular momentum about the centre, rad/s; the spin of a single sphere. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// Angular momentum about the centre of mass, spins included, kg m2/s. Length 3.
+    pub angular_momentum_kg_m2_s: [f64; 3],
+    /// Sum of what acts on its particles, N: bonds within it cancel. Length 3.
+    pub force_n: [f64; 3],
+    /// Diameter of the sphere with the volume of its particles, where overlaps count twice, m.
+    pub size_m: f64,
+    /// Diagonal of the box around its spheres, along the axes of space, m.
+    pub extent_m: f64,
+}
+
+/// All clusters that are whole, in the order of their numbers. `motions` may be those of the particles or others for the same moment as the poses.
+pub fn fragments(clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Vec<Fragment> {
+    clusters
+        .living()
+        .map(|id| fragment(id, clusters, particles, motions))
+        .collect()
+}
+
+fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Fragment {
+    let members = clusters.members(id);
+    let place = |i: u32| particles.poses[i as usize].place();
+    let mass = |i: u32| 1.0 / particles.inverse_masses[i as usize];
+    let velocity = |i: u32| Vector3::from(motions[i as usize].velocity_m_s);
+
+    // Relative to one of them, so that a place far from the origin costs no digits.
+    let origin = members.first().map_or(Vector3::zeros(), |i| place(*i));
+    let mut mass_kg = 0.0;
+    let mut centre = Vector3::zeros();
+    let mut momentum = Vector3::zeros();
+    let mut force = Vector3::zeros();
+    let mut cubes = 0.0;
+    let mut low = Vector3::repeat(f64::INFINITY);
+    let mut high = Vector3::repeat(f64::NEG_INFINITY);
+    for &i in members {
+        let radius = particles.radii_m[i as usize];
+        mass_kg += mass(i);
+        centre += mass(i) * (place(i) - origin);
+        momentum += mass(i) * velocity(i);
+        let [x, y, z, _] = particles.wrenches[i as usize].force_n;
+        force += Vector3::new(x, y, z);
+        cubes += radius.powi(3);
+        low = low.inf(&place(i).add_scalar(-radius));
+        high = high.sup(&place(i).add_scalar(radius));
+    }
+    let centre = origin + centre / mass_kg;
+    let mean_velocity = momentum / mass_kg;
+
+    let mut inertia = Matrix3::zeros();
+    let mut angular_momentum = Vector3::zeros();
+    for &i in members {
+        let own = 1.0 / particles.inverse_inertias[i as usize];
+        let arm = place(i) - centre;
+        let spin = Vector3::from(motions[i as usize].spin_rad_s);
+        angular_momentum += mass(i) * arm.cross(&(velocity(i) - mean_velocity)) + own * spin;
+        inertia += Matrix3::from_diagonal_element(own + mass(i) * arm.norm_squared())
+            - mass(i) * arm * arm.transpose();
+    }
+    let angular_velocity = match members {
+        [one] => motions[*one as usize].spin_rad_s.into(),
+        _ => inertia
+            .cholesky()
+            .map_or(Vector3::zeros(), |c| c.solve(&angular_momentum)),
+    };
+    Fragment {
+        id,
+        parent: clusters.history[id as usize].parent,
+        particles: members.len() as u32,
+        mass_kg,
+        centre_m: centre.into(),
+        velocity_m_s: mean_velocity.into(),
+        angular_velocity_rad_s: angular_velocity.into(),
+        angular_momentum_kg_m2_s: angular_momentum.into(),
+        force_n: force.into(),
+        size_m: 2.0 * cubes.cbrt(),
+        extent_m: (high - low).norm(),
+    }
+}
+
+/// Share of all mass that the heaviest fragment has; 0 for none.
+pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
+    let total: f64 = fragments.iter().map(|f| f.mass_kg).sum();
+    let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
+    if total > 0.0 { largest / total } else { 0.0 }
+}
+
+/// A point of a size distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Passing {
+    /// Size of a fragment, m.
+    pub size_m: f64,
+    /// Share of all mass in fragments of this size and smaller ones.
+    pub mass_fraction: f64,
+}
+
+/// The cumulative size distribution by mass: one point for each size that there is, from the smallest, up to a mass fraction of 1.
+pub fn size_distribution(fragments: &[Fragment]) -> Vec<Passing> {
+    let mut sorted: Vec<&Fragment> = fragments.iter().collect();
+    sorted.sort_by(|a, b| a.size_m.total_cmp(&b.size_m));
+    let mut distribution: Vec<Passing> = Vec::new();
+    let mut sum = 0.0;
+    for fragment in sorted {
+        sum += fragment.mass_kg;
+        let point = Passing {
+            size_m: fragment.size_m,
+            mass_fraction: sum,
+        };
+        match distribution.last_mut() {
+            Some(last) if last.size_m == point.size_m => *last = point,
+            _ => distribution.push(point),
+        }
+    }
+    for point in &mut distribution {
+        point.mass_fraction /= sum;
+    }
+    distribution
+}

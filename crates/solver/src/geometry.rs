@@ -1,0 +1,159 @@
+//! Where a sphere touches a wall: plain geometry in the wall's own frame, m.
+//!
+//! A touch is a point of the wall that is nearer to the centre than all wall around it. A flat or convex wall has one; in a concave corner each side has one.
+//!
+//! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A [`Mesh`] is a surface with two sides, open or closed: it
+//! pushes towards the side on which the centre is, and a sphere whose centre has passed through is pushed on.
+
+pub mod cylinder;
+pub mod frame;
+pub mod mesh;
+pub mod plane;
+pub mod solid_box;
+
+use nalgebra::Vector3;
+
+pub use cylinder::Cylinder;
+pub use frame::Frame;
+pub use mesh::Mesh;
+pub use plane::Plane;
+pub use solid_box::SolidBox;
+
+/// A place where a sphere may touch a wall. `point = centre + distance_m * normal`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Nearest point of the wall's surface, m. Length 3.
+    pub point: [f64; 3],
+    /// Unit vector into the wall: from the centre towards the point, or away from it where the centre is inside a solid. Length 3.
+    pub normal: [f64; 3],
+    /// From the centre to the point, m; negative where the centre is inside a solid.
+    pub distance_m: f64,
+    /// Which flat part, straight edge, corner, ... of the wall: stays the same while a sphere slides over it. Its meaning is that of the shape.
+    pub feature: u32,
+}
+
+/// Two points nearer than this are one: a square of it is still a number.
+const SMALLEST_M: f64 = 1e-100;
+
+impl Touch {
+    /// From the centre `c` to the `point`; with the normal `otherwise` where they are one.
+    fn towards(
+        c: Vector3<f64>,
+        point: Vector3<f64>,
+        otherwise: Vector3<f64>,
+        feature: u32,
+    ) -> Self {
+        let apart = point - c;
+        let distance_m = apart.norm();
+        let normal = if distance_m > SMALLEST_M {
+            apart / distance_m
+        } else {
+            otherwise
+        };
+        Self {
+            point: point.into(),
+            normal: normal.into(),
+            distance_m,
+            feature,
+        }
+    }
+
+    /// With the centre `c` on or under the surface, whose normal out of the wall is `outward`.
+    fn under(c: Vector3<f64>, outward: Vector3<f64>, depth_m: f64, feature: u32) -> Self {
+        Self {
+            point: (c + depth_m * outward).into(),
+            normal: (-outward).into(),
+            distance_m: -depth_m,
+            feature,
+        }
+    }
+}
+
+/// A box with sides along the axes, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates; may be infinite. Length 3.
+    pub low: [f64; 3],
+    /// Largest coordinates; may be infinite. Length 3.
+    pub high: [f64; 3],
+}
+
+impl Bounds {
+    /// No point at all.
+    pub const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    /// The smallest box around these points.
+    pub fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, point| {
+            bounds.with(&Self {
+                low: point,
+                high: point,
+            })
+        })
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|k| self.low[k].min(other.low[k])),
+            high: [0, 1, 2].map(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    /// Whether a point lies within `reach` of the box, along each axis.
+    pub fn is_near(&self, point: &[f64; 3], reach: f64) -> bool {
+        (0..3).all(|k| point[k] >= self.low[k] - reach && point[k] <= self.high[k] + reach)
+    }
+
+    /// Length of the diagonal, m.
+    pub fn diagonal_m(&self) -> f64 {
+        (Vector3::from(self.high) - Vector3::from(self.low)).norm()
+    }
+}
+
+/// The shape of a wall.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Half of space.
+    Plane(Plane),
+    /// A solid box.
+    Box(SolidBox),
+    /// A solid cylinder.
+    Cylinder(Cylinder),
+    /// A triangulated surface.
+    Mesh(Mesh),
+}
+
+impl Shape {
+    /// Adds all places where the wall is nearer than `reach_m` to `centre`, each once. Equal input gives equal order.
+    pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
+        let touch = match self {
+            Self::Plane(plane) => plane.touch(centre),
+            Self::Box(solid) => solid.touch(centre),
+            Self::Cylinder(cylinder) => cylinder.touch(centre),
+            Self::Mesh(mesh) => return mesh.touches(centre, reach_m, found),
+        };
+        if touch.distance_m < reach_m {
+            found.push(touch);
+        }
+    }
+
+    /// The box around it, m. Infinite for a plane.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Plane(plane) => plane.bounds(),
+            Self::Box(solid) => solid.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
+            Self::Mesh(mesh) => mesh.bounds(),
+        }
+    }
+}
+
+/// Whether all numbers are finite.
+fn are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,287 @@
+//! A triangulated surface.
+//!
+//! A touch is a point of the surface that is the nearest one of every triangle on which it lies. So a tiled plane is a plane, a mesh of a box is a box, over its
+//! edges and corners too, and in a concave corner each side is touched. Triangles that overlap, or share no vertices where they meet, are no exception.
+//!
+//! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like one face, not like several, and a thin plate with one side.
+//!
+//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex than 1e-7 of the reach, a point may be off by as much.
+
+mod features;
+mod tree;
+mod triangle;
+
+use dem_io::surface::OpenSurface;
+use dem_io::{Diagnostic, Result};
+use nalgebra::Vector3;
+
+use super::{Bounds, Touch, are_finite};
+use features::features;
+use tree::Tree;
+use triangle::{REGIONS, Triangle};
+
+/// Two points are one within this share of the mesh's diagonal, which is what rounding costs, and that share of the reach, which is what thin triangles cost.
+const SAME: [f64; 2] = [1e-12, 1e-9];
+
+/// In these lengths: how far a nearer point must be away to beat another one, and within what two that are not beaten are one. The second is larger, because
+/// around a vertex there may be a row of triangles of which none beats the next.
+const FAR: f64 = 4.0;
+const NEAR: f64 = 32.0;
+
+/// Cosine of the angle between the normals of faces that count as one: 8 degrees.
+const ALIKE: f64 = 0.99;
+
+/// A triangle lower than this share of the diagonal has no area.
+const NO_HEIGHT: f64 = 1e-12;
+
+/// A triangulated surface with two sides, which may be open. Pushes towards the side on which the centre is.
+///
+/// Features are numbered: flat parts, then straight edges between or around them, then corners. Triangles in one plane are one flat part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// In the order of the tree.
+    triangles: Vec<Triangle>,
+    /// The features of the regions of each.
+    of_regions: Vec<[u32; REGIONS as usize]>,
+    tree: Tree,
+    diagonal_m: f64,
+    /// What it consists of.
+    pub content: Content,
+}
+
+/// What a mesh consists of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Content {
+    /// Triangles with an area.
+    pub triangles: usize,
+    /// Triangles without, dropped.
+    pub degenerate: usize,
+    /// Edges of one triangle only. None: the surface is closed.
+    pub open_edges: usize,
+    /// Edges of more than two triangles.
+    pub crowded_edges: usize,
+    /// Flat parts.
+    pub flat_parts: u32,
+    /// Straight edges between or around flat parts.
+    pub straight_edges: u32,
+    /// Corners.
+    pub corners: u32,
+}
+
+impl Mesh {
+    /// A surface as read from a file.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    pub fn from_surface(surface: &OpenSurface) -> Result<Self> {
+        Self::new(&surface.vertices_m, &surface.triangles)
+            .map_err(|error| error.within(&surface.source))
+    }
+
+    /// The surface of these triangles, each of three of these vertices, m.
+    ///
+    /// # Errors
+    /// A vertex that is not finite or does not exist, no triangle with an area, or too many to be numbered.
+    pub fn new(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self> {
+        check(vertices_m, triangles)?;
+        let corners = |t: &[u32; 3]| t.map(|v| Vector3::from(vertices_m[v as usize]));
+        let used = triangles.iter().flatten().map(|v| vertices_m[*v as usize]);
+        let diagonal_m = Bounds::of(used).diagonal_m();
+        let kept: Vec<[u32; 3]> = triangles
+            .iter()
+            .filter(|t| has_area(&corners(t), NO_HEIGHT * diagonal_m))
+            .copied()
+            .collect();
+        if kept.is_empty() {
+            let count = triangles.len();
+            return Err(refusal(format!(
+                "none of the {count} triangles of the wall has an area"
+            )));
+        }
+        let boxes: Vec<Bounds> = kept
+            .iter()
+            .map(|t| Bounds::of(t.map(|v| vertices_m[v as usize])))
+            .collect();
+        let (tree, order) = Tree::new(&boxes);
+        let indices: Vec<[u32; 3]> = order.iter().map(|t| kept[*t as usize]).collect();
+        let sorted: Vec<Triangle> = indices.iter().map(|t| Triangle::new(corners(t))).collect();
+        let features = features(&sorted, &indices, diagonal_m);
+        Ok(Self {
+            content: Content {
+                triangles: sorted.len(),
+                degenerate: triangles.len() - sorted.len(),
+                open_edges: features.open_edges,
+                crowded_edges: features.crowded_edges,
+                flat_parts: features.flat_parts,
+                straight_edges: features.straight_edges,
+                corners: features.corners,
+            },
+            triangles: sorted,
+            of_regions: features.of_regions,
+            tree,
+            diagonal_m,
+        })
+    }
+
+    /// The smallest box around it.
+    pub fn bounds(&self) -> Bounds {
+        self.tree.bounds()
+    }
+
+    /// Length of the diagonal of its box, m. One that is a thousand times larger than the bodies may have been read in the wrong unit.
+    pub fn diagonal_m(&self) -> f64 {
+        self.diagonal_m
+    }
+
+    /// As [`super::Shape::touches`]. Allocates nothing beyond `found`.
+    pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
+        let from = found.len();
+        let c = Vector3::from(centre);
+        self.tree.visit_near(&centre, reach_m, &mut |t| {
+            let touch = self.nearest(t, &c);
+            if touch.distance_m < reach_m {
+                found.push(touch);
+            }
+        });
+        let near = &mut found[from..];
+        near.sort_unstable_by(|a, b| {
+            a.distance_m
+                .total_cmp(&b.distance_m)
+                .then(a.feature.cmp(&b.feature))
+        });
+        let same_m = SAME[0] * self.diagonal_m + SAME[1] * reach_m;
+        let nearest = near.first().copied();
+        for i in (0..near.len()).rev() {
+            if kind(&near[i]) > 0 && self.is_beaten(near, i, same_m) {
+                near[i].distance_m = f64::INFINITY;
+            }
+        }
+        let mut end = from;
+        for i in from..found.len() {
+            let touch = found[i];
+            if touch.distance_m == f64::INFINITY {
+                continue;
+            }
+            match (from..end).find(|k| self.are_one(&touch, &found[*k], NEAR * same_m)) {
+                None => {
+                    found[end] = touch;
+                    end += 1;
+                }
+                // Of points that are one, that in a face is exact; that on an edge is more so than a corner.
+                Some(k)
+                    if kind(&touch) < kind(&found[k])
+                        && are_near(&touch, &found[k], NEAR * same_m) =>
+                {
+                    found[k] = touch;
+                }
+                Some(_) => {}
+            }
+        }
+        found.truncate(end);
+        if end == from {
+            // Thin triangles may beat each other by rounding.
+            found.extend(nearest);
+        }
+        for touch in &mut found[from..] {
+            self.name_feature(touch, &c, NEAR * same_m);
+        }
+    }
+
+    /// Gives a touch its feature. One within a flat part is at the foot on its plane, whichever triangle told of it.
+    fn name_feature(&self, touch: &mut Touch, c: &Vector3<f64>, near_m: f64) {
+        let triangle = &self.triangles[(touch.feature / REGIONS) as usize];
+        let feature = self.feature(touch);
+        let foot = triangle.over(c, feature);
+        if feature < self.content.flat_parts && are_near(touch, &foot, near_m) {
+            *touch = foot;
+        }
+        touch.feature = feature;
+    }
+
+    /// The nearest point of triangle `t`. Until the touches are sorted out, a touch has `REGIONS * triangle + region` for its feature.
+    fn nearest(&self, t: u32, c: &Vector3<f64>) -> Touch {
+        let triangle = &self.triangles[t as usize];
+        let (point, region) = triangle.nearest(c);
+        let feature = REGIONS * t + region;
+        let foot = triangle.over(c, feature);
+        if region == 0 {
+            foot
+        } else {
+            Touch::towards(*c, point, foot.normal.into(), feature)
+        }
+    }
+
+    /// Whether the point of touch `i` lies on a triangle that has a nearer one.
+    fn is_beaten(&self, near: &[Touch], i: usize, same_m: f64) -> bool {
+        let point = Vector3::from(near[i].point);
+        // Most are beaten by a triangle next to theirs, which is about as near.
+        (0..i).rev().chain(i + 1..near.len()).any(|j| {
+            !are_near(&near[i], &near[j], FAR * same_m)
+                && self.triangles[(near[j].feature / REGIONS) as usize].holds(&point, same_m)
+        })
+    }
+
+    /// Whether a touch is the same as a nearer one.
+    fn are_one(&self, touch: &Touch, nearer: &Touch, same_m: f64) -> bool {
+        let are_alike = || {
+            Vector3::from(touch.normal).dot(&Vector3::from(nearer.normal)) > ALIKE
+                && self.feature(touch) < self.content.flat_parts
+                && self.feature(nearer) < self.content.flat_parts
+        };
+        self.feature(touch) == self.feature(nearer)
+            || are_near(touch, nearer, same_m)
+            || are_alike()
+    }
+
+    fn feature(&self, touch: &Touch) -> u32 {
+        let [triangle, region] = [touch.feature / REGIONS, touch.feature % REGIONS];
+        self.of_regions[triangle as usize][region as usize]
+    }
+}
+
+/// 0 for a point in the face of its triangle, 1 on an edge, 2 in a corner.
+fn kind(touch: &Touch) -> u32 {
+    match touch.feature % REGIONS {
+        0 => 0,
+        1..=3 => 1,
+        _ => 2,
+    }
+}
+
+fn are_near(a: &Touch, b: &Touch, within_m: f64) -> bool {
+    (Vector3::from(a.point) - Vector3::from(b.point)).norm_squared() <= within_m * within_m
+}
+
+fn refusal(problem: String) -> Diagnostic {
+    Diagnostic::input("", problem, "export the shape again")
+}
+
+fn check(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<()> {
+    if triangles.len() > (u32::MAX / REGIONS) as usize {
+        return Err(refusal(format!(
+            "a wall of {} triangles: at most {} can be numbered",
+            triangles.len(),
+            u32::MAX / REGIONS
+        )));
+    }
+    for v in triangles.iter().flatten() {
+        match vertices_m.get(*v as usize) {
+            Some(vertex) if are_finite(vertex) => {}
+            Some(vertex) => {
+                return Err(refusal(format!("vertex {v} of a wall is at {vertex:?} m")));
+            }
+            None => {
+                return Err(refusal(format!(
+                    "a triangle of a wall has vertex {v}, but there are {}",
+                    vertices_m.len()
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn has_area([a, b, c]: &[Vector3<f64>; 3], least_height_m: f64) -> bool {
+    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+    (b - a).cross(&(c - a)).norm() > least_height_m * longest
+}

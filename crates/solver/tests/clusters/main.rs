@@ -1,0 +1,55 @@
+//! Clusters against a search from scratch; fragments against the whole.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod breaking;
+mod fragments;
+mod triggers;
+
+use dem_run::physics::bond::stiffness::Stiffness;
+use dem_run::state::bonds::{BondRule, Bonds};
+
+/// Bonds between these particles.
+pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
+    let mut sorted: Vec<[u32; 2]> = pairs
+        .into_iter()
+        .filter(|[a, b]| a != b)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    sorted.sort_unstable();
+    sorted.dedup();
+    let mut bonds = Bonds {
+        rules: vec![BondRule {
+            incremental: false,
+            damped: false,
+            criteria: None,
+            strengthening_from_1_s: None,
+        }],
+        ..Bonds::default()
+    };
+    let stiffness = Stiffness {
+        normal: 1.0,
+        shear: 1.0,
+        torsion: 1.0,
+        bending: 1.0,
+        levers_m: [0.5; 2],
+    };
+    for ends in sorted {
+        bonds.push(ends, [1.0, 0.0, 0.0], 0.1, &stiffness, 0);
+    }
+    bonds
+}
+
+/// A chain of this many particles.
+pub(crate) fn chain(first: u32, count: u32) -> impl Iterator<Item = [u32; 2]> {
+    (first..first + count - 1).map(|p| [p, p + 1])
+}
+
+/// The bond between two particles.
+pub(crate) fn between(bonds: &Bonds, a: u32, b: u32) -> u32 {
+    bonds.ends.iter().position(|ends| *ends == [a, b]).unwrap() as u32
+}

@@ -1,0 +1,154 @@
+//! Meshes against looking at every face, edge and vertex by itself.
+
+use dem_run::geometry::{Shape, Touch};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+use crate::{Surface, add_tiles, apart, mesh, touches};
+
+type Vector = Vector3<f64>;
+
+/// Points nearer than all surface around them, found without any tolerance: over a face; over an edge from which every triangle at it leads away; over a
+/// vertex from which every edge at it leads away. For places in general position.
+fn everything((vertices, triangles): &Surface, c: Vector, reach: f64) -> Vec<(Vector, bool)> {
+    let at = |v: u32| Vector::from(vertices[v as usize]);
+    let mut found: Vec<(Vector, bool)> = Vec::new();
+    for [a, b, d] in triangles {
+        let [p, q, r] = [a, b, d].map(|v| at(*v));
+        let normal = (q - p).cross(&(r - p)).normalize();
+        let foot = c - (c - p).dot(&normal) * normal;
+        let is_left = |x: Vector, y: Vector| (y - x).cross(&(foot - x)).dot(&normal) > 0.0;
+        if is_left(p, q) && is_left(q, r) && is_left(r, p) {
+            found.push((foot, true));
+        }
+    }
+    let mut edges: Vec<[u32; 2]> = triangles
+        .iter()
+        .flat_map(|[a, b, d]| [[a, b], [b, d], [d, a]].map(|[x, y]| [*x.min(y), *x.max(y)]))
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    for [a, b] in &edges {
+        let (p, q) = (at(*a), at(*b));
+        let share = (c - p).dot(&(q - p)) / (q - p).norm_squared();
+        if share <= 0.0 || share >= 1.0 {
+            continue;
+        }
+        let foot = p.lerp(&q, share);
+        let leads_away = triangles
+            .iter()
+            .filter(|t| t.contains(a) && t.contains(b))
+            .all(|t| {
+                let third = t.iter().find(|v| *v != a && *v != b).unwrap();
+                let across = at(*third) - p;
+                let across = across - across.dot(&(q - p)) / (q - p).norm_squared() * (q - p);
+                (c - foot).dot(&across) < 0.0
+            });
+        if leads_away {
+            found.push((foot, false));
+        }
+    }
+    for v in 0..vertices.len() as u32 {
+        let mut others = edges
+            .iter()
+            .filter(|e| e.contains(&v))
+            .map(|e| at(e[0] + e[1] - v))
+            .peekable();
+        if others.peek().is_some() && others.all(|other| (c - at(v)).dot(&(other - at(v))) < 0.0) {
+            found.push((at(v), false));
+        }
+    }
+    found.retain(|(p, _)| (c - p).norm() < reach);
+    found.sort_by(|a, b| (c - a.0).norm().total_cmp(&(c - b.0).norm()));
+    // Of faces that look the same way within 8 degrees, the nearest.
+    let mut kept: Vec<(Vector, bool)> = Vec::new();
+    for (p, is_face) in found {
+        let hidden = |(q, other): &(Vector, bool)| {
+            is_face && *other && (p - c).normalize().dot(&(q - c).normalize()) > 0.99
+        };
+        if !kept.iter().any(hidden) {
+            kept.push((p, is_face));
+        }
+    }
+    kept
+}
+
+fn assert_finds_everything(surface: &Surface, centres: &[[f64; 3]], reach: f64) {
+    let shape = Shape::Mesh(mesh(surface));
+    for centre in centres {
+        let wanted = everything(surface, Vector::from(*centre), reach);
+        let mut found: Vec<Touch> = touches(&shape, *centre, reach);
+        found.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        assert_eq!(
+            found.len(),
+            wanted.len(),
+            "{centre:?}: {found:?} {wanted:?}"
+        );
+        for (found, (wanted, _)) in found.iter().zip(&wanted) {
+            assert!(apart(found.point, (*wanted).into()) < 1e-12);
+        }
+    }
+}
+
+fn places(count: usize) -> impl Strategy<Value = Vec<[f64; 3]>> {
+    prop::collection::vec(prop::array::uniform3(-1.2..1.2_f64), count)
+}
+
+proptest! {
+    /// Hills and hollows, open at the rim.
+    #[test]
+    fn of_a_landscape(
+        heights in prop::collection::vec(-0.5..0.5_f64, 49),
+        centres in places(30),
+        reach in 0.05..2.0_f64,
+    ) {
+        let mut surface = (Vec::new(), Vec::new());
+        add_tiles(&mut surface, 6, |i, j| {
+            let at = |i: u32| f64::from(i) / 3.0 - 1.0;
+            [at(i), at(j), heights[(7 * i + j) as usize]]
+        });
+        assert_finds_everything(&surface, &centres, reach);
+    }
+
+    /// Triangles anywhere, which share vertices at random: edges of one to several triangles.
+    #[test]
+    fn of_a_heap_of_triangles(
+        vertices in places(12),
+        triangles in prop::collection::btree_set(prop::array::uniform3(0_u32..12), 1..15),
+        centres in places(30),
+        reach in 0.05..2.0_f64,
+    ) {
+        let mut known = std::collections::BTreeSet::new();
+        let triangles: Vec<[u32; 3]> = triangles
+            .into_iter()
+            .filter(|t| {
+                let mut sorted = *t;
+                sorted.sort_unstable();
+                sorted[0] < sorted[1] && sorted[1] < sorted[2] && known.insert(sorted)
+            })
+            .collect();
+        prop_assume!(!triangles.is_empty());
+        assert_finds_everything(&(vertices, triangles), &centres, reach);
+    }
+}
+
+/// Many more triangles than are near.
+#[test]
+fn of_a_large_landscape() {
+    let mut surface = (Vec::new(), Vec::new());
+    add_tiles(&mut surface, 40, |i, j| {
+        let at = |i: u32| f64::from(i) / 20.0 - 1.0;
+        [
+            at(i),
+            at(j),
+            0.1 * (7.0 * at(i)).sin() * (5.0 * at(j)).cos(),
+        ]
+    });
+    let centres: Vec<[f64; 3]> = (1..300)
+        .map(|i| {
+            let t = f64::from(i);
+            [(1.1 * t).sin(), (1.7 * t).cos(), 0.3 * (2.3 * t).sin()]
+        })
+        .collect();
+    assert_finds_everything(&surface, &centres, 0.15);
+}

@@ -1,0 +1,111 @@
+//! Walls from STL files.
+
+use dem_io::surface::read_open_surface;
+use dem_run::geometry::{Mesh, Shape};
+
+use crate::{Surface, add_tiles, box_surface, touches};
+
+/// An ASCII STL.
+fn stl((vertices, triangles): &Surface) -> String {
+    let mut text = "solid wall\n".to_owned();
+    for triangle in triangles {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for v in triangle {
+            let [x, y, z] = vertices[*v as usize];
+            text += &format!("vertex {x} {y} {z}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid wall\n"
+}
+
+fn plate() -> Surface {
+    let mut surface = (Vec::new(), Vec::new());
+    add_tiles(&mut surface, 4, |i, j| {
+        [f64::from(i) * 10.0, f64::from(j) * 10.0, 5.0]
+    });
+    surface
+}
+
+#[test]
+fn an_open_plate_in_millimetres_is_a_wall() {
+    let surface = read_open_surface(stl(&plate()).as_bytes(), "plate.stl", 1e-3).unwrap();
+    let mesh = Mesh::from_surface(&surface).unwrap();
+    assert_eq!((mesh.content.triangles, mesh.content.open_edges), (32, 16));
+    assert_eq!(
+        (
+            mesh.content.flat_parts,
+            mesh.content.straight_edges,
+            mesh.content.corners
+        ),
+        (1, 4, 4)
+    );
+    assert!((mesh.diagonal_m() - 0.04 * 2.0_f64.sqrt()).abs() < 1e-15);
+    let found = touches(&Shape::Mesh(mesh), [0.02, 0.01, 0.006], 2e-3);
+    assert_eq!(found.len(), 1);
+    assert!((found[0].distance_m - 1e-3).abs() < 1e-15);
+}
+
+#[test]
+fn a_closed_box_is_read_the_same_way() {
+    let surface = box_surface([0.0; 3], [1.0; 3], 2);
+    let read = read_open_surface(stl(&surface).as_bytes(), "box.stl", 1.0).unwrap();
+    assert_eq!((read.vertices_m.len(), read.triangles.len()), (26, 48));
+    let mesh = Mesh::from_surface(&read).unwrap();
+    assert_eq!(
+        (mesh.content.open_edges, mesh.content.crowded_edges),
+        (0, 0)
+    );
+}
+
+#[test]
+fn gaps_splits_doubles_and_slivers_are_seen_to() {
+    // The second half of the plate is off by a ten-thousandth of a tile, and has one of its tiles twice, the other way round, and one facet on a line.
+    let (vertices, mut triangles) = plate();
+    let near = triangles.split_off(16);
+    let mut text = stl(&(vertices.clone(), triangles));
+    let moved: Vec<[f64; 3]> = vertices
+        .iter()
+        .map(|[x, y, z]| [x + 1e-4, *y, *z])
+        .collect();
+    let [a, b, c] = near[3];
+    let extra = vec![[b, a, c], [a, a, b]];
+    text += &stl(&(moved, [near, extra].concat()));
+    let read = read_open_surface(text.as_bytes(), "plate.stl", 1.0).unwrap();
+    assert_eq!((read.facets_read, read.triangles.len()), (34, 32));
+    assert_eq!((read.duplicate_facets, read.degenerate_facets), (1, 1));
+    assert_eq!((read.welded_vertices, read.vertices_m.len()), (5, 25));
+
+    // A T-junction: one triangle meets two.
+    let tee: Surface = (
+        vec![
+            [0.0; 3],
+            [2.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 0.0, 0.0],
+        ],
+        vec![[0, 1, 2], [0, 3, 4], [4, 3, 1]],
+    );
+    let read = read_open_surface(stl(&tee).as_bytes(), "tee.stl", 1.0).unwrap();
+    assert_eq!((read.t_junctions, read.triangles.len()), (1, 4));
+}
+
+#[test]
+fn what_is_no_surface_is_refused_with_the_name_of_the_file() {
+    let line: Surface = (vec![[0.0; 3], [1.0; 3], [2.0; 3]], vec![[0, 1, 2]]);
+    for (text, unit) in [
+        (stl(&line), 1.0),
+        ("solid\nendsolid\n".to_owned(), 1.0),
+        (String::new(), 1.0),
+        (stl(&plate()), 0.0),
+        (stl(&plate()), f64::NAN),
+    ] {
+        let error = read_open_surface(text.as_bytes(), "plate.stl", unit).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(
+            error.place.starts_with("plate.stl") && !error.remedy.is_empty(),
+            "{error}"
+        );
+    }
+}
