@@ -119,9 +119,9 @@ pub fn run(
         let place = settings
             .folder
             .map(|f| f.checkpoint().display().to_string());
-        snapshot.check_scene(&scene.describe())?;
         snapshot
-            .restore(&mut state)
+            .check_scene(&scene.describe())
+            .and_then(|()| snapshot.restore(&mut state))
             .map_err(|error| error.within(&place.unwrap_or_default()))?;
         progress = snapshot.progress;
         progress.go_on(&state, rhythm, scene)?;

@@ -154,7 +154,7 @@ impl Snapshot {
             count => format!("; and {} more", count - 3),
         };
         Err(Diagnostic::input(
-            "--resume",
+            "",
             format!(
                 "the scene is not that of the run: {}{more}",
                 changed[..changed.len().min(3)].join("; ")

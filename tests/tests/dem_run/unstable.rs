@@ -41,7 +41,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
         "{said}"
     );
     let own: f64 = said
-        .split_once("need a step below ")
+        .split_once("could take a step of ")
         .unwrap()
         .1
         .split_once(" s")

@@ -57,7 +57,7 @@ fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Moti
     let mut low = Vector3::repeat(f64::INFINITY);
     let mut high = Vector3::repeat(f64::NEG_INFINITY);
     for &i in members {
-        let radius = particles.radii_m[i as usize];
+        let radius = particles.poses[i as usize].radius_m();
         mass_kg += mass(i);
         centre += mass(i) * (place(i) - origin);
         momentum += mass(i) * velocity(i);

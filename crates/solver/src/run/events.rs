@@ -55,8 +55,15 @@ pub(super) fn follow_limit(
     if scene.run.time_step_s.is_some() || state.time_step_s <= largest {
         return Ok(());
     }
-    let detail = change(state.time_step_s, largest);
-    state.time_step_s = largest;
+    // So that the end time is met.
+    let left_s = scene.run.end_time_s - state.time_s;
+    let step_s = if left_s > 0.0 {
+        left_s / (left_s / largest).ceil()
+    } else {
+        largest
+    };
+    let detail = change(state.time_step_s, step_s);
+    state.time_step_s = step_s;
     match files {
         Some(files) => files.events.append(&[new_step(state, "limit", &detail)]),
         None => Ok(()),

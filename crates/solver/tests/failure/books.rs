@@ -131,3 +131,41 @@ fn a_support_at_rest_does_no_work_in_a_break() {
         }
     });
 }
+
+/// A bond between a sphere that is held and one that is moved away: all forces are those of the supports, so the books close to rounding also in
+/// the step in which it breaks, and the reaction measured there is that of the bond.
+#[test]
+fn a_bond_between_supports_breaks_without_an_error() {
+    for steps in [20.0, 200.0, 2000.0] {
+        let mut state = rod(1, NORMAL, false);
+        hold(&mut state, std::iter::once(0), 0.0);
+        let to_failure = STRENGTH_PA * area_m2() / state.bonds.normal(0);
+        let speed = to_failure / (steps * state.time_step_s);
+        hold(&mut state, std::iter::once(1), speed);
+        state.particles.motions[1].velocity_m_s[0] = speed;
+        state.ledger = Ledger::opened(&state);
+        let (mut largest_j, mut scale_j) = (0.0_f64, 0.0);
+        let mut last_reaction = 0.0;
+        while state.broken_count == 0 {
+            move_on(&mut state);
+            act(&mut state);
+            let balance = balance(&mut state);
+            largest_j = largest_j.max(balance.energy_error_j.abs());
+            scale_j = balance.energy_scale_j;
+            assert!(balance.momentum_error < 1e-12, "{balance:?}");
+            last_reaction = state.supports[1].held[0].reactions[0][0];
+        }
+        // Places are rounded in every step, against the way that is made in it.
+        let rounding = f64::EPSILON * LENGTH_M / (speed * state.time_step_s) + 1e-12;
+        assert!(
+            largest_j < rounding * scale_j,
+            "{steps} steps: {largest_j:e} J of {scale_j:e} J, rounding {rounding:e}"
+        );
+        let wanted = STRENGTH_PA * area_m2();
+        assert!(
+            last_reaction >= wanted * (1.0 - 1e-9),
+            "{last_reaction} {wanted} {steps}"
+        );
+        assert!(last_reaction <= wanted * (1.0 + 1.0 / steps + 1e-9));
+    }
+}
