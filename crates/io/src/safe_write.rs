@@ -130,6 +130,11 @@ pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()
         .map_err(|error| explain(Path::new("standard output"), &error))
 }
 
+/// Says on standard error what went wrong. One that is full or closed leaves nobody to tell.
+pub fn write_standard_error(error: &Diagnostic) {
+    let _ = io::stderr().write_all(format!("error: {error}\n").as_bytes());
+}
+
 /// Removes the temporary files of writes that are under way: for a program that is interrupted and about to leave.
 pub fn remove_unfinished() {
     for path in unfinished().drain(..) {
