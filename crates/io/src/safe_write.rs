@@ -219,7 +219,7 @@ fn usual_permissions() -> Option<Permissions> {
 pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
-        ErrorKind::NotFound => (
+        ErrorKind::NotFound if !folder_of(path).exists() => (
             format!("there is no folder '{folder}'"),
             "make it first, or write elsewhere",
         ),
@@ -236,7 +236,7 @@ pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
             format!("no space left: {error}"),
             "free some space, or write elsewhere",
         ),
-        _ => (format!("cannot be written: {error}"), ""),
+        _ => (format!("cannot be written: {error}"), "write elsewhere"),
     };
     Diagnostic::failed(path.display().to_string(), problem, remedy)
 }
