@@ -218,7 +218,7 @@ fn motions_of_walls() {
         WallMotion::Displacement {
             displacement_m: [0.0; 3],
             turn_rad: [0.0; 3],
-            factor: Factor::One,
+            factor: Factor::Ramp { until_s: 1.0 },
         }
     );
 }
