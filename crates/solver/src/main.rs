@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
+use dem_io::Diagnostic;
 use dem_io::safe_write::{remove_unfinished, write_standard_error};
 use dem_run::cli::{Arguments, run};
 use dem_run::interrupt::Interrupt;
@@ -15,7 +16,9 @@ fn main() -> ExitCode {
     let at_interrupt = move || {
         if !asked.ask() {
             remove_unfinished();
-            std::process::exit(130);
+            let problem = Diagnostic::failed("", "interrupted", "");
+            write_standard_error(&problem);
+            std::process::exit(i32::from(problem.exit_code()));
         }
     };
     // Without the handler an interrupted run would leave no checkpoint, no more.
