@@ -15,6 +15,16 @@ pub fn program(name: &str) -> Command {
     Command::new(path)
 }
 
+/// Runs a program once with a standard error that is full, and once with one whose reader is gone; the exit codes.
+#[cfg(target_os = "linux")]
+pub fn codes_without_standard_error(command: &mut Command) -> [Option<i32>; 2] {
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    let (reader, closed) = std::io::pipe().unwrap();
+    drop(reader);
+    [full.unwrap().into(), std::process::Stdio::from(closed)]
+        .map(|stderr| command.stderr(stderr).status().unwrap().code())
+}
+
 fn build(name: &str) -> PathBuf {
     let profile = if cfg!(debug_assertions) {
         "test"

@@ -130,6 +130,11 @@ pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()
         .map_err(|error| explain(Path::new("standard output"), &error))
 }
 
+/// Says on standard error what went wrong. One that is full or closed leaves nobody to tell.
+pub fn write_standard_error(error: &Diagnostic) {
+    let _ = io::stderr().write_all(format!("error: {error}\n").as_bytes());
+}
+
 /// Removes the temporary files of writes that are under way: for a program that is interrupted and about to leave.
 pub fn remove_unfinished() {
     for path in unfinished().drain(..) {
@@ -214,7 +219,7 @@ fn usual_permissions() -> Option<Permissions> {
 pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
-        ErrorKind::NotFound => (
+        ErrorKind::NotFound if !folder_of(path).exists() => (
             format!("there is no folder '{folder}'"),
             "make it first, or write elsewhere",
         ),
@@ -231,7 +236,7 @@ pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
             format!("no space left: {error}"),
             "free some space, or write elsewhere",
         ),
-        _ => (format!("cannot be written: {error}"), ""),
+        _ => (format!("cannot be written: {error}"), "write elsewhere"),
     };
     Diagnostic::failed(path.display().to_string(), problem, remedy)
 }

@@ -4,10 +4,6 @@ use clap::Parser;
 use dem_pack::cli::{Arguments, run};
 use std::process::ExitCode;
 
-#[expect(
-    clippy::print_stderr,
-    reason = "the one place that tells a person what went wrong"
-)]
 fn main() -> ExitCode {
     let at_interrupt = || {
         dem_io::safe_write::remove_unfinished();
@@ -18,7 +14,7 @@ fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            dem_io::safe_write::write_standard_error(&error);
             ExitCode::from(error.exit_code())
         }
     }

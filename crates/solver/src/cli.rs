@@ -7,7 +7,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use dem_io::body::{body_summary, read_body};
+use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::{Existing, ResultsFolder};
 use dem_io::safe_write::write_standard_output;
@@ -183,14 +183,27 @@ impl SceneArguments {
     fn read(&self) -> Result<(Scene, BTreeMap<String, Body>)> {
         let file = self.file.as_deref().unwrap_or(Path::new(""));
         let mut scene = read_scene(file, &self.overrides)?;
+        let mut named: BTreeMap<String, &str> = BTreeMap::new();
         for option in &self.body {
-            set_body(&mut scene, option)?;
+            let name = set_body(&mut scene, option)?;
+            if let Some(other) = named.insert(name.clone(), option) {
+                return Err(Diagnostic::input(
+                    format!("--body {option}"),
+                    format!("the body '{name}' has its file from --body {other} already"),
+                    "name one file for each body",
+                ));
+            }
         }
+        refuse_two_pipes(&scene)?;
         let mut bodies = BTreeMap::new();
         for (name, entry) in &scene.bodies {
             let body = match &entry.source {
-                BodySource::File(path) => read_body(path)
-                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?,
+                BodySource::File(path) => read_body(path).map_err(|mut error| {
+                    if !named.contains_key(name) && is_missing(path) {
+                        error.remedy = "make it, or name another file with --body".to_owned();
+                    }
+                    error.within(&format!("{}: [bodies.{name}]", scene.source))
+                })?,
                 BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds)
                     .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?,
             };
@@ -200,8 +213,13 @@ impl SceneArguments {
     }
 }
 
-/// Takes a body's file from an option `[NAME=]FILE`.
-fn set_body(scene: &mut Scene, option: &str) -> Result<()> {
+/// Whether a file of a body is not there.
+fn is_missing(path: &Path) -> bool {
+    body_files(path).is_ok_and(|files| files.iter().any(|file| !file.exists()))
+}
+
+/// Takes a body's file from an option `[NAME=]FILE`. The body's name.
+fn set_body(scene: &mut Scene, option: &str) -> Result<String> {
     let (name, file) = match option.split_once('=') {
         Some((name, file)) => (Some(name.to_owned()), file),
         None => (None, option),
@@ -236,10 +254,19 @@ fn set_body(scene: &mut Scene, option: &str) -> Result<()> {
         ));
     };
     entry.source = BodySource::File(PathBuf::from(file));
-    let from_input = |entry: &&dem_io::scene::BodyEntry| matches!(&entry.source, BodySource::File(path) if path == Path::new("-"));
-    if scene.bodies.values().filter(from_input).count() > 1 {
+    Ok(name)
+}
+
+fn refuse_two_pipes(scene: &Scene) -> Result<()> {
+    let is_piped =
+        |source: &BodySource| matches!(source, BodySource::File(path) if path == Path::new("-"));
+    let mut piped = scene
+        .bodies
+        .iter()
+        .filter(|(_, entry)| is_piped(&entry.source));
+    if let (Some(_), Some((name, _))) = (piped.next(), piped.next()) {
         return Err(Diagnostic::input(
-            format!("--body {option}"),
+            format!("{}: [bodies.{name}]", scene.source),
             "standard input can be read for one body only",
             "write the others to files",
         ));

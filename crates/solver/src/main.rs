@@ -4,18 +4,21 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
+use dem_io::Diagnostic;
+use dem_io::safe_write::{remove_unfinished, write_standard_error};
 use dem_run::cli::{Arguments, run};
 use dem_run::interrupt::Interrupt;
 
-#[expect(clippy::print_stderr, reason = "the one place that speaks to a person")]
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let interrupt = Arc::new(Interrupt::default());
     let asked = Arc::clone(&interrupt);
     let at_interrupt = move || {
         if !asked.ask() {
-            dem_io::safe_write::remove_unfinished();
-            std::process::exit(130);
+            remove_unfinished();
+            let problem = Diagnostic::failed("", "interrupted", "");
+            write_standard_error(&problem);
+            std::process::exit(i32::from(problem.exit_code()));
         }
     };
     // Without the handler an interrupted run would leave no checkpoint, no more.
@@ -23,7 +26,7 @@ fn main() -> ExitCode {
     match run(&arguments, &interrupt) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            write_standard_error(&error);
             ExitCode::from(error.exit_code())
         }
     }

@@ -200,3 +200,14 @@ fn a_full_disk_is_exit_code_1_and_leaves_nothing() {
     assert_eq!(bench.files(), ["body.vtp", "box.stl", "full.vtp"]);
     read_body(&bench.path("body.vtp")).unwrap();
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standard_error_that_takes_nothing() {
+    let mut command = dem_pack();
+    command.args(["none.stl", "--diameter", "2mm"]);
+    assert_eq!(
+        dem_tests::codes_without_standard_error(&mut command),
+        [Some(2); 2]
+    );
+}

@@ -1,6 +1,7 @@
 //! Bodies that cannot be right, in a scene: named with scene, body, file, particle or bond.
 
 use dem_io::Body;
+use dem_io::body::write_body;
 
 use super::{Bench, piped, refused, row, vtp_bytes};
 
@@ -100,15 +101,34 @@ fn two_bonded_particles_at_one_place() {
     // Its length is in the file, so that nothing is wrong with the body itself.
     bench.write("sample.vtp", changed(|b| b.positions[1] = b.positions[0]));
     let said = bench.bad(&scene, &[], 2);
-    assert!(
-        said.ends_with("scene.toml: [bodies.sample]: bond 0: its two particles stand at the same place; move one of them, or remove the bond"),
-        "{said}"
+    let file = bench.path("sample.vtp");
+    assert_eq!(
+        said,
+        format!(
+            "error: {}: [bodies.sample]: {}: bond 0: its two particles stand at the same place; move one of them, or remove the bond",
+            scene.display(),
+            file.display()
+        )
     );
     // Or made so by where the body is put: a millimetre is lost at such a distance.
     bench.write("sample.vtp", vtp_bytes(&row(5)));
     let said = bench.bad(&scene, &["--set", "bodies.sample.position=[1e15, 0, 0]"], 2);
     assert!(
         said.contains("bond 0: its two particles stand at the same place"),
+        "{said}"
+    );
+    // Of two tables it is that of the bonds.
+    let body = row(5);
+    write_body(&body, &bench.path("pair.csv")).unwrap();
+    let options = [
+        "--body",
+        "pair.csv",
+        "--set",
+        "bodies.sample.position=[1e15, 0, 0]",
+    ];
+    let said = bench.bad(&scene, &options, 2);
+    assert!(
+        said.contains("[bodies.sample]: pair.bonds.csv: bond 0: "),
         "{said}"
     );
 }
@@ -141,6 +161,53 @@ fn what_a_scene_lacks_for_a_body() {
     let said = bench.bad(&scene, &["--set", "sets.one.particles=[5]"], 2);
     assert!(
         said.contains("[sets.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
+        "{said}"
+    );
+}
+
+/// What is said of tables with these particles and bonds.
+fn said_of_tables(ending: &str, particles: &str, bonds: &str) -> String {
+    let bench = Bench::new();
+    bench.write(&format!("x.particles.{ending}"), particles);
+    bench.write(&format!("x.bonds.{ending}"), bonds);
+    let output = bench.run(format!("x.{ending}").as_ref(), &[]);
+    let (said, code) = refused(&output);
+    assert_eq!(code, 2, "{said}");
+    said
+}
+
+#[test]
+fn of_two_tables_the_right_one_is_named() {
+    let particles = "x_m,y_m,z_m,radius_m\n0,0,0,1\n2,0,0,1\n";
+    for (bond, place) in [
+        ("1,1,1,1", "line 4: it joins particle 1 to itself"),
+        ("1,0,1,1", "bond 1: it joins particles 0 and 1, as bond 0"),
+        ("1,0,0,1", "line 4: its radius is 0 m"),
+        ("1,0,1,-2", "line 4: its initial length is -2 m"),
+    ] {
+        let bonds = format!("a,b,radius_m,initial_length_m\n0,1,1,2\n\n{bond}\n");
+        let said = said_of_tables("csv", particles, &bonds);
+        assert!(said.contains(&format!("x.bonds.csv: {place}")), "{said}");
+    }
+    let said = said_of_tables(
+        "csv",
+        &particles.replace("2,0,0,1", "2,0,0,0"),
+        "a,b\n0,1\n",
+    );
+    assert!(
+        said.contains("x.particles.csv: line 3: its radius is 0 m"),
+        "{said}"
+    );
+    let said = said_of_tables("csv", &particles.replace("2,", "0,"), "a,b\n0,1\n");
+    assert!(
+        said.contains("x.bonds.csv: bond 0: its initial length is 0 m"),
+        "{said}"
+    );
+    let said = said_of_tables("txt", "0 0 0 1\n2 0 0 1\n", "1 2\n2 1\n");
+    assert!(said.contains("x.bonds.txt: bond 1: it joins"), "{said}");
+    let said = said_of_tables("txt", "0 0 0 1\n2 0 0 -1\n", "1 2\n");
+    assert!(
+        said.contains("x.particles.txt: line 2: its radius is -1 m"),
         "{said}"
     );
 }

@@ -41,7 +41,7 @@ fn scenes_that_are_none() {
         &["none.toml: there is no such file"],
     );
     assert_says(&bench, &["folder.toml"], &["folder.toml: this is a folder"]);
-    assert_says(&bench, &["folder"], &["folder: "]);
+    assert_says(&bench, &["folder"], &["folder: this is a folder"]);
     assert_says(
         &bench,
         &["binary.toml"],
@@ -81,6 +81,14 @@ fn options() {
             &["[bodies.bar]", "none.vtp", "no such file"],
         ),
         (&["--body", "bar=row"], &["[bodies.bar]", "no ending"]),
+        (
+            &["--body", "row.vtp", "--body", "row.data"],
+            &["--body row.data: the body 'bar' has its file from --body row.vtp already"],
+        ),
+        (
+            &["--body", "-", "--body", "-"],
+            &["--body -: the body 'bar' has its file from --body - already"],
+        ),
         (&["--threads", "0"], &["--threads", "1 and 1024"]),
         (&["--threads", "1025"], &["--threads", "1025"]),
     ] {
@@ -96,7 +104,12 @@ fn options() {
     assert_says(
         &bench,
         &[several, "--body", "a=-", "--body", "b=-"],
-        &["--body b=-", "standard input"],
+        &["[bodies.b]", "standard input"],
+    );
+    assert_says(
+        &bench,
+        &[several, "--body", "a=row.vtp", "--body", "a=none.vtp"],
+        &["--body a=none.vtp: the body 'a' has its file from --body a=row.vtp already"],
     );
     for option in [
         &["--out", "x"][..],
@@ -154,5 +167,19 @@ fn json_and_quiet_do_not_hide_what_is_wrong() {
         &bench,
         &["none.toml", "--json", "--quiet"],
         &["no such file"],
+    );
+}
+
+#[test]
+fn a_scene_whose_body_is_not_there_names_the_option() {
+    let bench = Bench::new();
+    let scene = scene_of_data("clamped.toml");
+    assert_says(
+        &bench,
+        &[scene.to_str().unwrap()],
+        &[
+            "clamped.toml: [bodies.sample]: ",
+            "bending-sample.vtp: there is no such file; make it, or name another file with --body",
+        ],
     );
 }

@@ -48,6 +48,18 @@ fn says_the_step_and_why_stages_memory_and_time() {
 }
 
 #[test]
+fn a_run_without_end_has_a_short_number_of_steps() {
+    let bench = Bench::new();
+    let path = scene_of_data("cantilever.toml");
+    let said = check(
+        &bench,
+        &[path.to_str().unwrap(), "--set", "run.end_time=1e300"],
+    );
+    assert!(said.contains("\nsteps          1.9e304\n"), "{said}");
+    assert!(!said.contains("0000000000"), "{said}");
+}
+
+#[test]
 fn every_good_scene_can_be_checked() {
     let bench = Bench::new();
     for scene in corpus("good") {

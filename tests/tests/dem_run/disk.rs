@@ -45,7 +45,10 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
     );
     let files = names_in(&bench.path("kept"));
     assert!(files.contains(&"checkpoint.dem".to_owned()), "{files:?}");
-    assert!(!files.iter().any(|name| name.starts_with('.')), "{files:?}");
+    assert!(
+        !files.iter().any(|name| name.starts_with(".unfinished")),
+        "{files:?}"
+    );
     // Rows are whole, and with room the run goes on where it stood.
     let series = fs::read_to_string(bench.path("kept/series.csv")).unwrap();
     assert!(series.ends_with('\n'));
@@ -109,4 +112,29 @@ fn a_full_disk_behind_standard_output() {
     );
     // The results are there all the same.
     assert!(bench.path("out/summary.json").exists());
+}
+
+#[test]
+fn a_standard_error_that_takes_nothing() {
+    let codes = dem_tests::codes_without_standard_error(dem_run().arg("none.toml"));
+    assert_eq!(codes, [Some(2); 2]);
+    let bench = Bench::new();
+    let mut command = bench.command(&good("alone.toml"), &["--quiet", "--out", "out", "--force"]);
+    let codes = dem_tests::codes_without_standard_error(&mut command);
+    assert_eq!(codes, [Some(0); 2]);
+}
+
+#[test]
+fn folders_that_cannot_be_made() {
+    let bench = Bench::new();
+    let said = bench.bad(&good("alone.toml"), &["--out", "/proc/out"], 1);
+    assert!(
+        said.starts_with("error: /proc/out: cannot be written: ") && said.contains("os error"),
+        "{said}"
+    );
+    let said = bench.bad(&good("alone.toml"), &["--out", "none/out"], 1);
+    assert!(
+        said.contains("none/out: there is no folder 'none'; make it first"),
+        "{said}"
+    );
 }

@@ -112,6 +112,34 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
 }
 
 #[test]
+fn a_folder_is_written_to_by_one_run_at_a_time() {
+    let bench = Bench::new();
+    let scene = good("breaking.toml");
+    let long = [
+        "--set",
+        "run.end_time=1000 s",
+        "--set",
+        "output.series=1e-3 s",
+        "--out",
+        "out",
+    ];
+    let mut first = start(bench.command(&scene, &long));
+    wait_until(&mut first, || lines(&bench.path("out/series.csv")) > 1);
+    for option in [&[][..], &["--force"], &["--resume"]] {
+        let said = bench.bad(&scene, &[&["--out", "out"], option].concat(), 2);
+        assert!(
+            said.starts_with("error: out: another run is writing into it; wait"),
+            "{said}"
+        );
+    }
+    assert!(lines(&bench.path("out/series.csv")) > 1);
+    send("-KILL", &first);
+    first.wait().unwrap();
+    // The lock went with the run.
+    bench.good(&scene, &["--out", "out", "--force"]);
+}
+
+#[test]
 fn before_a_run_nothing_is_waited_for() {
     let mut command = dem_run();
     command
@@ -129,7 +157,10 @@ fn before_a_run_nothing_is_waited_for() {
     let since = Instant::now();
     let output = child.wait_with_output().unwrap();
     assert!(since.elapsed() < Duration::from_secs(5));
-    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(
+        super::refused(&output),
+        ("error: interrupted".to_owned(), 1)
+    );
     drop(kept);
 }
 

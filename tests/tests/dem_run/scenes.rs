@@ -91,7 +91,8 @@ fn every_scene_of_data_is_planned_or_asks_for_its_body() {
             .output()
             .unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
-        let asks = said.contains("there is no such file; check its name and folder");
+        let asks =
+            said.contains("there is no such file; make it, or name another file with --body");
         assert!(
             output.status.success() || asks,
             "{}: {said}",

@@ -56,19 +56,23 @@ fn check_lengths(body: &Body) -> Result<()> {
 
 fn check_particles(body: &Body) -> Result<()> {
     for (particle, (position, &radius)) in body.positions.iter().zip(&body.radii).enumerate() {
-        for (axis, value) in ["x", "y", "z"].into_iter().zip(position) {
-            if !value.is_finite() {
-                return Err(Diagnostic::input(
-                    format!("particle {particle}"),
-                    format!("{axis} is {value}, but must be a finite number of metres"),
-                    "correct or remove this particle",
-                ));
-            }
-        }
-        check_positive(radius, "radius")
+        check_particle(position, radius)
             .map_err(|error| error.within(&format!("particle {particle}")))?;
     }
     Ok(())
+}
+
+pub(super) fn check_particle(position: &[f64; 3], radius: f64) -> Result<()> {
+    for (axis, value) in ["x", "y", "z"].into_iter().zip(position) {
+        if !value.is_finite() {
+            return Err(Diagnostic::input(
+                "",
+                format!("{axis} is {value}, but must be a finite number of metres"),
+                "correct or remove this particle",
+            ));
+        }
+    }
+    check_positive(radius, "radius")
 }
 
 fn check_bonds(body: &Body) -> Result<()> {
@@ -85,13 +89,7 @@ fn check_bonds(body: &Body) -> Result<()> {
                 "correct or remove this bond",
             ));
         }
-        if a == b {
-            return Err(Diagnostic::input(
-                place(),
-                format!("it joins particle {a} to itself"),
-                "remove this bond",
-            ));
-        }
+        check_different(a, b).map_err(|error| error.within(&place()))?;
         if a > b {
             return Err(Diagnostic::input(
                 place(),
@@ -106,7 +104,19 @@ fn check_bonds(body: &Body) -> Result<()> {
     Ok(())
 }
 
-fn check_positive(value: f64, what: &str) -> Result<()> {
+/// Whether the ends of a bond are different particles, as they are numbered where they come from.
+pub(super) fn check_different(a: u32, b: u32) -> Result<()> {
+    if a != b {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("it joins particle {a} to itself"),
+        "remove this bond",
+    ))
+}
+
+pub(super) fn check_positive(value: f64, what: &str) -> Result<()> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }

@@ -6,7 +6,8 @@
 
 use std::io::{self, BufRead, Write};
 
-use super::table::{Lines, float, on_line, particle, pick};
+use super::check::{check_different, check_particle, check_positive};
+use super::table::{Lines, float, in_table, on_line, particle, pick};
 use super::{Body, Parts};
 use crate::{Diagnostic, Result};
 
@@ -52,7 +53,7 @@ pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body
     let mut parts = Parts::default();
     read_particles(particles, &mut parts).map_err(|error| error.within("particles"))?;
     read_bonds(bonds, &mut parts).map_err(|error| error.within("bonds"))?;
-    Body::from_parts(parts)
+    Body::from_parts(parts).map_err(in_table)
 }
 
 fn read_particles(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
@@ -69,6 +70,7 @@ fn read_particles(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
                 float(words[k], PARTICLE_COLUMNS[k]).map_err(|error| on_line(number, error))?;
         }
         let [x, y, z, radius] = values;
+        check_particle(&[x, y, z], radius).map_err(|error| on_line(number, error))?;
         parts.positions.push([x, y, z]);
         parts.radii.push(radius);
     }
@@ -87,15 +89,21 @@ fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
         }
         let [a, b, radius, length] = pick(line, columns);
         let mut read_line = || {
-            parts.bonds.push([
+            let [a, b] = [
                 particle(a, "a", 0, particles)?,
                 particle(b, "b", 0, particles)?,
-            ]);
+            ];
+            check_different(a, b)?;
+            parts.bonds.push([a, b]);
             if radius_column.is_some() {
-                radii.push(float(radius, "radius_m")?);
+                let radius = float(radius, "radius_m")?;
+                check_positive(radius, "radius")?;
+                radii.push(radius);
             }
             if length_column.is_some() {
-                lengths.push(float(length, "initial_length_m")?);
+                let length = float(length, "initial_length_m")?;
+                check_positive(length, "initial length")?;
+                lengths.push(length);
             }
             Ok(())
         };

@@ -99,6 +99,7 @@ impl Storage {
             "data" | "lmp" | "lammps" => Ok(Self::Lammps(path.to_owned())),
             "csv" => Ok(Self::Csv(Pair::named(path))),
             "txt" => Ok(Self::Txt(Pair::named(path))),
+            _ if path.is_dir() => Err(is_folder(path)),
             _ => {
                 let problem = if ending.is_empty() {
                     "the name has no ending that says which format is meant".to_owned()
@@ -191,14 +192,10 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
 }
 
 fn open(path: &Path) -> Result<BufReader<File>> {
-    let place = path.display().to_string();
     if path.is_dir() {
-        return Err(Diagnostic::input(
-            place,
-            "this is a folder",
-            "name a file in it",
-        ));
+        return Err(is_folder(path));
     }
+    let place = path.display().to_string();
     match File::open(path) {
         Ok(file) => Ok(BufReader::with_capacity(BUFFER_BYTES, file)),
         Err(error) if error.kind() == ErrorKind::NotFound => Err(Diagnostic::input(
@@ -212,4 +209,12 @@ fn open(path: &Path) -> Result<BufReader<File>> {
             "",
         )),
     }
+}
+
+fn is_folder(path: &Path) -> Diagnostic {
+    Diagnostic::input(
+        path.display().to_string(),
+        "this is a folder",
+        "name a file in it",
+    )
 }

@@ -64,6 +64,18 @@ pub(crate) fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
     error.within(&format!("line {number}"))
 }
 
+/// The same message about a particle or a bond of a body from two tables, said of its table.
+pub(super) fn in_table(error: Diagnostic) -> Diagnostic {
+    let place = error.place.as_str();
+    if place.starts_with("particle ") {
+        error.within("particles")
+    } else if place.starts_with("bond ") {
+        error.within("bonds")
+    } else {
+        error
+    }
+}
+
 /// The number that `word` is.
 pub(crate) fn float(word: Option<&str>, what: &str) -> Result<f64> {
     let word = word.ok_or_else(|| missing(what))?;

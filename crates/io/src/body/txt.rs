@@ -6,7 +6,8 @@
 
 use std::io::{self, BufRead, Write};
 
-use super::table::{Lines, float, on_line, particle};
+use super::check::check_particle;
+use super::table::{Lines, float, in_table, on_line, particle};
 use super::{Body, Parts};
 use crate::{Diagnostic, Result};
 
@@ -41,8 +42,10 @@ pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body
     let mut parts = Parts::default();
     each_line(particles, |words| {
         let [x, y, z, radius] = ["x", "y", "z", "the radius"].map(|what| float(words.next(), what));
-        parts.positions.push([x?, y?, z?]);
-        parts.radii.push(radius?);
+        let (position, radius) = ([x?, y?, z?], radius?);
+        check_particle(&position, radius)?;
+        parts.positions.push(position);
+        parts.radii.push(radius);
         Ok(())
     })
     .map_err(|error| error.within("particles"))?;
@@ -54,7 +57,7 @@ pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body
         Ok(())
     })
     .map_err(|error| error.within("bonds"))?;
-    Body::from_parts(parts)
+    Body::from_parts(parts).map_err(in_table)
 }
 
 /// Gives the words of each line to `take`, which must use all of them.

@@ -1,8 +1,9 @@
 //! The folder of a run: what is called how, and what may be in it before.
 
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::plots;
 use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, write_file};
@@ -15,6 +16,7 @@ const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
 const SUMMARY: &str = "summary.json";
 const CHECKPOINT: &str = "checkpoint.dem";
+const LOCK: &str = ".lock";
 
 /// What to do with a folder that holds something already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,44 +29,45 @@ pub enum Existing {
     Continue,
 }
 
-/// The folder that a run writes to.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// The folder that a run writes to, and no other run as long as this or a clone of it lives.
+#[derive(Debug, Clone)]
 pub struct ResultsFolder {
     path: PathBuf,
+    _lock: Arc<File>,
 }
 
 impl ResultsFolder {
     /// Makes the folder `path` or takes the one that is there, and makes sure that it can be written to.
     ///
     /// # Errors
-    /// It is not empty, by `existing`; there is none to continue (both exit code 2). Its parent is missing, a file has its
-    /// name, no permission to write in it (all exit code 1).
+    /// It is not empty, by `existing`; there is none to continue; another run is writing into it (all exit code 2). Its parent
+    /// is missing, a file has its name, no permission to write in it (all exit code 1).
     pub fn create(path: &Path, existing: Existing) -> Result<Self> {
+        if existing != Existing::Continue {
+            make_folder(path)?;
+        } else if !path.is_dir() {
+            return Err(Diagnostic::input(
+                path.display().to_string(),
+                "there is no such folder, so no run to continue",
+                "check its name, or start the run without --resume",
+            ));
+        }
+        // A folder that is not that of a run gets no lock either.
+        if existing == Existing::Refuse && !path.join(LOCK).exists() {
+            refuse_unless_empty(path)?;
+        }
         let folder = Self {
             path: path.to_owned(),
+            _lock: Arc::new(lock(path)?),
         };
-        if existing == Existing::Continue {
-            if !path.is_dir() {
-                return Err(Diagnostic::input(
-                    path.display().to_string(),
-                    "there is no such folder, so no run to continue",
-                    "check its name, or start the run without --resume",
-                ));
-            }
-            // What a killed write has left.
-            for part in ["", FRAMES, PLOTS] {
-                folder.remove_files(part, |_| false)?;
-            }
-        } else {
-            make_folder(path)?;
-            if existing == Existing::Replace {
-                folder.remove_results()?;
-            } else if entries(path)?.next().is_some() {
-                return Err(Diagnostic::input(
-                    path.display().to_string(),
-                    "this folder is not empty",
-                    "write to another one, replace its results with --force, or continue its run with --resume",
-                ));
+        match existing {
+            Existing::Refuse => refuse_unless_empty(path)?,
+            Existing::Replace => folder.remove_results()?,
+            Existing::Continue => {
+                // What a killed write has left.
+                for part in ["", FRAMES, PLOTS] {
+                    folder.remove_files(part, |_| false)?;
+                }
             }
         }
         // Nothing comes of this file: it only shows that files can be written here.
@@ -216,6 +219,41 @@ fn make_folder(path: &Path) -> Result<()> {
         }
         Err(error) => Err(explain(path, &error)),
     }
+}
+
+/// Takes the lock of a folder, which the system releases when the program ends, however it does. The file stays: another run
+/// may be about to lock it.
+fn lock(folder: &Path) -> Result<File> {
+    let path = folder.join(LOCK);
+    let file = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(&path)
+        .map_err(|error| explain(&path, &error))?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Diagnostic::input(
+            folder.display().to_string(),
+            "another run is writing into it",
+            "wait until that run has ended, or name another folder with --out",
+        )),
+        // Some network disks know no locks: that is no reason not to run.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+    }
+}
+
+fn refuse_unless_empty(folder: &Path) -> Result<()> {
+    for path in entries(folder)? {
+        let path = path.map_err(|error| explain(folder, &error))?;
+        if path.file_name().is_none_or(|name| name != LOCK) {
+            return Err(Diagnostic::input(
+                folder.display().to_string(),
+                "this folder is not empty",
+                "write to another one, replace its results with --force, or continue its run with --resume",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The paths of what is in a folder.

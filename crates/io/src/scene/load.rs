@@ -49,6 +49,33 @@ pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
     }
 }
 
+/// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to begin at 0.
+pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
+    let factor = factor(table)?;
+    let first = match &factor {
+        Factor::Ramp { .. } => Some([0.0, 0.0]),
+        Factor::Table(points) => points.first().copied(),
+        Factor::One => None,
+    };
+    match (first, table.get("table")) {
+        (None, _) => {
+            let problem = format!(
+                "{} stands without ramp and table, so at no time does anything move by it",
+                moved.path
+            );
+            Err(moved.refuse(problem, "add ramp = \"0.1 s\", the time that it takes"))
+        }
+        (Some([time_s, first]), Some(field)) if first != 0.0 || time_s < 0.0 => {
+            let problem = format!(
+                "{} begins with a factor of {first} at {time_s} s, so {} would be followed in part only",
+                field.path, moved.path
+            );
+            Err(field.refuse(problem, "begin it with a factor of 0, at 0 s or later"))
+        }
+        _ => Ok(factor),
+    }
+}
+
 fn points(field: &Field<'_>) -> Result<Factor> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for item in field.items()? {

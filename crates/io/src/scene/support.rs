@@ -1,7 +1,7 @@
 //! `[supports.NAME]`
 
 use super::field::Field;
-use super::load::{factor, over_time};
+use super::load::{factor, factor_from_zero, over_time};
 use super::names::suggestion;
 use super::targets::Targets;
 use super::tree::Value;
@@ -46,11 +46,11 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
         );
         return Err(field.refuse(problem, "remove it"));
     }
-    Ok(Support {
-        of,
-        holds,
-        factor: factor(&table)?,
-    })
+    let factor = match table.get("displacement") {
+        Some(field) => factor_from_zero(&table, &field)?,
+        None => factor(&table)?,
+    };
+    Ok(Support { of, holds, factor })
 }
 
 /// `true`, or a list of degrees of freedom.

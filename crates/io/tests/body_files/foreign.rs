@@ -251,7 +251,7 @@ fn tables_from_spreadsheets_and_matlab() {
         (
             good,
             "a,b\n0,1\n1,0\n",
-            "bond 1: it joins particles 0 and 1, as bond 0 does already; one pair takes one bond: remove one of the two",
+            "bonds: bond 1: it joins particles 0 and 1, as bond 0 does already; one pair takes one bond: remove one of the two",
         ),
         (
             good,

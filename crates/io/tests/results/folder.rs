@@ -66,6 +66,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     for name in ours.iter().chain(&foreign) {
         fs::write(path.join(name), "<svg/>").unwrap();
     }
+    let path = &path.to_owned();
+    drop(folder);
     ResultsFolder::create(path, Existing::Continue).unwrap();
     // Only what a killed write has left is gone.
     assert_eq!(contents(path).len(), ours.len() + foreign.len());
@@ -146,4 +148,27 @@ fn plots_and_summaries_are_replaced_whole() {
     let text = fs::read_to_string(folder.summary()).unwrap();
     assert_eq!(text, "{\n  \"steps\": 7,\n  \"error\": null\n}\n");
     assert_eq!(contents(folder.path()).len(), 2);
+}
+
+#[test]
+fn one_run_at_a_time() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let path = folder.path().to_owned();
+    fs::write(folder.summary(), "mine").unwrap();
+    let clone = folder.clone();
+    drop(folder);
+    for existing in [Existing::Refuse, Existing::Replace, Existing::Continue] {
+        let error = ResultsFolder::create(&path, existing).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert_eq!(error.problem, "another run is writing into it");
+    }
+    assert_eq!(fs::read(clone.summary()).unwrap(), b"mine");
+    drop(clone);
+    ResultsFolder::create(&path, Existing::Continue).unwrap();
+    let error = ResultsFolder::create(&path, Existing::Refuse).unwrap_err();
+    assert_eq!(error.problem, "this folder is not empty");
+    ResultsFolder::create(&path, Existing::Replace).unwrap();
+    // Nothing but the lock is in it now.
+    ResultsFolder::create(&path, Existing::Refuse).unwrap();
 }

@@ -15,14 +15,14 @@ fn results_in(parent: &tempfile::TempDir) -> ResultsFolder {
     ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap()
 }
 
-/// All files of a folder and of those in it, with their bytes.
+/// All files of a folder and of those in it but for its lock, with their bytes.
 fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in folder.read_dir().unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(contents(&path));
-        } else {
+        } else if !path.ends_with(".lock") {
             let bytes = std::fs::read(&path).unwrap();
             found.push((path, bytes));
         }

@@ -7,6 +7,10 @@ use dem_io::scene::{
     Formulation, Hold, Pick, Quantity, Relaxation, Rolling, Scene, Search, StartOverlap, Wall,
     WallMotion, WallShape,
 };
+use dem_io::units::{
+    ACCELERATION, ANGLE, ANGULAR_VELOCITY, DENSITY, ENERGY, FORCE, LENGTH, MASS, NUMBER, RATE,
+    STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
+};
 use dem_io::{read_scene, scene_from_text};
 
 fn folder() -> PathBuf {
@@ -50,6 +54,37 @@ fn the_documentation() {
         let text = format!("{before}{other}");
         let read = scene_from_text(&text, "doc.toml", &[]).unwrap();
         assert_ne!(read.walls, scene.walls, "{comment}");
+    }
+}
+
+#[test]
+fn the_documentation_lists_every_unit() {
+    let text = include_str!("../../../../doc/scenes.md");
+    for dimension in [
+        LENGTH,
+        TIME,
+        MASS,
+        ANGLE,
+        VELOCITY,
+        ANGULAR_VELOCITY,
+        ACCELERATION,
+        FORCE,
+        TORQUE,
+        STRESS,
+        ENERGY,
+        STIFFNESS,
+        VISCOUS_DAMPING,
+        DENSITY,
+        RATE,
+        NUMBER,
+    ] {
+        let units: Vec<String> = dimension
+            .units
+            .iter()
+            .map(|(unit, _)| format!("`{unit}`"))
+            .collect();
+        let row = format!(" | {} |\n", units.join(", "));
+        assert!(text.contains(&row), "{}: {row}", dimension.name);
     }
 }
 
@@ -218,7 +253,7 @@ fn motions_of_walls() {
         WallMotion::Displacement {
             displacement_m: [0.0; 3],
             turn_rad: [0.0; 3],
-            factor: Factor::One,
+            factor: Factor::Ramp { until_s: 1.0 },
         }
     );
 }

@@ -111,7 +111,15 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
     if choice.thesis_s.is_finite() {
         line("", beside("0.17 sqrt(m/K)", choice.thesis_s));
     }
-    line("steps", format!("{steps}"));
+    let exact = steps < 1e15;
+    line(
+        "steps",
+        if exact {
+            format!("{steps}")
+        } else {
+            significant(steps, 2)
+        },
+    );
     for stage in &plan.stages {
         let name = if stage.needed { "does" } else { "leaves out" };
         line(name, format!("{}: {}", stage.name, stage.why));

@@ -1,8 +1,10 @@
 //! Bodies of a scene, put where they start.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
-use dem_io::scene::{BodyEntry, BondKind, BondModel as SceneModel, Formulation, Scene};
+use dem_io::body::files::body_files;
+use dem_io::scene::{BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -71,7 +73,7 @@ pub fn place_bodies(
                 one.first_bond = bonds.len();
                 let seed = (scene.run.seed, number as u64);
                 place_bonds(&body, kind, rule, seed, &particles, &mut one, &mut bonds)
-                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?;
+                    .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
             }
             None if !body.bonds.is_empty() => {
                 return Err(Diagnostic::input(
@@ -88,6 +90,25 @@ pub fn place_bodies(
         placed.push(one);
     }
     Ok((particles, bonds, placed))
+}
+
+/// The same message said of a body of the scene and, where it comes from a file, of that one of its `files` that says so.
+fn within(
+    error: Diagnostic,
+    scene: &Scene,
+    name: &str,
+    entry: &BodyEntry,
+    which: impl Fn(&[PathBuf]) -> Option<&PathBuf>,
+) -> Diagnostic {
+    let place = format!("{}: [bodies.{name}]", scene.source);
+    let BodySource::File(path) = &entry.source else {
+        return error.within(&place);
+    };
+    let files = body_files(path).unwrap_or_default();
+    let file = which(&files).map(|file| file.display().to_string());
+    error
+        .within(&file.unwrap_or_else(|| "standard input".to_owned()))
+        .within(&place)
 }
 
 fn place_particles(
@@ -131,7 +152,7 @@ fn place_particles(
         particles.push_sphere(places[original], body.radii[original], density);
         let i = first_particle + at;
         check_particle(original, particles, i)
-            .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?;
+            .map_err(|error| within(error, scene, name, entry, |files| files.first()))?;
     }
     set_moving(entry, particles, first_particle);
     Ok(PlacedBody {

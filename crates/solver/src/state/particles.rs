@@ -53,9 +53,9 @@ pub struct Motion {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Wrench {
-    /// N: x, y, z and a 0 that makes four.
+    /// N: x, y, z and a fourth that means nothing.
     pub force_n: [f64; 4],
-    /// About the centre, N m: x, y, z and a 0 that makes four.
+    /// About the centre, N m: x, y, z and a fourth that means nothing.
     pub torque_n_m: [f64; 4],
 }
 

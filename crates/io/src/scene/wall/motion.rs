@@ -3,7 +3,7 @@
 use crate::Result;
 use crate::scene::direction::{direction, rotation};
 use crate::scene::field::Field;
-use crate::scene::load::{factor, over_time};
+use crate::scene::load::{factor, factor_from_zero, over_time};
 use crate::scene::table::Table;
 use crate::scene::{Factor, WallMotion};
 use crate::units::{ANGULAR_VELOCITY, FORCE, LENGTH, VELOCITY};
@@ -40,9 +40,8 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
         let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
         return Err(second.refuse(problem, remedy));
     }
-    let factor = factor(wall)?;
     match first {
-        "servo" => servo(&field, factor),
+        "servo" => servo(&field, factor(wall)?),
         "displacement" | "turn" => Ok(WallMotion::Displacement {
             displacement_m: wall
                 .read("displacement", |field| field.vector(&LENGTH))?
@@ -50,7 +49,7 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
             turn_rad: wall
                 .read("turn", |field| rotation(&field))?
                 .unwrap_or_default(),
-            factor,
+            factor: factor_from_zero(wall, &field)?,
         }),
         _ => Ok(WallMotion::Velocity {
             velocity_m_s: wall
@@ -59,7 +58,7 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
             spin_rad_s: wall
                 .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
                 .unwrap_or_default(),
-            factor,
+            factor: factor(wall)?,
         }),
     }
 }
