@@ -29,10 +29,11 @@ pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
 /// sin(a)/a and cos(a) from a^2 below 0.01.
 #[inline(always)]
 fn small_angle(square: f64) -> (f64, f64) {
-    let s = square;
+    // Products, as a division takes several times as long.
+    let s = |divisor: f64| square * (1.0 / divisor);
     (
-        1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0)))),
-        1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0)))),
+        1.0 - s(6.0) * (1.0 - s(20.0) * (1.0 - s(42.0) * (1.0 - s(72.0) * (1.0 - s(110.0))))),
+        1.0 - s(2.0) * (1.0 - s(12.0) * (1.0 - s(30.0) * (1.0 - s(56.0) * (1.0 - s(90.0))))),
     )
 }
 
