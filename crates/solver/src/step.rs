@@ -35,8 +35,8 @@ pub fn act(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
         list_contacts(contacts, p);
         contact_wrenches(contacts, p, before_s);
+        state.clock.book(Stage::Contacts);
     }
-    state.clock.book(Stage::Contacts);
 
     // Before bonds break: a break gives its ends their half of the kick at once.
     remember(&mut state.supports, &p.motions);
