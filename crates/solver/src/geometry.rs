@@ -104,6 +104,18 @@ impl Bounds {
         }
     }
 
+    /// The largest box in both: [`Self::EMPTY`] where they have no point in common.
+    #[must_use]
+    pub fn common(&self, other: &Self) -> Self {
+        let low = [0, 1, 2].map(|k| self.low[k].max(other.low[k]));
+        let high = [0, 1, 2].map(|k| self.high[k].min(other.high[k]));
+        if (0..3).all(|k| low[k] <= high[k]) {
+            Self { low, high }
+        } else {
+            Self::EMPTY
+        }
+    }
+
     /// Whether a point lies within `reach` of the box, along each axis.
     pub fn is_near(&self, point: &[f64; 3], reach: f64) -> bool {
         (0..3).all(|k| point[k] >= self.low[k] - reach && point[k] <= self.high[k] + reach)

@@ -76,7 +76,7 @@ pub fn act(state: &mut State) {
     }
     state.clock.book(Stage::Damping);
 
-    let kick_s = 0.5 * (before_s + state.time_step_s);
+    let kick_s = state.kick_s();
     crate::check::ledger::before_kick(state);
     state.clock.book(Stage::Rest);
     let p = &mut state.particles;

@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use crate::geometry::Bounds;
 use crate::stages::motion::CHUNK;
 use crate::state::particles::Pose;
 
@@ -12,38 +13,6 @@ use crate::state::particles::Pose;
 const SMALL: u32 = 16;
 /// Cells per particle at most: a wide, empty scene gets larger cells.
 const CELLS_PER_PARTICLE: usize = 4;
-
-/// A box with sides along the axes, m.
-#[derive(Debug, Clone, Copy)]
-struct Bounds {
-    min: [f64; 3],
-    max: [f64; 3],
-}
-
-impl Bounds {
-    const EMPTY: Self = Self {
-        min: [f64::INFINITY; 3],
-        max: [f64::NEG_INFINITY; 3],
-    };
-
-    fn include(&mut self, low: [f64; 3], high: [f64; 3]) {
-        for k in 0..3 {
-            self.min[k] = self.min[k].min(low[k]);
-            self.max[k] = self.max[k].max(high[k]);
-        }
-    }
-
-    fn common(&self, other: &Self) -> Self {
-        Self {
-            min: [0, 1, 2].map(|k| self.min[k].max(other.min[k])),
-            max: [0, 1, 2].map(|k| self.max[k].min(other.max[k])),
-        }
-    }
-
-    fn is_empty(&self) -> bool {
-        (0..3).any(|k| self.min[k] > self.max[k])
-    }
-}
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the smaller index first, sorted. `clusters`: one for each particle.
 pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
@@ -70,16 +39,17 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
     let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sizes = vec![0_u32; count];
     let mut bounds = vec![Bounds::EMPTY; count];
-    let reach = |pose: &Pose| {
+    let around = |pose: &Pose| {
         let (place, reach) = (pose.place(), pose.radius_m() + 0.5 * skin_m);
-        let low: [f64; 3] = place.map(|x| x - reach).into();
-        let high: [f64; 3] = place.map(|x| x + reach).into();
-        (low, high)
+        Bounds {
+            low: place.map(|x| x - reach).into(),
+            high: place.map(|x| x + reach).into(),
+        }
     };
     for (pose, &cluster) in poses.iter().zip(clusters) {
-        let (low, high) = reach(pose);
+        let bounds = &mut bounds[cluster as usize];
         sizes[cluster as usize] += 1;
-        bounds[cluster as usize].include(low, high);
+        *bounds = bounds.with(&around(pose));
     }
     // All small clusters together are one thing that a large one may be near to.
     let mut small = Bounds::EMPTY;
@@ -88,29 +58,24 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
         if sizes[cluster] >= SMALL {
             large.push(cluster);
         } else if sizes[cluster] > 0 {
-            small.include(bounds[cluster].min, bounds[cluster].max);
+            small = small.with(&bounds[cluster]);
         }
     }
     let mut meets = vec![Bounds::EMPTY; count];
     large.sort_by(|&a, &b| {
-        bounds[a].min[0]
-            .total_cmp(&bounds[b].min[0])
+        bounds[a].low[0]
+            .total_cmp(&bounds[b].low[0])
             .then(a.cmp(&b))
     });
     for (n, &a) in large.iter().enumerate() {
-        let common = bounds[a].common(&small);
-        if !common.is_empty() {
-            meets[a].include(common.min, common.max);
-        }
+        meets[a] = meets[a].with(&bounds[a].common(&small));
         for &b in large[n + 1..]
             .iter()
-            .take_while(|&&b| bounds[b].min[0] <= bounds[a].max[0])
+            .take_while(|&&b| bounds[b].low[0] <= bounds[a].high[0])
         {
             let common = bounds[a].common(&bounds[b]);
-            if !common.is_empty() {
-                meets[a].include(common.min, common.max);
-                meets[b].include(common.min, common.max);
-            }
+            meets[a] = meets[a].with(&common);
+            meets[b] = meets[b].with(&common);
         }
     }
     let is_near = |i: usize| {
@@ -118,10 +83,7 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
         if sizes[cluster] < SMALL {
             return true;
         }
-        let (low, high) = reach(&poses[i]);
-        let mut own = Bounds::EMPTY;
-        own.include(low, high);
-        !own.common(&meets[cluster]).is_empty()
+        around(&poses[i]).common(&meets[cluster]) != Bounds::EMPTY
     };
     (0..poses.len())
         .filter(|&i| is_near(i))
@@ -145,16 +107,12 @@ impl Grid {
         if active.len() < 2 {
             return None;
         }
-        let mut bounds = Bounds::EMPTY;
-        let mut largest = 0.0_f64;
-        for &i in active {
-            let pose = &poses[i as usize];
-            bounds.include(pose.place().into(), pose.place().into());
-            largest = largest.max(pose.radius_m());
-        }
+        let poses_of = || active.iter().map(|&i| &poses[i as usize]);
+        let bounds = Bounds::of(poses_of().map(|pose| pose.place().into()));
+        let largest = poses_of().map(Pose::radius_m).fold(0.0, f64::max);
         let mut width = 2.0 * largest + skin_m;
         let counts_of = |width: f64| {
-            [0, 1, 2].map(|k| ((bounds.max[k] - bounds.min[k]) / width).min(1e6) as usize + 1)
+            [0, 1, 2].map(|k| ((bounds.high[k] - bounds.low[k]) / width).min(1e6) as usize + 1)
         };
         let room = CELLS_PER_PARTICLE * active.len() + 64;
         let product = |counts: [usize; 3]| counts.iter().map(|&n| n as f64).product::<f64>();
@@ -162,7 +120,7 @@ impl Grid {
             width *= 1.25;
         }
         let mut grid = Self {
-            origin: bounds.min,
+            origin: bounds.low,
             per_width: 1.0 / width,
             counts: counts_of(width),
             starts: Vec::new(),
