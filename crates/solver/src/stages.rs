@@ -11,3 +11,4 @@ pub mod loads;
 pub mod motion;
 pub mod neighbours;
 pub mod supports;
+pub mod walls;

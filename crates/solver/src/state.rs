@@ -5,6 +5,7 @@ pub mod contacts;
 pub mod order;
 pub mod particles;
 pub mod shares;
+pub mod walls;
 
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
@@ -16,6 +17,7 @@ use self::bonds::Bonds;
 use self::contacts::Contacts;
 use self::particles::{Particles, Wrench};
 use self::shares::{Share, divide};
+use self::walls::Wall;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
 #[derive(Debug, Clone)]
@@ -28,6 +30,8 @@ pub struct State {
     pub shares: Vec<Share>,
     /// Contacts between particles. None: nothing can touch.
     pub contacts: Option<Contacts>,
+    /// Walls, in the order of their names.
+    pub walls: Vec<Wall>,
     /// Loads.
     pub loads: Vec<SetLoad>,
     /// Supports.
@@ -74,6 +78,7 @@ impl State {
             bonds,
             shares,
             contacts: None,
+            walls: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
             gravity_m_s2: [0.0; 3],

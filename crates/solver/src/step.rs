@@ -9,6 +9,7 @@ use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
 use crate::stages::loads::add_loads;
 use crate::stages::motion::{add_particle_damping, drift, kick};
 use crate::stages::supports::{hold, remember};
+use crate::stages::walls::{list_near, move_walls, plan_motions, wall_wrenches};
 use crate::state::State;
 use crate::state::particles::Wrench;
 use crate::state::shares::{Share, divide_anew};
@@ -33,8 +34,12 @@ pub fn act(state: &mut State) {
     }
     state.clock.book(Stage::Bonds);
     if let Some(contacts) = &mut state.contacts {
-        list_contacts(contacts, p);
+        if contacts.room_m < 0.0 {
+            list_near(&mut state.walls, p, contacts.skin_m);
+            list_contacts(contacts, p);
+        }
         contact_wrenches(contacts, p, before_s);
+        wall_wrenches(&mut state.walls, contacts, p, before_s);
         state.clock.book(Stage::Contacts);
     }
 
@@ -95,6 +100,7 @@ pub fn act(state: &mut State) {
         state.time_s,
         [before_s, state.time_step_s],
     );
+    plan_motions(&mut state.walls, state.time_s, state.time_step_s);
     crate::check::ledger::after_kick(state);
     state.clock.book(Stage::Rest);
 }
@@ -104,7 +110,8 @@ pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
     let fastest_m_s = drift(&mut state.particles, state.time_step_s);
     if let Some(contacts) = &mut state.contacts {
-        contacts.room_m -= fastest_m_s * state.time_step_s;
+        let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
+        contacts.room_m -= (fastest_m_s + of_walls_m_s) * state.time_step_s;
     }
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;

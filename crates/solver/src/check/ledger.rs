@@ -10,6 +10,7 @@ use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::walls::{Push, Wall};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,7 @@ struct Work {
     bond_damping: f64,
     particle_damping: f64,
     contact_damping: f64,
+    walls: f64,
 }
 
 /// The ledger at a moment.
@@ -69,6 +71,8 @@ pub struct Balance {
     pub load_work_j: f64,
     /// Done by supports, J.
     pub support_work_j: f64,
+    /// Done by walls, J.
+    pub wall_work_j: f64,
     /// Dissipated by damping of bonds, J.
     pub bond_damping_j: f64,
     /// Dissipated by damping of particles, J.
@@ -168,25 +172,32 @@ impl Work {
         self.bond_damping += factor * other.bond_damping;
         self.particle_damping += factor * other.particle_damping;
         self.contact_damping += factor * other.contact_damping;
+        self.walls += factor * other.walls;
     }
 }
 
-/// Powers of loads and damping, W.
-fn powers(state: &State) -> Work {
+/// Powers of loads, damping and walls, W: of walls as they moved in the step just made (0) or as they will in the one to come (1).
+fn powers(state: &State, step: usize) -> Work {
     let motions = &state.particles.motions;
     let [bonds, particles, contacts] = state.resistances();
+    let of_walls = |push: &dyn Fn(&Wall) -> &Push| -> f64 {
+        let power =
+            |wall: &Wall| push(wall).power_w(wall.velocities_m_s[step], wall.spins_rad_s[step]);
+        state.walls.iter().map(power).sum()
+    };
     Work {
         loads: loads_power_w(&state.loads, state.time_s, motions),
         supports: 0.0,
         bond_damping: -power_w(bonds, motions),
         particle_damping: -power_w(particles, motions),
-        contact_damping: -power_w(contacts, motions),
+        contact_damping: of_walls(&|wall| &wall.damping) - power_w(contacts, motions),
+        walls: of_walls(&|wall| &wall.push),
     }
 }
 
 /// Books the work of the half step that ends with the kick to come.
 pub fn before_kick(state: &mut State) {
-    let powers = powers(state);
+    let powers = powers(state, 0);
     state.ledger.settle();
     let half_s = 0.5 * state.previous_time_step_s;
     state.ledger.work.add(&powers, half_s);
@@ -194,7 +205,7 @@ pub fn before_kick(state: &mut State) {
 
 /// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
 pub fn after_kick(state: &mut State) {
-    let pending = powers(state);
+    let pending = powers(state, 1);
     let State {
         ledger,
         particles,
@@ -220,6 +231,15 @@ pub fn after_kick(state: &mut State) {
             let [fx, fy, fz, tx, ty, tz] = [0, 1, 2, 3, 4, 5].map(mean);
             let pose = &particles.poses[held.particle as usize];
             add_resultant(&mut total, pose, [fx, fy, fz], [tx, ty, tz], about);
+        }
+    }
+    for wall in &state.walls {
+        let [x, y, z] = [0, 1, 2].map(|k| wall.frame.position_m[k] - about[k]);
+        let ([fx, fy, fz], torque) = (wall.push.force_n, wall.push.torque_n_m);
+        let moved = [y * fz - z * fy, z * fx - x * fz, x * fy - y * fx];
+        for k in 0..3 {
+            total[0][k] += wall.push.force_n[k];
+            total[1][k] += torque[k] + moved[k];
         }
     }
     let resisted = resultant(&state.particle_resistance, &particles.poses, about);
@@ -256,10 +276,14 @@ pub fn balance(state: &mut State) -> Balance {
     let p = &state.particles;
     let kinetic = kinetic_energy(p, |i| motions[i]);
     let elastic = elastic_energy(state);
-    let (contact_elastic, friction) = match &state.contacts {
+    let (mut contact_elastic, mut friction) = match &state.contacts {
         Some(contacts) => (elastic_energy_j(contacts, p), friction_j(contacts)),
         None => (0.0, 0.0),
     };
+    for wall in &state.walls {
+        contact_elastic += wall.elastic_j;
+        friction += wall.friction_j;
+    }
     let (present, scales) = momenta(p, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -272,12 +296,14 @@ pub fn balance(state: &mut State) -> Balance {
         + friction
         + ledger.released_j;
     let stored = elastic.total() + contact_elastic;
-    let error = kinetic + stored + gravity + gone - work.loads - work.supports - ledger.opening_j;
+    let given = work.loads + work.supports + work.walls;
+    let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
     let largest = [
         kinetic + stored,
         gravity.abs(),
         work.loads.abs(),
         work.supports.abs(),
+        work.walls.abs(),
     ];
     ledger.scale_j = largest.into_iter().fold(ledger.scale_j, f64::max);
     ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
@@ -300,6 +326,7 @@ pub fn balance(state: &mut State) -> Balance {
         gravity_j: gravity,
         load_work_j: work.loads,
         support_work_j: work.supports,
+        wall_work_j: work.walls,
         bond_damping_j: work.bond_damping,
         particle_damping_j: work.particle_damping,
         contact_elastic_j: contact_elastic,

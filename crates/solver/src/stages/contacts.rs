@@ -59,11 +59,8 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again once particles may have crossed half the skin.
+/// Looks for near pairs again.
 pub fn list_contacts(contacts: &mut Contacts, particles: &Particles) {
-    if contacts.room_m >= 0.0 {
-        return;
-    }
     let poses = &particles.poses;
     let pairs = near_pairs(poses, &contacts.clusters, contacts.skin_m);
     contacts.relist(pairs, |[a, b]| {

@@ -12,7 +12,7 @@ use dem_run::state::particles::{Particles, Wrench};
 use dem_run::step::{act, move_on, step};
 
 /// Numbers between -1 and 1 that look random.
-fn scattered() -> impl FnMut() -> f64 {
+pub(crate) fn scattered() -> impl FnMut() -> f64 {
     let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
     move || {
         hash ^= hash << 13;
@@ -34,7 +34,7 @@ fn hertz() -> Law {
     Law::HertzMindlin(HertzMindlin::new([material; 2], &behaviour()))
 }
 
-fn kinds() -> [ContactKind; 3] {
+pub(crate) fn kinds() -> [ContactKind; 3] {
     [
         ContactKind {
             law: hertz(),
@@ -55,7 +55,7 @@ fn kinds() -> [ContactKind; 3] {
 }
 
 /// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common centre.
-fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
+pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     let mut any = scattered();
     let mut particles = Particles::default();
     for n in 0..512_u32 {

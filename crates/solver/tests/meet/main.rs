@@ -8,3 +8,4 @@
 )]
 
 mod clouds;
+mod walls;

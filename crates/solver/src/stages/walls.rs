@@ -1,0 +1,374 @@
+//! Walls: how they move, and their contacts with particles.
+
+use dem_io::scene::WallMotion;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::loads::factor_at;
+use crate::geometry::Touch;
+use crate::physics::contact::relaxation::relaxed;
+use crate::physics::contact::rolling::NoRolling;
+use crate::physics::contact::touch::{Ball, Foot, Touch as Contact, torques, touch_at_wall};
+use crate::physics::contact::{History, NormalLaw, Response, response};
+use crate::physics::number::Triple;
+use crate::physics::rigid::turn;
+use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
+use crate::state::particles::{Particles, Wrench};
+use crate::state::walls::{Push, Wall, WallTouch};
+
+/// Particles handled by one task.
+const CHUNK: usize = 256;
+/// A contact that moves on to another flat part of a wall keeps what it remembers if the normal turns by less than that of this cosine.
+const SAME_WAY: f64 = 0.9;
+/// Share of what is missing that a servo makes good in a step.
+const SERVO: f64 = 0.1;
+
+/// Lists the particles whose surface is less than `skin_m` from a wall.
+pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
+    for wall in walls {
+        let bounds = wall.shape.bounds();
+        let is_near = |i: &u32| {
+            let pose = &particles.poses[*i as usize];
+            let centre = wall.frame.to_wall(pose.place().into());
+            let reach = pose.radius_m() + skin_m;
+            let mut found = Vec::new();
+            if bounds.is_near(&centre, reach) {
+                wall.shape.touches(centre, reach, &mut found);
+            }
+            !found.is_empty()
+        };
+        let all = 0..particles.len() as u32;
+        wall.near = all
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .filter(is_near)
+            .collect();
+    }
+}
+
+/// Adds what walls do to the wrenches and, of damping, to the resistance, after a step of `dt`, s; and notes what that does to the walls.
+pub fn wall_wrenches(
+    walls: &mut [Wall],
+    contacts: &mut Contacts,
+    particles: &mut Particles,
+    dt: f64,
+) {
+    let Contacts {
+        materials,
+        resistance,
+        least_overlap,
+        ..
+    } = contacts;
+    for wall in walls {
+        let known = &*particles;
+        let of_chunk = |some: &[u32]| {
+            let mut found = Vec::new();
+            for &particle in some {
+                meet(
+                    wall,
+                    materials,
+                    known,
+                    particle,
+                    *least_overlap,
+                    dt,
+                    &mut found,
+                );
+            }
+            found
+        };
+        let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(of_chunk).collect();
+        wall.push = Push::default();
+        wall.damping = Push::default();
+        wall.elastic_j = 0.0;
+        wall.stiffness_n_m = 0.0;
+        wall.touching.clear();
+        for met in met.into_iter().flatten() {
+            book(wall, &met, particles, resistance);
+        }
+    }
+}
+
+/// What a particle and a wall do to each other at one place.
+struct Met {
+    touch: WallTouch,
+    /// Where, m.
+    point: Vector3<f64>,
+    /// Velocity of the belt there, m/s.
+    belt: Vector3<f64>,
+    /// Force on the particle and the part that is damping, N.
+    forces: [Vector3<f64>; 2],
+    /// Torque on the particle and the part that is damping, N m.
+    torques: [Vector3<f64>; 2],
+    /// Moment of rolling friction on the particle and the part that is damping, N m.
+    moments: [Vector3<f64>; 2],
+    elastic_j: f64,
+    lost_j: f64,
+    /// Along the normal, N/m.
+    stiffness_n_m: f64,
+}
+
+fn book(wall: &mut Wall, met: &Met, particles: &mut Particles, resistance: &mut [Wrench]) {
+    let i = met.touch.particle as usize;
+    let [force, damping] = met.forces;
+    let [torque, damping_torque] = met.torques;
+    particles.wrenches[i].add(&(force - damping), &(torque - damping_torque));
+    resistance[i].add(&damping, &damping_torque);
+    let arm = met.point - Vector3::from(wall.frame.position_m);
+    let pushes = [&mut wall.push, &mut wall.damping];
+    for ((push, force), moment) in pushes.into_iter().zip(met.forces).zip(met.moments) {
+        let about_pivot = arm.cross(&force) + moment;
+        for k in 0..3 {
+            push.force_n[k] += force[k];
+            push.torque_n_m[k] += about_pivot[k];
+        }
+        push.belt_w += force.dot(&met.belt);
+    }
+    wall.elastic_j += met.elastic_j;
+    wall.stiffness_n_m += met.stiffness_n_m;
+    wall.friction_j += met.lost_j;
+    wall.touching.push(met.touch);
+}
+
+/// Finds where a particle touches a wall, and what comes of it.
+fn meet(
+    wall: &Wall,
+    materials: &[u8],
+    particles: &Particles,
+    particle: u32,
+    least_overlap: f64,
+    dt: f64,
+    found: &mut Vec<Met>,
+) {
+    let i = particle as usize;
+    let pose = &particles.poses[i];
+    let mut touches = Vec::new();
+    let centre = wall.frame.to_wall(pose.place().into());
+    wall.shape.touches(centre, pose.radius_m(), &mut touches);
+    let first = wall.touching.partition_point(|old| old.particle < particle);
+    let before = &wall.touching[first..];
+    let before = &before[..before.partition_point(|old| old.particle == particle)];
+    let kind = &wall.kinds[usize::from(wall.kind_of[usize::from(materials[i])])];
+    for touch in &touches {
+        let there = wall.frame.touch_to_space(touch);
+        let normal = -Vector3::from(there.normal);
+        let old = remembered(before, &touches, touch, &normal);
+        found.push(meet_at(
+            wall,
+            kind,
+            particles,
+            particle,
+            &there,
+            old,
+            least_overlap,
+            dt,
+        ));
+    }
+}
+
+/// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat part to the next, that of a feature which it
+/// touches no more and whose normal was about the same.
+fn remembered<'a>(
+    before: &'a [WallTouch],
+    touches: &[Touch],
+    touch: &Touch,
+    normal: &Vector3<f64>,
+) -> Option<&'a WallTouch> {
+    let same = before.iter().find(|old| old.feature == touch.feature);
+    same.or_else(|| {
+        let left = |old: &&WallTouch| touches.iter().all(|t| t.feature != old.feature);
+        let alike = |old: &&WallTouch| Vector3::from(old.normal).dot(normal) > SAME_WAY;
+        before.iter().filter(left).find(alike)
+    })
+}
+
+#[expect(clippy::too_many_arguments, reason = "the inside of a loop")]
+fn meet_at(
+    wall: &Wall,
+    kind: &ContactKind,
+    particles: &Particles,
+    particle: u32,
+    there: &Touch,
+    old: Option<&WallTouch>,
+    least_overlap: f64,
+    dt: f64,
+) -> Met {
+    let i = particle as usize;
+    let motion = &particles.motions[i];
+    let normal = -Vector3::from(there.normal);
+    // Where force and torque of the particle say that they act: half the overlap under its surface.
+    let pose = &particles.poses[i];
+    let point = pose.place() - normal * (0.5 * (pose.radius_m() + there.distance_m));
+    let arm = point - Vector3::from(wall.frame.position_m);
+    let [velocity, _] = wall.velocities_m_s.map(Vector3::from);
+    let [spin, _] = wall.spins_rad_s.map(Vector3::from);
+    let belt = Vector3::from(wall.surface_velocity_m_s);
+    let belt = belt - normal * belt.dot(&normal);
+    let foot = Foot {
+        normal: triple(&normal),
+        normal_before: old.map_or(triple(&normal), |old| {
+            let [x, y, z] = old.normal;
+            Triple(x, y, z)
+        }),
+        distance_m: there.distance_m,
+        velocity_m_s: triple(&(velocity + spin.cross(&arm) + belt)),
+        spin_rad_s: triple(&spin),
+    };
+    let ball = Ball {
+        velocity_m_s: triple(&motion.velocity_m_s.into()),
+        spin_rad_s: triple(&motion.spin_rad_s.into()),
+        radius_m: particles.poses[i].radius_m(),
+        inverse_mass_per_kg: particles.inverse_masses[i],
+        inverse_inertia_per_kg_m2: particles.inverse_inertias[i],
+    };
+    let mut touch = touch_at_wall(&foot, ball, dt);
+    let memory = old.map_or(Memory::default(), |old| old.memory);
+    let [rx, ry, rz, origin_m] = memory.rolled;
+    let [sx, sy, sz, overlap_m] = memory.slid;
+    let relaxed = relaxed(touch.overlap_m, origin_m, least_overlap * touch.radius_m);
+    touch.overlap_m = relaxed.overlap_m;
+    let history = History {
+        tangential_m: Triple(sx, sy, sz),
+        rolling_rad: Triple(rx, ry, rz),
+        overlap_m,
+    };
+    let Response {
+        history,
+        force_on_b,
+        moment_on_b,
+        energy,
+        lost,
+        damping,
+    } = of_kind(kind, &touch, &history, dt);
+    let damping_n = damping.normal_n + damping.tangential_n;
+    let [_, torque] = torques(&touch, force_on_b, moment_on_b);
+    let [_, damping_torque] = torques(&touch, damping_n, damping.rolling_n_m);
+    let Triple(sx, sy, sz) = history.tangential_m;
+    let Triple(rx, ry, rz) = history.rolling_rad;
+    Met {
+        touch: WallTouch {
+            particle,
+            feature: there.feature,
+            normal: normal.into(),
+            memory: Memory {
+                slid: [sx, sy, sz, history.overlap_m],
+                rolled: [rx, ry, rz, relaxed.origin_m],
+            },
+        },
+        point,
+        belt,
+        forces: [vector(force_on_b), vector(damping_n)],
+        torques: [vector(torque), vector(damping_torque)],
+        moments: [vector(moment_on_b), vector(damping.rolling_n_m)],
+        elastic_j: energy.normal + energy.tangential + energy.rolling,
+        lost_j: lost.sliding + lost.rolling,
+        stiffness_n_m: match &kind.law {
+            Law::HertzMindlin(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
+            Law::Linear(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
+        },
+    }
+}
+
+/// The laws of a kind of contact.
+fn of_kind(kind: &ContactKind, touch: &Contact, history: &History, dt: f64) -> Response {
+    match &kind.law {
+        Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch, history, dt),
+        Law::Linear(law) => with_law(law, &kind.rolling, touch, history, dt),
+    }
+}
+
+fn with_law(
+    law: &impl NormalLaw<f64>,
+    rolling: &Rolling,
+    touch: &Contact,
+    history: &History,
+    dt: f64,
+) -> Response {
+    match rolling {
+        Rolling::Free => response(law, &NoRolling, touch, history, dt),
+        Rolling::Constant(rolling) => response(law, rolling, touch, history, dt),
+        Rolling::Spring(rolling) => response(law, rolling, touch, history, dt),
+    }
+}
+
+fn triple(v: &Vector3<f64>) -> Triple<f64> {
+    Triple(v.x, v.y, v.z)
+}
+
+fn vector(t: Triple<f64>) -> Vector3<f64> {
+    Vector3::new(t.0, t.1, t.2)
+}
+
+/// Decides how the walls move in the step of `dt`, s, that begins at `time_s`.
+pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
+    for wall in walls {
+        let [velocity, spin] = match &wall.motion {
+            WallMotion::Fixed => [[0.0; 3]; 2],
+            WallMotion::Velocity {
+                velocity_m_s,
+                spin_rad_s,
+                factor,
+            } => {
+                let factor = factor_at(factor, time_s + 0.5 * dt);
+                [
+                    velocity_m_s.map(|v| factor * v),
+                    spin_rad_s.map(|w| factor * w),
+                ]
+            }
+            WallMotion::Displacement {
+                displacement_m,
+                turn_rad,
+                factor,
+            } => {
+                let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
+                [
+                    displacement_m.map(|d| gain * d / dt),
+                    turn_rad.map(|t| gain * t / dt),
+                ]
+            }
+            WallMotion::Servo {
+                force_n,
+                direction,
+                largest_velocity_m_s,
+                factor,
+            } => {
+                let pushed: f64 = (0..3).map(|k| wall.push.force_n[k] * direction[k]).sum();
+                let missing = factor_at(factor, time_s) * force_n - pushed;
+                // Without contact there is nothing to go by: as fast as it may.
+                let wanted = if wall.stiffness_n_m > 0.0 {
+                    SERVO * missing / (wall.stiffness_n_m * dt)
+                } else {
+                    f64::INFINITY.copysign(missing)
+                };
+                let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
+                [direction.map(|d| speed * d), [0.0; 3]]
+            }
+        };
+        wall.velocities_m_s[1] = velocity;
+        wall.spins_rad_s[1] = spin;
+    }
+}
+
+/// Moves the walls on. Returns the largest speed of a wall's point that is near particles, m/s.
+pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
+    let mut fastest = 0.0_f64;
+    for wall in walls {
+        let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
+        let spin_norm = Vector3::from(spin).norm();
+        if spin_norm > 0.0 {
+            let pivot = Vector3::from(wall.frame.position_m);
+            let far = particles
+                .poses
+                .iter()
+                .map(|pose| (pose.place() - pivot).norm());
+            fastest = fastest.max(spin_norm * far.fold(0.0, f64::max));
+        }
+        fastest = fastest.max(Vector3::from(velocity).norm());
+        for k in 0..3 {
+            wall.frame.position_m[k] += dt * velocity[k];
+        }
+        wall.frame.turned = turn(wall.frame.turned, spin.map(|w| w * dt));
+        wall.velocities_m_s[0] = velocity;
+        wall.spins_rad_s[0] = spin;
+    }
+    fastest
+}

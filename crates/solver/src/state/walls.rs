@@ -1,0 +1,75 @@
+//! Walls: where they stand, how they move, what touches them and what that does to them.
+
+use dem_io::scene::WallMotion;
+
+use super::contacts::{ContactKind, Memory};
+use crate::geometry::{Frame, Shape};
+
+/// A wall of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    /// In its own frame, whose origin is the pivot.
+    pub shape: Shape,
+    /// Where it stands now.
+    pub frame: Frame,
+    /// How it moves.
+    pub motion: WallMotion,
+    /// Velocity of a belt, m/s. Length 3.
+    pub surface_velocity_m_s: [f64; 3],
+    /// How it meets each material: numbers in `kinds`. Length materials.
+    pub kind_of: Vec<u8>,
+    /// Kinds of contacts.
+    pub kinds: Vec<ContactKind>,
+    /// Velocity of the pivot in the step just made and in the one to come, m/s.
+    pub velocities_m_s: [[f64; 3]; 2],
+    /// Spin in the step just made and in the one to come, rad/s.
+    pub spins_rad_s: [[f64; 3]; 2],
+    /// Particles that are near, rising.
+    pub near: Vec<u32>,
+    /// What touches it, by particle and then by feature.
+    pub touching: Vec<WallTouch>,
+    /// What it does to the particles that touch it.
+    pub push: Push,
+    /// The part of that which is damping.
+    pub damping: Push,
+    /// Stiffness of its contacts along their normals, together, N/m.
+    pub stiffness_n_m: f64,
+    /// Elastic energy of its contacts, J.
+    pub elastic_j: f64,
+    /// Energy that friction took so far, J.
+    pub friction_j: f64,
+}
+
+/// A particle that touches a wall, and what is remembered of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallTouch {
+    /// Which particle.
+    pub particle: u32,
+    /// Where on the wall: see [`crate::geometry::Touch`].
+    pub feature: u32,
+    /// Unit vector from the wall to the centre. Length 3.
+    pub normal: [f64; 3],
+    /// Springs, overlap and origin.
+    pub memory: Memory,
+}
+
+/// What a wall does to the particles that touch it, together.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Push {
+    /// N.
+    pub force_n: [f64; 3],
+    /// About the wall's pivot, N m.
+    pub torque_n_m: [f64; 3],
+    /// Power that the surface velocity of a belt takes, W.
+    pub belt_w: f64,
+}
+
+impl Push {
+    /// Power of the wall with the particles while it moves so, W.
+    pub fn power_w(&self, velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> f64 {
+        let moving: f64 = (0..3)
+            .map(|k| self.force_n[k] * velocity_m_s[k] + self.torque_n_m[k] * spin_rad_s[k])
+            .sum();
+        moving + self.belt_w
+    }
+}

@@ -1,0 +1,106 @@
+//! Clouds of spheres that fall on walls: fixed, turning, on a belt, pressed by a servo.
+
+use dem_io::scene::{Factor, WallMotion};
+use dem_run::check::ledger::{Ledger, balance};
+use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
+use dem_run::state::State;
+use dem_run::state::walls::{Push, Wall};
+use dem_run::step::{act, move_on};
+
+use crate::clouds::{cloud, kinds};
+
+fn wall(shape: Shape, motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
+    Wall {
+        shape,
+        frame: Frame::default(),
+        motion,
+        surface_velocity_m_s: belt_m_s,
+        kind_of: vec![0, 2],
+        kinds: kinds().to_vec(),
+        velocities_m_s: [[0.0; 3]; 2],
+        spins_rad_s: [[0.0; 3]; 2],
+        near: Vec::new(),
+        touching: Vec::new(),
+        push: Push::default(),
+        damping: Push::default(),
+        stiffness_n_m: 0.0,
+        elastic_j: 0.0,
+        friction_j: 0.0,
+    }
+}
+
+fn floor(motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
+    let plane = Plane::new([0.0, 0.0, -5e-3], [0.0, 0.0, 1.0]).unwrap();
+    wall(Shape::Plane(plane), motion, belt_m_s)
+}
+
+/// The cloud falls on these walls.
+fn falling(walls: Vec<Wall>, time_step_s: f64) -> State {
+    let mut state = cloud(0.1e-3, 2, time_step_s);
+    state.gravity_m_s2 = [0.0, 0.0, -9.81];
+    for motion in &mut state.particles.motions {
+        motion.velocity_m_s[2] -= 1.0;
+    }
+    state.walls = walls;
+    state.ledger = Ledger::opened(&state);
+    state
+}
+
+fn worst_energy_error(walls: &[Wall], time_step_s: f64) -> f64 {
+    let mut state = falling(walls.to_vec(), time_step_s);
+    let mut worst = 0.0_f64;
+    while state.time_s < 4e-3 {
+        act(&mut state);
+        if state.steps.is_multiple_of(20) {
+            let balance = balance(&mut state);
+            worst = worst.max(balance.energy_error.abs());
+            // What walls give is summed step by step, with a rounding in each.
+            let rounding = 1e-13 + f64::EPSILON * state.steps as f64;
+            let errors = [balance.momentum_error, balance.angular_momentum_error];
+            assert!(
+                errors.iter().all(|e| *e < rounding),
+                "{errors:?}, step {}",
+                state.steps
+            );
+        }
+        move_on(&mut state);
+    }
+    act(&mut state);
+    eprintln!(
+        "dt {time_step_s:e}: worst {worst:.2e} {:?}",
+        balance(&mut state)
+    );
+    worst
+}
+
+#[test]
+fn the_books_balance_whatever_the_walls_do() {
+    let turning = WallMotion::Velocity {
+        velocity_m_s: [0.1, 0.0, 0.3],
+        spin_rad_s: [20.0, 10.0, 30.0],
+        factor: Factor::One,
+    };
+    let shaken = WallMotion::Displacement {
+        displacement_m: [1e-3, 0.0, 0.5e-3],
+        turn_rad: [0.0; 3],
+        factor: Factor::Ramp { until_s: 3e-3 },
+    };
+    let block = SolidBox::new([-4e-3, -4e-3, -12e-3], [4e-3, 4e-3, -5e-3]).unwrap();
+    for (name, walls) in [
+        ("floor", vec![floor(WallMotion::Fixed, [0.0; 3])]),
+        ("belt", vec![floor(WallMotion::Fixed, [0.5, 0.2, 0.0])]),
+        ("turning", vec![floor(turning.clone(), [0.0; 3])]),
+        (
+            "shaken block",
+            vec![wall(Shape::Box(block), shaken, [0.0; 3])],
+        ),
+    ] {
+        let errors = [4e-7, 2e-7, 1e-7].map(|dt| worst_energy_error(&walls, dt));
+        eprintln!("{name}: {errors:?}");
+        assert!(errors[2] < 2e-5, "{name}: {errors:?}");
+        assert!(
+            errors[0] > 3.0 * errors[1] && errors[1] > 3.0 * errors[2],
+            "{name}: {errors:?}"
+        );
+    }
+}
