@@ -9,6 +9,7 @@ pub mod walls;
 
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
+use crate::clusters::{Clusters, Split, Triggers};
 use crate::stages::breakage::Break;
 use crate::stages::loads::SetLoad;
 use crate::stages::supports::SetSupport;
@@ -28,7 +29,15 @@ pub struct State {
     pub bonds: Bonds,
     /// Who works on what.
     pub shares: Vec<Share>,
-    /// Contacts between particles. None: nothing can touch.
+    /// Which particles are of one piece. None: nothing can break, and nothing can touch.
+    pub clusters: Option<Clusters>,
+    /// When pieces are looked for.
+    pub triggers: Triggers,
+    /// Bonds that broke since pieces were looked for last.
+    pub unsearched: Vec<u32>,
+    /// Clusters that were found in pieces in this step.
+    pub splits: Vec<Split>,
+    /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
@@ -77,6 +86,10 @@ impl State {
             particles,
             bonds,
             shares,
+            clusters: None,
+            triggers: Triggers::default(),
+            unsearched: Vec::new(),
+            splits: Vec::new(),
             contacts: None,
             walls: Vec::new(),
             loads: Vec::new(),

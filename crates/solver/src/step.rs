@@ -36,7 +36,8 @@ pub fn act(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
         if contacts.room_m < 0.0 {
             list_near(&mut state.walls, p, contacts.skin_m);
-            list_contacts(contacts, p);
+            let clusters = state.clusters.as_ref();
+            list_contacts(contacts, clusters.map_or(&[], |c| &c.of_particle), p);
         }
         contact_wrenches(contacts, p, before_s);
         wall_wrenches(&mut state.walls, contacts, p, before_s);
@@ -57,6 +58,7 @@ pub fn act(state: &mut State) {
     if !state.broken.is_empty() {
         leave_out_broken(state);
     }
+    find_pieces(state);
     let p = &mut state.particles;
     add_loads(&state.loads, state.time_s, &mut p.wrenches);
     state.clock.book(Stage::Rest);
@@ -118,6 +120,28 @@ pub fn move_on(state: &mut State) {
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
     state.clock.book(Stage::Motion);
+}
+
+/// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
+fn find_pieces(state: &mut State) {
+    state.splits.clear();
+    let Some(clusters) = &mut state.clusters else {
+        return;
+    };
+    let broken = state.broken.iter().map(|broken| broken.bond);
+    state.unsearched.extend(broken);
+    if !state
+        .triggers
+        .due(state.steps, state.unsearched.len() as u64)
+    {
+        return;
+    }
+    let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
+    state.splits = clusters.update(state.time_s, &damaged, &state.bonds);
+    state.unsearched.clear();
+    if let (Some(contacts), false) = (&mut state.contacts, state.splits.is_empty()) {
+        contacts.room_m = -1.0;
+    }
 }
 
 /// Divides the work anew once enough bonds have broken since it was divided last.

@@ -59,10 +59,10 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again.
-pub fn list_contacts(contacts: &mut Contacts, particles: &Particles) {
+/// Looks for near pairs again. `clusters`: one for each particle; those of one cluster do not touch each other.
+pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Particles) {
     let poses = &particles.poses;
-    let pairs = near_pairs(poses, &contacts.clusters, contacts.skin_m);
+    let pairs = near_pairs(poses, clusters, contacts.skin_m);
     contacts.relist(pairs, |[a, b]| {
         let (a, b) = (&poses[a as usize], &poses[b as usize]);
         a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()

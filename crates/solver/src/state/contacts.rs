@@ -55,8 +55,6 @@ pub struct Contacts {
     pub kind_of: Vec<u8>,
     /// Material of each particle.
     pub materials: Vec<u8>,
-    /// Cluster of each particle: those of one cluster do not touch each other.
-    pub clusters: Vec<u32>,
     /// Pairs that touch or are near, the smaller index first, sorted.
     pub pairs: Vec<[u32; 2]>,
     /// What each remembers. Length as `pairs`.

@@ -1,6 +1,7 @@
 //! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however often near pairs are looked for.
 
 use dem_run::check::ledger::{Ledger, balance};
+use dem_run::clusters::Clusters;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::manner::{Behaviour, Elastic};
@@ -73,7 +74,6 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
         kinds: vec![one, mixed, other],
         kind_of: vec![0, 1, 1, 2],
         materials: (0..count).map(|i| u8::from(i % 3 == 0)).collect(),
-        clusters: (0..count as u32).collect(),
         skin_m,
         room_m: -1.0,
         least_overlap: 1e-3,
@@ -83,6 +83,7 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     };
     contacts.divide(count, shares);
     state.contacts = Some(contacts);
+    state.clusters = Some(Clusters::new(count, &state.bonds));
     state.ledger = Ledger::opened(&state);
     state
 }
