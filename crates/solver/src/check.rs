@@ -2,4 +2,5 @@
 
 pub mod ledger;
 pub mod limit;
+pub mod linear;
 pub mod watchdog;

@@ -3,7 +3,7 @@
 mod check;
 
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
@@ -295,6 +295,12 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         None => None,
     };
     let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
+    if !arguments.quiet {
+        for note in &plan.notes {
+            // Nobody to read it is no reason to stop.
+            let _ = writeln!(std::io::stderr(), "note: {note}");
+        }
+    }
     let folder = folder
         .map(|(path, existing)| ResultsFolder::create(&path, existing))
         .transpose()?;

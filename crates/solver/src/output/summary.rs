@@ -58,6 +58,8 @@ pub struct Summary {
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub left_out: Vec<String>,
+    /// What is odd about the scene but harmless.
+    pub notes: Vec<String>,
     /// Folder of the results.
     pub results: Option<String>,
     /// The change of the time step, where it went on from a checkpoint with another one.
@@ -148,6 +150,9 @@ impl fmt::Display for Summary {
             )?;
         }
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
+        for note in &self.notes {
+            writeln!(f, "note         {note}")?;
+        }
         let doubts = self.doubts();
         let verdict = if doubts.is_empty() {
             "sound: nothing to mind".to_owned()
