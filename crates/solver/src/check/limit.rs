@@ -200,7 +200,10 @@ fn inverse_mass_roots(state: &State) -> Field {
     let p = &state.particles;
     let mut roots: Field = (0..p.len())
         .map(|i| {
-            let (m, j) = (p.inverse_masses[i].sqrt(), p.inverse_inertias[i].sqrt());
+            let (m, j) = (
+                p.motions[i].inverse_mass.sqrt(),
+                p.motions[i].inverse_inertia.sqrt(),
+            );
             [m, m, m, j, j, j]
         })
         .collect();
@@ -313,6 +316,7 @@ fn add_damping_times(
             Motion {
                 velocity_m_s: [vx, vy, vz],
                 spin_rad_s: [wx, wy, wz],
+                ..Motion::default()
             }
         })
         .collect();
