@@ -110,8 +110,8 @@ fn culprit(state: &State) -> Option<(usize, f64)> {
         let p = &state.particles;
         frequencies(
             &state.bonds.stiffness(at),
-            ends.map(|end| p.inverse_masses[end]),
-            ends.map(|end| p.inverse_inertias[end]),
+            ends.map(|end| p.motions[end].inverse_mass),
+            ends.map(|end| p.motions[end].inverse_inertia),
         )
         .critical_step_s()
     };
