@@ -81,15 +81,20 @@ pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
 /// Elastic energy of all contacts, J.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
     ordered_sum(contacts.pairs.len(), |at| {
-        if contacts.memories[at] == Memory::default() {
-            return 0.0;
-        }
-        let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
-        match &kind.law {
-            Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-            Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-        }
+        contact_energy_j(contacts, particles, at)
     })
+}
+
+/// Elastic energy of contact `at`, J.
+pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -> f64 {
+    if contacts.memories[at] == Memory::default() {
+        return 0.0;
+    }
+    let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
+    match &kind.law {
+        Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+        Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+    }
 }
 
 /// Elastic energy of a contact as it was taken down, J.
