@@ -14,6 +14,8 @@ const PLOTS: &str = "plots";
 const INDEX: &str = "frames.pvd";
 const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
+const FRAGMENTS: &str = "fragments.csv";
+const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
 const CHECKPOINT: &str = "checkpoint.dem";
 const LOCK: &str = ".lock";
@@ -100,6 +102,16 @@ impl ResultsFolder {
         self.path.join(EVENTS)
     }
 
+    /// Fragments at chosen moments: `fragments.csv`.
+    pub fn fragments(&self) -> PathBuf {
+        self.path.join(FRAGMENTS)
+    }
+
+    /// Which fragment broke off which: `fragment-tree.csv`.
+    pub fn fragment_tree(&self) -> PathBuf {
+        self.path.join(FRAGMENT_TREE)
+    }
+
     /// Summary: `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
@@ -163,7 +175,8 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        self.remove_files("", |name| [INDEX, SERIES, EVENTS, SUMMARY].contains(&name))?;
+        const OTHERS: [&str; 6] = [INDEX, SERIES, EVENTS, FRAGMENTS, FRAGMENT_TREE, SUMMARY];
+        self.remove_files("", |name| OTHERS.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {

@@ -3,6 +3,7 @@
 
 mod checkpoints;
 mod folder;
+mod fragments;
 mod frames;
 mod plots;
 mod tables;
