@@ -10,6 +10,7 @@ pub mod frames;
 mod growing;
 pub mod plots;
 pub mod series;
+pub mod stored_frame;
 pub mod summary;
 
 pub use events::{Event, EventFile};
@@ -18,4 +19,5 @@ pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
 pub use plots::{Axis, Line, Plot, svg};
 pub use series::{Series, SeriesFile, read_series};
+pub use stored_frame::{StoredFragment, StoredFrame, read_frame};
 pub use summary::write_json;

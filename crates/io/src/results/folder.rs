@@ -84,7 +84,7 @@ impl ResultsFolder {
 
     /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
     pub fn frame(&self, number: usize) -> PathBuf {
-        self.path.join(frame_name(number))
+        frame_in(&self.path, number)
     }
 
     /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
@@ -202,6 +202,37 @@ impl ResultsFolder {
         }
         Ok(())
     }
+}
+
+/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be writing there.
+///
+/// # Errors
+/// There is no such folder, or it cannot be read.
+pub fn frames_in(path: &Path) -> Result<Vec<usize>> {
+    if !path.is_dir() {
+        return Err(Diagnostic::input(
+            path.display().to_string(),
+            "there is no such folder",
+            "name the folder of results of a run",
+        ));
+    }
+    let frames = path.join(FRAMES);
+    if !frames.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut numbers = Vec::new();
+    for entry in entries(&frames)? {
+        let entry = entry.map_err(|error| explain(&frames, &error))?;
+        let name = entry.file_name().and_then(|name| name.to_str());
+        numbers.extend(name.and_then(frame_number));
+    }
+    numbers.sort_unstable();
+    Ok(numbers)
+}
+
+/// Frame `number` of the results folder `path`.
+pub fn frame_in(path: &Path, number: usize) -> PathBuf {
+    path.join(frame_name(number))
 }
 
 /// The name of a frame in the folder, with `/` on every system: ParaView wants it so.

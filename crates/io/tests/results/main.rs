@@ -6,6 +6,7 @@ mod folder;
 mod fragments;
 mod frames;
 mod plots;
+mod stored_frame;
 mod tables;
 
 use std::path::{Path, PathBuf};
