@@ -171,6 +171,7 @@ fn axis(label: &str, log: bool) -> Axis {
     Axis {
         label: label.to_owned(),
         log,
+        whole: false,
     }
 }
 

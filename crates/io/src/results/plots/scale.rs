@@ -76,6 +76,7 @@ impl Scale {
     /// Numbers at round values, at most `intervals` and one more, or two if the axis is `rounded`.
     fn with_ticks(axis: &Axis, low: f64, high: f64, intervals: f64, rounded: bool) -> Self {
         let step = nice_step((high - low) / intervals);
+        let step = if axis.whole { step.max(1.0) } else { step };
         // A little more than a whole step is one, not two.
         let (from, to, first, last);
         if rounded {
