@@ -5,7 +5,7 @@ use dem_io::results::{Axis, FragmentRow, Line, Plot, ResultsFolder, TreeRow, wri
 use serde::Serialize;
 
 use crate::clusters::fragments::{mass_fraction_of_largest, size_distribution};
-use crate::clusters::{Clusters, Fragment, Split};
+use crate::clusters::{Cluster, Clusters, Fragment, Split};
 
 /// Names of the plots of fragments.
 pub(super) const COUNT: &str = "fragments";
@@ -59,7 +59,7 @@ pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
 /// # Errors
 /// Those of the files.
 pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
-    let row = |(id, cluster): (u32, &crate::clusters::Cluster)| TreeRow {
+    let row = |(id, cluster): (u32, &Cluster)| TreeRow {
         id,
         parent: cluster.parent,
         born_s: cluster.born_s,
@@ -70,10 +70,10 @@ pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     write_fragment_tree(&folder.fragment_tree(), rows)
 }
 
-/// What a cluster broke into, for a person: `cluster 3 -> 7, 8 (1204 + 38 particles)`. The largest stand first, and of many only
+/// What one of the clusters that are or were broke into, for a person: `cluster 3 -> 7, 8 (1204 + 38 particles)`. The largest stand first, and of many only
 /// some are named.
-pub fn split_text(split: &Split, clusters: &Clusters) -> String {
-    let particles = |id: u32| clusters.history[id as usize].particles;
+pub fn split_text(split: &Split, history: &[Cluster]) -> String {
+    let particles = |id: u32| history[id as usize].particles;
     let mut children = split.children.clone();
     // The sort keeps the order of equal ones.
     children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
@@ -104,7 +104,7 @@ pub fn write_fragment_plots(
     fragments: &[Fragment],
     end_s: f64,
 ) -> Result<()> {
-    let counts = counts_over_time(clusters, end_s);
+    let counts = counts_over_time(&clusters.history, end_s);
     if counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);
         plot.y.whole = true;
@@ -114,7 +114,7 @@ pub fn write_fragment_plots(
         let mut plot = plot(
             "Fragment sizes",
             "size: diameter of a sphere of equal volume (m)",
-            "share of the mass in fragments up to this size",
+            "cumulative mass fraction",
             sizes(fragments),
         );
         plot.x.log = true;
@@ -123,10 +123,10 @@ pub fn write_fragment_plots(
     Ok(())
 }
 
-/// Time, s, and number of fragments, with a step at every change.
-pub fn counts_over_time(clusters: &Clusters, end_s: f64) -> Vec<[f64; 2]> {
-    let born = clusters.history.iter().map(|c| (c.born_s, 1.0));
-    let ended = clusters.history.iter().filter_map(|c| c.ended_s);
+/// Time, s, and number of fragments, with a step at every change, of all clusters that are or were.
+pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
+    let born = history.iter().map(|c| (c.born_s, 1.0));
+    let ended = history.iter().filter_map(|c| c.ended_s);
     let mut changes: Vec<(f64, f64)> = born.chain(ended.map(|time_s| (time_s, -1.0))).collect();
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut points: Vec<[f64; 2]> = Vec::new();

@@ -53,7 +53,7 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
     let details: Vec<String> = state
         .splits
         .iter()
-        .map(|split| split_text(split, clusters))
+        .map(|split| split_text(split, &clusters.history))
         .collect();
     let events: Vec<Event<'_>> = details
         .iter()

@@ -146,6 +146,18 @@ impl Scale {
                 }
             })
             .collect();
+        if decades <= 2.0 {
+            // Few decades: the numbers of their ends alone would say little.
+            for decade in 0..count {
+                for digit in [2, 5] {
+                    let exponent = from + f64::from(decade);
+                    scale.ticks.push(Tick {
+                        share: share(exponent + f64::from(digit).log10()),
+                        label: format!("{digit}×{}", power_of_ten(exponent as i32)),
+                    });
+                }
+            }
+        }
         if decades <= 4.0 {
             scale.fine = (0..count)
                 .flat_map(|decade| {
