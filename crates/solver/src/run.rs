@@ -1,6 +1,7 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod fragments;
 mod limits;
 mod progress;
 
@@ -8,14 +9,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use dem_io::checkpoint::write_checkpoint;
-use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
 use crate::check::ledger::balance;
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
+use crate::clusters::fragments as fragments_of;
 use crate::measure::{Gauge, gauges, read_gauges};
+use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
@@ -25,7 +28,8 @@ use crate::snapshot::{Snapshot, fingerprint};
 use crate::state::State;
 use crate::step::{act, move_on};
 
-use self::events::{change_step, new_step, write_breaks};
+use self::events::{change_step, new_step, write_breaks, write_splits};
+use self::fragments::write_fragments;
 use self::limits::{Limits, went_through};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
@@ -52,6 +56,8 @@ struct Files<'a> {
     series: SeriesFile,
     events: EventFile,
     frames: FrameFiles,
+    /// None: nothing can break into fragments.
+    fragments: Option<FragmentFile>,
     order: FrameOrder,
 }
 
@@ -61,8 +67,13 @@ impl<'a> Files<'a> {
         folder: &'a ResultsFolder,
         order: FrameOrder,
         columns: &[String],
+        has_fragments: bool,
         continued: Option<&Progress>,
     ) -> Result<Self> {
+        let fragments = has_fragments.then(|| match continued {
+            Some(at) => FragmentFile::continue_at(&folder.fragments(), at.fragments_bytes),
+            None => FragmentFile::create(&folder.fragments()),
+        });
         let (series, events, frames) = match continued {
             Some(at) => (
                 SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
@@ -80,6 +91,7 @@ impl<'a> Files<'a> {
             series,
             events,
             frames,
+            fragments: fragments.transpose()?,
             order,
         })
     }
@@ -131,7 +143,14 @@ pub fn run(
     let mut files = match (settings.folder, order) {
         (Some(folder), Some(order)) => {
             let continued = is_continued.then_some(&progress);
-            Some(Files::open(folder, order, &columns, continued)?)
+            let has_fragments = state.clusters.is_some();
+            Some(Files::open(
+                folder,
+                order,
+                &columns,
+                has_fragments,
+                continued,
+            )?)
         }
         _ => None,
     };
@@ -154,6 +173,7 @@ pub fn run(
         }
         if let Some(files) = &mut files {
             write_breaks(&state, &bodies, files)?;
+            write_splits(&state, files)?;
         }
         let ends = state.time_s + 0.5 * state.time_step_s >= end_s;
         let row_due = ends || due(&state, rhythm.row_s, progress.next_row);
@@ -189,6 +209,10 @@ pub fn run(
             progress.next_frame = rhythm.frame_s.map_or(0, |s| next(&state, s));
             files.order.write(&state, &mut files.frames)?;
         }
+        let fragments_due = frame_due || rests || (row_due && progress.has_new_fragments(&state));
+        if let (true, Some(files)) = (fragments_due, &mut files) {
+            write_fragments(&state, &mut progress, files)?;
+        }
         // The ledger of this step has been looked at: what is saved is sound. Looking at it only to save would change its later figures.
         let checkpoint_due = checkpoint_due
             || (row_due && rhythm.checkpoint_s.is_none() && saved.elapsed() >= CHECKPOINT_EVERY);
@@ -216,6 +240,11 @@ pub fn run(
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
+    let fragments = state
+        .clusters
+        .as_ref()
+        .map(|clusters| fragments_of(clusters, &state.particles, &state.particles.motions));
+    let of_state = state.clusters.as_ref().zip(fragments.as_ref());
     let summary = Summary {
         scene: scene.source.clone(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -226,6 +255,7 @@ pub fn run(
         particles: state.particles.len(),
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,
+        fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         steps: state.steps,
         time_step_s: state.time_step_s,
         limit_s: progress.limit_s,
@@ -258,6 +288,10 @@ pub fn run(
         save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
         write_json(&files.folder.summary(), &summary)?;
         write_plots(files.folder, &gauges)?;
+        if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
+            write_tree(files.folder, clusters)?;
+            write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
+        }
     }
     Ok(summary)
 }
@@ -274,6 +308,10 @@ fn save(
     files.events.sync()?;
     progress.series_bytes = files.series.length_bytes();
     progress.events_bytes = files.events.length_bytes();
+    if let Some(fragments) = &files.fragments {
+        fragments.sync()?;
+        progress.fragments_bytes = fragments.length_bytes();
+    }
     progress.frame_times_s = files.frames.times_s().to_vec();
     let measures = gauges.iter().map(|gauge| gauge.history).collect();
     let snapshot = Snapshot::taken(

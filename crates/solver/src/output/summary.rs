@@ -5,6 +5,7 @@ use std::fmt;
 use dem_io::units::significant;
 use serde::Serialize;
 
+use super::fragments::FragmentSummary;
 use crate::check::ledger::Balance;
 use crate::measure::Measured;
 
@@ -32,6 +33,9 @@ pub struct Summary {
     pub bonds: usize,
     /// Bonds that broke.
     pub broken_bonds: u64,
+    /// What the bodies broke into, where they can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fragments: Option<FragmentSummary>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.
@@ -147,6 +151,14 @@ impl fmt::Display for Summary {
                 f,
                 "broken       {} of {} bonds",
                 self.broken_bonds, self.bonds
+            )?;
+        }
+        if let Some(fragments) = &self.fragments {
+            writeln!(
+                f,
+                "fragments    {}, the largest {} of the mass",
+                fragments.count,
+                significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
         writeln!(f, "left out     {}", self.left_out.join(", "))?;

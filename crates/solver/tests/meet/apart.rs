@@ -89,7 +89,10 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
             let rounding_m = 1e-12 * RADIUS_M;
             for (now, then) in state.particles.poses.iter().zip(&start) {
                 let moved = (now.place() - then.place()).norm();
-                assert!(moved < rounding_m, "overlap {overlap}: moved by {moved:e} m");
+                assert!(
+                    moved < rounding_m,
+                    "overlap {overlap}: moved by {moved:e} m"
+                );
             }
         }
     }
@@ -97,7 +100,10 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
 
 /// Largest energy that has come from nowhere, over the largest energy, while a cube that vibrates falls apart: at once, or bond by bond.
 fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
-    let text = cube(overlap, &format!("clusters.interval = 1\nrun.safety = {safety}"));
+    let text = cube(
+        overlap,
+        &format!("clusters.interval = 1\nrun.safety = {safety}"),
+    );
     let Plan { mut state, .. } = planned(&text);
     let mut any = scattered();
     for motion in &mut state.particles.motions {
@@ -116,7 +122,10 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
             true => 1e-9,
             false => 1e6 * (-20.0 * gone).exp(),
         };
-        let weaker = Criteria { tension_pa, ..strong };
+        let weaker = Criteria {
+            tension_pa,
+            ..strong
+        };
         state.bonds.rules[0].criteria = Some(weaker);
         act(&mut state);
         let balance = balance(&mut state);
