@@ -334,6 +334,8 @@ pub enum Quantity {
     BrokenBonds,
     /// "largest_utilisation": stress over strength of the bond nearest to failure.
     LargestUtilisation,
+    /// "angle_of_repose": slope of the heap that the particles form, rad.
+    AngleOfRepose,
     /// "force_x", ... force of particles on the wall, N.
     Force(u8),
     /// "torque_x", ... torque of particles on the wall about its pivot, N m.

@@ -1,5 +1,7 @@
 //! Measures: named quantities of sets of particles, followed through a run.
 
+mod heap;
+
 use dem_io::scene::{At, Measure, Quantity};
 use serde::{Deserialize, Serialize};
 
@@ -166,6 +168,13 @@ impl Gauge {
             Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
                 largest.max(bond_utilisation(state, at))
             }),
+            Quantity::AngleOfRepose => {
+                let down = nalgebra::Vector3::from(state.gravity_m_s2);
+                let up = (-down)
+                    .try_normalize(0.0)
+                    .unwrap_or_else(nalgebra::Vector3::z);
+                heap::angle_of_repose_rad(p, &self.particles, up)
+            }
             // Of the particles on the wall.
             Quantity::Force(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.force_n[k as usize]),
             Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.torque_n_m[k as usize]),

@@ -11,7 +11,7 @@ use crate::units::{
 };
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 34] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 35] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -37,6 +37,7 @@ pub(super) const QUANTITIES: [(&str, Quantity); 34] = [
     ("elastic_energy", Quantity::ElasticEnergy),
     ("broken_bonds", Quantity::BrokenBonds),
     ("largest_utilisation", Quantity::LargestUtilisation),
+    ("angle_of_repose", Quantity::AngleOfRepose),
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
     ("force_z", Quantity::Force(2)),
@@ -68,7 +69,7 @@ impl Quantity {
         match self {
             Self::Position(_) | Self::Displacement(_) => &LENGTH,
             Self::Velocity(_) => &VELOCITY,
-            Self::Rotation(_) => &ANGLE,
+            Self::Rotation(_) | Self::AngleOfRepose => &ANGLE,
             Self::AngularVelocity(_) => &ANGULAR_VELOCITY,
             Self::Reaction(_) | Self::Force(_) => &FORCE,
             Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
