@@ -139,6 +139,10 @@ fn options_exist() {
             .args(["check", "--help"])
             .output()
             .unwrap(),
+        program("dem-run")
+            .args(["fragment", "--help"])
+            .output()
+            .unwrap(),
     ])
     .map(|output| String::from_utf8(output.stdout).unwrap())
     .collect();
