@@ -12,6 +12,8 @@ pub enum Stage {
     Bonds,
     /// Contacts, and the search for them.
     Contacts,
+    /// The search for pieces.
+    Clusters,
     /// Damping of bonds and particles.
     Damping,
     /// Loads, supports, breakage and the ledger.
@@ -22,9 +24,10 @@ pub enum Stage {
 
 impl Stage {
     /// All, in the order of the table.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Bonds,
         Self::Contacts,
+        Self::Clusters,
         Self::Damping,
         Self::Motion,
         Self::Rest,
@@ -35,6 +38,7 @@ impl Stage {
         match self {
             Self::Bonds => "bonds",
             Self::Contacts => "contacts",
+            Self::Clusters => "clusters",
             Self::Damping => "damping",
             Self::Rest => "rest",
             Self::Motion => "motion",
@@ -45,7 +49,7 @@ impl Stage {
 /// Times of the stages in the steps that were timed.
 #[derive(Debug, Clone, Default)]
 pub struct StageClock {
-    times: [Duration; 5],
+    times: [Duration; 6],
     since: Option<Instant>,
 }
 

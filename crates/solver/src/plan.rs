@@ -19,7 +19,7 @@ use crate::state::State;
 use crate::state::particles::Wrench;
 
 use self::bodies::{PlacedBody, place_bodies};
-use self::contacts::{Kinds, are_needed, place_contacts};
+use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
 use self::time_step::{StepChoice, choose_step};
@@ -70,6 +70,7 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     let step = choose_step(scene, &mut state, allow_any_step)?;
     state.time_step_s = step.step_s;
+    choose_skin(scene, step.impact_speed_m_s, &mut state);
     let stages = stages::stages(&state, scene);
     Ok(Plan {
         state,

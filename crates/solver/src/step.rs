@@ -58,7 +58,9 @@ pub fn act(state: &mut State) {
     if !state.broken.is_empty() {
         leave_out_broken(state);
     }
+    state.clock.book(Stage::Rest);
     find_pieces(state);
+    state.clock.book(Stage::Clusters);
     let p = &mut state.particles;
     add_loads(&state.loads, state.time_s, &mut p.wrenches);
     state.clock.book(Stage::Rest);

@@ -58,8 +58,9 @@ mod tests {
         let count = (1.0 / step) as i32;
         for x in -count..=count {
             for y in -count..=count {
-                for z in 0..=count {
-                    let [x, y, z] = [x, y, z].map(|n| f64::from(n) * step);
+                for z in 0..=5 * count {
+                    let [x, y] = [x, y].map(|n| f64::from(n) * step);
+                    let z = f64::from(z) * 0.2 * step;
                     if x.hypot(y) < radius * (1.0 - z / height) {
                         // A tilted world: up is x.
                         particles.push_sphere([z + 5.0, x - 3.0, y], 1e-6, 1000.0);

@@ -14,8 +14,10 @@ use crate::state::State;
 use crate::state::contacts::{ContactKind, Contacts, Law, Rolling};
 use crate::state::particles::Wrench;
 
-/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise.
-const SKIN: f64 = 0.1;
+/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.
+const SKIN: [f64; 2] = [0.1, 0.5];
+/// Steps for which a list of near pairs is to do at the speed of the first impacts.
+const STEPS_PER_LIST: f64 = 30.0;
 /// Ends that overlap at the start by less than this share of the smaller radius only touch: files round.
 pub(super) const ROUNDING: f64 = 1e-6;
 /// Materials that a byte can tell apart, and one that stands for none.
@@ -155,7 +157,7 @@ pub(super) fn place_contacts(
         kinds: kinds.kinds.clone(),
         kind_of: kinds.of_pair.clone(),
         materials,
-        skin_m: scene.search.skin.unwrap_or(SKIN) * largest_m,
+        skin_m: scene.search.skin.unwrap_or(SKIN[0]) * largest_m,
         least_overlap: scene.relaxation.min_overlap,
         relaxes: true,
         resistance: vec![Wrench::default(); p.len()],
@@ -172,6 +174,16 @@ pub(super) fn place_contacts(
     contacts.room_m = -1.0;
     state.contacts = Some(contacts);
     Ok(())
+}
+
+/// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may move in some steps, both.
+pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
+    let (step_s, p) = (state.time_step_s, &state.particles);
+    let largest_m = p.poses.iter().map(|q| q.radius_m()).fold(0.0, f64::max);
+    if let (Some(contacts), None) = (&mut state.contacts, scene.search.skin) {
+        let moved_m = 2.0 * STEPS_PER_LIST * speed_m_s * step_s;
+        contacts.skin_m = moved_m.clamp(SKIN[0] * largest_m, SKIN[1] * largest_m);
+    }
 }
 
 /// Whether the scene says how all those meet that can.

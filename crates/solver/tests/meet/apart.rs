@@ -188,3 +188,65 @@ fn a_bond_without_strength_is_none() {
     assert!(off[0] > 1.8 * off[1] && off[1] > 1.8 * off[2], "{off:?}");
     assert!(off[2] < 2e-3, "{off:?}");
 }
+
+/// Which cluster each particle is in, by the smallest particle that unbroken bonds lead to: breadth first.
+fn breadth_first(state: &State) -> Vec<u32> {
+    let count = state.particles.len();
+    let mut beside = vec![Vec::new(); count];
+    for (at, &[a, b]) in state.bonds.ends.iter().enumerate() {
+        if !state.bonds.is_broken(at) {
+            beside[a as usize].push(b);
+            beside[b as usize].push(a);
+        }
+    }
+    let mut found = vec![u32::MAX; count];
+    for first in 0..count as u32 {
+        if found[first as usize] != u32::MAX {
+            continue;
+        }
+        let mut queue = std::collections::VecDeque::from([first]);
+        found[first as usize] = first;
+        while let Some(at) = queue.pop_front() {
+            for &next in &beside[at as usize] {
+                if found[next as usize] == u32::MAX {
+                    found[next as usize] = first;
+                    queue.push_back(next);
+                }
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search() {
+    let extra = "clusters.interval = 1\nrun.gravity = [0, 0, -9.81]\n\
+         walls.floor = { plane = { point = [0, 0, -4e-3], normal = [0.2, 0.1, 1] }, material = \"cake\" }";
+    let text = cube(0.25, extra)
+        .replace("tension = 1e9", "tension = 3e5, weibull_modulus = 2")
+        .replace("bodies.cube = {", "bodies.cube = { velocity = [0, 0, -2],");
+    let Plan { mut state, .. } = planned(&text);
+    let mut looks = 0;
+    while state.time_s < 8e-3 {
+        step(&mut state);
+        if !state.broken.is_empty() {
+            looks += 1;
+            let wanted = breadth_first(&state);
+            let clusters = &state.clusters.as_ref().unwrap().of_particle;
+            // One to one.
+            let mut pairs: Vec<(u32, u32)> =
+                clusters.iter().copied().zip(wanted).collect();
+            pairs.sort_unstable();
+            pairs.dedup();
+            let mut ids: Vec<u32> = pairs.iter().map(|p| p.0).collect();
+            let mut roots: Vec<u32> = pairs.iter().map(|p| p.1).collect();
+            ids.dedup();
+            roots.sort_unstable();
+            roots.dedup();
+            assert_eq!([ids.len(), roots.len()], [pairs.len(); 2]);
+        }
+    }
+    let pieces = state.clusters.as_ref().unwrap().living().count();
+    eprintln!("{looks} looks, {} broken, {pieces} pieces", state.broken_count);
+    assert!(looks > 10 && pieces > 5);
+}

@@ -9,4 +9,5 @@
 
 mod apart;
 mod clouds;
+mod rest;
 mod walls;
