@@ -259,39 +259,46 @@ fn find_own(
     books: &mut Books<'_>,
     scene: &Scene<'_>,
 ) {
-    let (pairs, poses) = (&scene.contacts.pairs[..], scene.poses);
+    let (poses, motions) = (scene.poses, scene.motions);
+    let pairs = &scene.contacts.pairs[some.start..];
     let memories = &mut books.memories[some.start - share.own.start..];
     let (of_first_kind, of_others) = share.touching.split_at_mut(1);
-    let touching = &mut of_first_kind[0][1];
-    touching.resize(some.len(), 0);
+    let list = &mut of_first_kind[0][1];
+    list.resize(some.len(), 0);
+    let touching = &mut list[..];
     let mut count = 0;
-    for (n, at) in some.enumerate() {
-        if let Some(&[_, soon]) = pairs.get(at + AHEAD) {
+    for n in 0..some.len() {
+        if let Some(&[_, soon]) = pairs.get(n + AHEAD) {
             fetch_soon(&poses[soon as usize]);
-            fetch_soon(&scene.motions[soon as usize]);
+            fetch_soon(&motions[soon as usize]);
         }
         if let Some(memory) = memories.get(n + AHEAD) {
             fetch_soon(memory);
         }
-        let [a, b] = pairs[at].map(|end| end as usize);
-        let b_here = b.wrapping_sub(share.particles.start);
-        if let Some(wrench) = books.wrenches.get(b_here) {
-            fetch_soon(wrench);
-            fetch_soon(&books.resistance[b_here]);
-        }
+        let [a, b] = pairs[n].map(|end| &poses[end as usize]);
         // Whether they touch cannot be foretold, so there is no branch on it.
-        let touches = overlap(&poses[a], &poses[b]);
-        touching[count] = at as u32;
+        let touches = overlap(a, b);
+        touching[count] = (some.start + n) as u32;
         count += usize::from(touches);
         let memory = &mut memories[n];
-        if !touches & is_remembered(memory) {
+        let if_apart = u64::from(touches).wrapping_sub(1);
+        if remembered_bits(memory) & if_apart != 0 {
             *memory = Memory::default();
         }
     }
-    touching.truncate(count);
+    list.truncate(count);
+    for &at in &*list {
+        let b = pairs[at as usize - some.start][1] as usize;
+        if let Some(wrench) = books.wrenches.get(b.wrapping_sub(share.particles.start)) {
+            fetch_soon(wrench);
+        }
+        if let Some(wrench) = books.resistance.get(b.wrapping_sub(share.particles.start)) {
+            fetch_soon(wrench);
+        }
+    }
     if !of_others.is_empty() {
-        touching.retain(|&at| {
-            let kind = scene.contacts.kind(pairs[at as usize]);
+        list.retain(|&at| {
+            let kind = scene.contacts.kind(pairs[at as usize - some.start]);
             if kind > 0 {
                 of_others[kind - 1][1].push(at);
             }
@@ -300,10 +307,10 @@ fn find_own(
     }
 }
 
-/// Whether a contact remembers anything: springs are only there while its law or its origin holds an overlap.
+/// Not 0 if a contact remembers anything: springs are only there while its law or its origin holds an overlap.
 #[inline(always)]
-fn is_remembered(memory: &Memory) -> bool {
-    memory.slid[3].to_bits() | memory.rolled[3].to_bits() != 0
+fn remembered_bits(memory: &Memory) -> u64 {
+    memory.slid[3].to_bits() | memory.rolled[3].to_bits()
 }
 
 impl ShareWork<'_> {
