@@ -363,6 +363,7 @@ impl ShareWork<'_> {
 
     /// The contacts of one kind: those of the border first, so that each particle meets its contacts in their order.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
     fn of_kind<T: Lanes>(
         &mut self,
         proof: T::Proof,
