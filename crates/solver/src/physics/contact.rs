@@ -175,7 +175,8 @@ pub fn response<T: Number>(
 
     let across = touch.velocity_m_s - touch.middle * apart;
     let slid = slide(
-        carry.to_middle(history.tangential_m),
+        &carry,
+        history.tangential_m,
         across.times(dt),
         grip.tangential_n_m,
         grip.softer.larger(manner.kept[0]).smaller(manner.kept[1]),
@@ -184,17 +185,14 @@ pub fn response<T: Number>(
     );
     let rolled = rolling.roll(&grip, touch, &carry, history.rolling_rad, pressed, dt);
 
-    let tangential = carry.to_end(slid.force);
-    let tangential_damping = -carry.to_end(slid.damping);
-    let rolling_damping = -carry.to_end(rolled.damping);
     Response {
         history: History {
-            tangential_m: carry.to_end(slid.spring),
-            rolling_rad: carry.to_end(rolled.spring),
+            tangential_m: slid.spring,
+            rolling_rad: rolled.spring,
             overlap_m: touch.overlap_m.if_positive(touch.overlap_m),
         },
-        force_on_b: touch.normal * normal - tangential + tangential_damping,
-        moment_on_b: rolling_damping - carry.to_end(rolled.force),
+        force_on_b: touch.normal * normal - slid.force - slid.damping,
+        moment_on_b: -rolled.force - rolled.damping,
         energy: ContactEnergy {
             normal: grip.energy_j,
             tangential: slid.stored_j,
@@ -206,8 +204,8 @@ pub fn response<T: Number>(
         },
         damping: Damping {
             normal_n: touch.normal * (normal - grip.elastic_n),
-            tangential_n: tangential_damping,
-            rolling_n_m: rolling_damping,
+            tangential_n: -slid.damping,
+            rolling_n_m: -rolled.damping,
         },
     }
 }

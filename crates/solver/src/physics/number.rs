@@ -11,6 +11,9 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// 0.
+    fn zero(self) -> Self;
+
     /// Times a constant.
     fn times(self, factor: f64) -> Self;
 
@@ -37,6 +40,11 @@ pub trait Number:
 }
 
 impl Number for f64 {
+    #[inline(always)]
+    fn zero(self) -> Self {
+        0.0
+    }
+
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * factor

@@ -1,4 +1,4 @@
-//! Bonds, and contacts, are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
+//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
 //! in the order of the bonds.
 
 use std::ops::Range;
@@ -25,7 +25,12 @@ impl Four {
     pub(super) fn new(numbers: [usize; BLOCK], ends: &[[u32; 2]], wanted: Range<usize>) -> Self {
         Self {
             numbers,
-            ends: numbers.map(|at| ends[at]),
+            ends: [
+                ends[numbers[0]],
+                ends[numbers[1]],
+                ends[numbers[2]],
+                ends[numbers[3]],
+            ],
             wanted,
         }
     }
@@ -100,7 +105,7 @@ pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4
 
 /// Rows of x, y, z and something that makes four.
 #[inline(always)]
-fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; BLOCK] {
+pub(super) fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; BLOCK] {
     T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
 }
 

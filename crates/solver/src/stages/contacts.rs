@@ -12,7 +12,7 @@ use crate::physics::contact::rolling::{
 use crate::physics::contact::touch::{Ball, torques, touch};
 use crate::physics::contact::{History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
-use crate::stages::blocks::{Four, fetch_soon, ways};
+use crate::stages::blocks::{fetch_soon, rows};
 use crate::stages::lanes::{FOUR, LaneWork, Lanes, with_lanes};
 use crate::stages::motion::ordered_sum;
 use crate::stages::neighbours::near_pairs;
@@ -21,8 +21,8 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Contacts between those that are looked at and those whose second particles are fetched into the cache.
 const AHEAD: usize = 32;
-/// The same for contacts that touch.
-const SOON: usize = 32;
+/// Contacts that are looked at before those of them that touch are computed: what the look fetches stays in the cache until then.
+const TOGETHER: usize = 128;
 
 /// Adds the elastic and frictional forces of contacts to the wrenches, sets their resistance to the damping forces, books what friction took, and
 /// takes down what each contact remembers: after a step of `dt`, s, in which the particles moved as their motions say.
@@ -210,26 +210,27 @@ impl LaneWork for ShareWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
         self.books.resistance.fill(Wrench::default());
-        find_touching(self.share, &mut self.books, self.scene);
-        for kind in 0..self.scene.contacts.kinds.len() {
-            let contact = &self.scene.contacts.kinds[kind];
-            match &contact.law {
-                Law::HertzMindlin(law) => {
-                    let law = HertzMindlin {
-                        young_modulus_pa: T::all(proof, law.young_modulus_pa),
-                        shear_modulus_pa: T::all(proof, law.shear_modulus_pa),
-                        manner: manner(proof, &law.manner),
-                    };
-                    self.with_law::<T>(proof, kind, &law, &contact.rolling);
-                }
-                Law::Linear(law) => {
-                    let law = Linear {
-                        normal_n_m: T::all(proof, law.normal_n_m),
-                        tangential_n_m: T::all(proof, law.tangential_n_m),
-                        manner: manner(proof, &law.manner),
-                    };
-                    self.with_law::<T>(proof, kind, &law, &contact.rolling);
-                }
+        // A particle meets its contacts kind by kind, whoever's they are: with several kinds there is no way but to look at all first.
+        let own = self.share.own.clone();
+        let together = match self.scene.contacts.kinds.len() {
+            1 => TOGETHER,
+            _ => own.len().max(1),
+        };
+        find_border(self.share, self.scene);
+        let mut first = own.start;
+        loop {
+            let end = (first + together).min(own.end);
+            find_own(self.share, first..end, &mut self.books, self.scene);
+            for kind in 0..self.scene.contacts.kinds.len() {
+                self.with_kind::<T>(proof, kind);
+            }
+            for [of_border, touching] in &mut self.share.touching {
+                of_border.clear();
+                touching.clear();
+            }
+            first = end;
+            if first == own.end {
+                break;
             }
         }
     }
@@ -246,40 +247,110 @@ fn manner<T: Lanes>(proof: T::Proof, manner: &Manner) -> Manner<T> {
     }
 }
 
-/// Lists the contacts that touch; those that do not forget.
+/// Whether two spheres overlap.
 #[inline(always)]
-fn find_touching(share: &mut ContactShare, books: &mut Books<'_>, scene: &Scene<'_>) {
+fn overlap(a: &Pose, b: &Pose) -> bool {
+    let reach = a.radius_m() + b.radius_m();
+    (b.place() - a.place()).norm_squared() < reach * reach
+}
+
+/// Lists the contacts of the border that touch.
+fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
     let (contacts, poses) = (scene.contacts, scene.poses);
-    for lists in &mut share.touching {
-        lists[0].clear();
-        lists[1].clear();
-    }
-    let overlaps = |[a, b]: [u32; 2]| {
-        let (a, b) = (&poses[a as usize], &poses[b as usize]);
-        let reach = a.radius_m() + b.radius_m();
-        (b.place() - a.place()).norm_squared() < reach * reach
-    };
     for (n, &at) in (0..).zip(&share.border) {
         let pair = contacts.pairs[at as usize];
-        if overlaps(pair) {
+        if overlap(&poses[pair[0] as usize], &poses[pair[1] as usize]) {
             share.touching[contacts.kind(pair)][0].push(n);
-        }
-    }
-    for at in share.own.clone() {
-        if let Some(&[_, soon]) = contacts.pairs.get(at + AHEAD) {
-            fetch_soon(&poses[soon as usize]);
-        }
-        let pair = contacts.pairs[at];
-        let memory = &mut books.memories[at - share.own.start];
-        if overlaps(pair) {
-            share.touching[contacts.kind(pair)][1].push(at as u32);
-        } else if *memory != Memory::default() {
-            *memory = Memory::default();
         }
     }
 }
 
+/// Lists those of some of its own contacts that touch; those that do not forget.
+#[inline(always)]
+fn find_own(
+    share: &mut ContactShare,
+    some: Range<usize>,
+    books: &mut Books<'_>,
+    scene: &Scene<'_>,
+) {
+    let (poses, motions) = (scene.poses, scene.motions);
+    let pairs = &scene.contacts.pairs[some.start..];
+    let memories = &mut books.memories[some.start - share.own.start..];
+    let (of_first_kind, of_others) = share.touching.split_at_mut(1);
+    let list = &mut of_first_kind[0][1];
+    list.resize(some.len(), 0);
+    let touching = &mut list[..];
+    let mut count = 0;
+    for n in 0..some.len() {
+        if let Some(&[_, soon]) = pairs.get(n + AHEAD) {
+            fetch_soon(&poses[soon as usize]);
+            fetch_soon(&motions[soon as usize]);
+        }
+        if let Some(memory) = memories.get(n + AHEAD) {
+            fetch_soon(memory);
+        }
+        let [a, b] = pairs[n].map(|end| &poses[end as usize]);
+        // Whether they touch cannot be foretold, so there is no branch on it.
+        let touches = overlap(a, b);
+        touching[count] = (some.start + n) as u32;
+        count += usize::from(touches);
+        let memory = &mut memories[n];
+        let if_apart = u64::from(touches).wrapping_sub(1);
+        if remembered_bits(memory) & if_apart != 0 {
+            *memory = Memory::default();
+        }
+    }
+    list.truncate(count);
+    for &at in &*list {
+        let b = pairs[at as usize - some.start][1] as usize;
+        if let Some(wrench) = books.wrenches.get(b.wrapping_sub(share.particles.start)) {
+            fetch_soon(wrench);
+        }
+        if let Some(wrench) = books.resistance.get(b.wrapping_sub(share.particles.start)) {
+            fetch_soon(wrench);
+        }
+    }
+    if !of_others.is_empty() {
+        list.retain(|&at| {
+            let kind = scene.contacts.kind(pairs[at as usize - some.start]);
+            if kind > 0 {
+                of_others[kind - 1][1].push(at);
+            }
+            kind == 0
+        });
+    }
+}
+
+/// Not 0 if a contact remembers anything: springs are only there while its law or its origin holds an overlap.
+#[inline(always)]
+fn remembered_bits(memory: &Memory) -> u64 {
+    memory.slid[3].to_bits() | memory.rolled[3].to_bits()
+}
+
 impl ShareWork<'_> {
+    #[inline(always)]
+    fn with_kind<T: Lanes>(&mut self, proof: T::Proof, kind: usize) {
+        let contact = &self.scene.contacts.kinds[kind];
+        match &contact.law {
+            Law::HertzMindlin(law) => {
+                let law = HertzMindlin {
+                    young_modulus_pa: T::all(proof, law.young_modulus_pa),
+                    shear_modulus_pa: T::all(proof, law.shear_modulus_pa),
+                    manner: manner(proof, &law.manner),
+                };
+                self.with_law::<T>(proof, kind, &law, &contact.rolling);
+            }
+            Law::Linear(law) => {
+                let law = Linear {
+                    normal_n_m: T::all(proof, law.normal_n_m),
+                    tangential_n_m: T::all(proof, law.tangential_n_m),
+                    manner: manner(proof, &law.manner),
+                };
+                self.with_law::<T>(proof, kind, &law, &contact.rolling);
+            }
+        }
+    }
+
     #[inline(always)]
     fn with_law<T: Lanes>(
         &mut self,
@@ -306,6 +377,7 @@ impl ShareWork<'_> {
 
     /// The contacts of one kind: those of the border first, so that each particle meets its contacts in their order.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
     fn of_kind<T: Lanes>(
         &mut self,
         proof: T::Proof,
@@ -319,80 +391,119 @@ impl ShareWork<'_> {
             scene,
         } = self;
         let pairs = &scene.contacts.pairs;
-        let particles = &share.particles;
-        let [of_border, own] = &share.touching[kind];
-        for some in of_border.chunks(FOUR) {
-            let of_four = |i: usize| some[i.min(some.len() - 1)] as usize;
-            let numbers = [0, 1, 2, 3].map(|i| share.border[of_four(i)] as usize);
-            let memories = [0, 1, 2, 3].map(|i| share.border_memories[of_four(i)]);
-            let four = Four::new(numbers, pairs, 0..some.len());
-            for first in (0..FOUR).step_by(T::COUNT) {
-                let _ = scene.meet::<T>(
-                    proof, law, rolling, &four, first, &memories, books, particles,
-                );
+        let (own, particles) = (&share.own, &share.particles);
+        let [of_border, touching] = &share.touching[kind];
+        for some in of_border.chunks(T::COUNT) {
+            let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
+            let pair = |lane: usize| pairs[share.border[number(lane)] as usize];
+            let memory = |lane: usize| &share.border_memories[number(lane)];
+            let met = scene.meet::<T>(proof, law, rolling, pair, memory);
+            for lane in 0..some.len() {
+                let b = pair(lane)[1] as usize - particles.start;
+                met.held.add_to_b(lane, &mut books.wrenches[b]);
+                met.damped.add_to_b(lane, &mut books.resistance[b]);
             }
         }
-        for (n, some) in own.chunks(FOUR).enumerate() {
-            let soon = n * FOUR + SOON;
-            for &at in own.get(soon..soon + FOUR).unwrap_or_default() {
-                let b = pairs[at as usize][1] as usize;
-                fetch_soon(&scene.motions[b]);
-                fetch_soon(&books.memories[at as usize - share.own.start]);
-                if particles.contains(&b) {
-                    fetch_soon(&books.wrenches[b - particles.start]);
-                    fetch_soon(&books.resistance[b - particles.start]);
+        let memories = &mut books.memories[..];
+        let wrenches = &mut books.wrenches[..];
+        let resistance = &mut books.resistance[..];
+        let lost_j = &mut books.lost_j[..];
+        for some in touching.chunks(T::COUNT) {
+            let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
+            let numbers = [number(0), number(1), number(2), number(3)];
+            let [p, q, r, s] = numbers;
+            let ends = [pairs[p], pairs[q], pairs[r], pairs[s]];
+            let met = scene.meet::<T>(
+                proof,
+                law,
+                rolling,
+                |lane| ends[lane],
+                |lane| &memories[numbers[lane] - own.start],
+            );
+            for lane in 0..T::COUNT {
+                if lane < some.len() {
+                    let a = ends[lane][0] as usize - particles.start;
+                    lost_j[a][0] += met.sliding_j[lane];
+                    lost_j[a][1] += met.rolling_j[lane];
+                    let memory = &mut memories[numbers[lane] - own.start];
+                    memory.slid = met.slid[lane];
+                    memory.rolled = met.rolled[lane];
                 }
             }
-            let of_four = |i: usize| some[i.min(some.len() - 1)] as usize;
-            let numbers = [0, 1, 2, 3].map(of_four);
-            let memories = numbers.map(|at| books.memories[at - share.own.start]);
-            let four = Four::new(numbers, pairs, 0..some.len());
-            for first in (0..FOUR).step_by(T::COUNT) {
-                let taken = scene.meet::<T>(
-                    proof, law, rolling, &four, first, &memories, books, particles,
-                );
-                for lane in 0..T::COUNT.min(some.len().saturating_sub(first)) {
-                    let at = numbers[first + lane];
-                    books.memories[at - share.own.start] = taken.memories[lane];
-                    let a = pairs[at][0] as usize - particles.start;
-                    books.lost_j[a][0] += taken.sliding_j[lane];
-                    books.lost_j[a][1] += taken.rolling_j[lane];
+            for lane in 0..T::COUNT {
+                if lane < some.len() {
+                    let [a, b] = ends[lane].map(|end| (end as usize).wrapping_sub(particles.start));
+                    met.held.add_to_a(lane, &mut wrenches[a]);
+                    met.damped.add_to_a(lane, &mut resistance[a]);
+                    if b < wrenches.len() {
+                        met.held.add_to_b(lane, &mut wrenches[b]);
+                        met.damped.add_to_b(lane, &mut resistance[b]);
+                    }
                 }
             }
         }
     }
 }
 
-/// What is taken down of contacts, lane by lane.
-struct Taken {
-    memories: [Memory; FOUR],
+/// What becomes of contacts, row by row.
+struct Met {
+    slid: [[f64; 4]; FOUR],
+    rolled: [[f64; 4]; FOUR],
     sliding_j: [f64; FOUR],
     rolling_j: [f64; FOUR],
+    /// Forces but for damping.
+    held: Forces,
+    damped: Forces,
+}
+
+/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
+struct Forces {
+    on_b: [[f64; 4]; FOUR],
+    torques: [[[f64; 4]; FOUR]; 2],
+}
+
+impl Forces {
+    #[inline(always)]
+    fn new<T: Lanes>(force_on_b: Triple<T>, torques: [Triple<T>; 2]) -> Self {
+        Self {
+            on_b: rows(force_on_b),
+            torques: [rows(torques[0]), rows(torques[1])],
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_a(&self, lane: usize, wrench: &mut Wrench) {
+        for k in 0..4 {
+            wrench.force_n[k] -= self.on_b[lane][k];
+            wrench.torque_n_m[k] += self.torques[0][lane][k];
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_b(&self, lane: usize, wrench: &mut Wrench) {
+        for k in 0..4 {
+            wrench.force_n[k] += self.on_b[lane][k];
+            wrench.torque_n_m[k] += self.torques[1][lane][k];
+        }
+    }
 }
 
 impl Scene<'_> {
-    /// Adds what the contacts from `first` on, one for each lane, do to those of their particles that are in the share.
+    /// What contacts do to their particles, one for each lane.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "the inside of two loops")]
-    fn meet<T: Lanes>(
+    fn meet<'a, T: Lanes>(
         &self,
         proof: T::Proof,
         law: &impl NormalLaw<T>,
         rolling: &impl RollingFriction<T>,
-        four: &Four,
-        first: usize,
-        memories: &[Memory; FOUR],
-        books: &mut Books<'_>,
-        particles: &Range<usize>,
-    ) -> Taken {
-        let ends = &four.ends[first..first + T::COUNT];
-        let balls = [
-            self.ball::<T>(proof, |lane| ends[lane][0] as usize),
-            self.ball::<T>(proof, |lane| ends[lane][1] as usize),
-        ];
-        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| memories[first + lane].slid);
-        let [rx, ry, rz, origin_m] = T::columns(proof, |lane| memories[first + lane].rolled);
-        let mut touch = touch(ways(proof, ends, self.poses), balls, self.dt);
+        pair: impl Fn(usize) -> [u32; 2],
+        memory: impl Fn(usize) -> &'a Memory,
+    ) -> Met {
+        let (place_a, a) = self.ball::<T>(proof, |lane| pair(lane)[0] as usize);
+        let (place_b, b) = self.ball::<T>(proof, |lane| pair(lane)[1] as usize);
+        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| memory(lane).slid);
+        let [rx, ry, rz, origin_m] = T::columns(proof, |lane| memory(lane).rolled);
+        let mut touch = touch(place_b - place_a, [a, b], self.dt);
         let least_m = touch.radius_m.times(self.contacts.least_overlap);
         let relaxed = relaxed(touch.overlap_m, origin_m, least_m);
         touch.overlap_m = relaxed.overlap_m;
@@ -414,26 +525,26 @@ impl Scene<'_> {
         let damped = torques(&touch, damping_on_b, damping.rolling_n_m);
         let held_on_b = force_on_b - damping_on_b;
         let held = torques(&touch, held_on_b, moment_on_b - damping.rolling_n_m);
-        four.add(first, held_on_b, held, books.wrenches, particles);
-        four.add(first, damping_on_b, damped, books.resistance, particles);
-
         let Triple(sx, sy, sz) = history.tangential_m;
         let Triple(rx, ry, rz) = history.rolling_rad;
-        let slid = T::rows([sx, sy, sz, history.overlap_m]);
-        let rolled = T::rows([rx, ry, rz, relaxed.origin_m]);
-        Taken {
-            memories: [0, 1, 2, 3].map(|lane| Memory {
-                slid: slid[lane],
-                rolled: rolled[lane],
-            }),
+        Met {
+            slid: T::rows([sx, sy, sz, history.overlap_m]),
+            rolled: T::rows([rx, ry, rz, relaxed.origin_m]),
             sliding_j: lost.sliding.values(),
             rolling_j: lost.rolling.values(),
+            held: Forces::new(held_on_b, held),
+            damped: Forces::new(damping_on_b, damped),
         }
     }
 
-    /// One particle for each lane.
+    /// One particle for each lane, and its centre, m.
     #[inline(always)]
-    fn ball<T: Lanes>(&self, proof: T::Proof, particle: impl Fn(usize) -> usize) -> Ball<T> {
+    fn ball<T: Lanes>(
+        &self,
+        proof: T::Proof,
+        particle: impl Fn(usize) -> usize,
+    ) -> (Triple<T>, Ball<T>) {
+        let [x, y, z, radius_m] = T::columns(proof, |lane| self.poses[particle(lane)].position_m);
         let [vx, vy, vz, inverse_mass] = T::columns(proof, |lane| {
             let motion = &self.motions[particle(lane)];
             let [x, y, z] = motion.velocity_m_s;
@@ -444,12 +555,13 @@ impl Scene<'_> {
             let [x, y, z] = motion.spin_rad_s;
             [x, y, z, motion.inverse_inertia]
         });
-        Ball {
+        let ball = Ball {
             velocity_m_s: Triple(vx, vy, vz),
             spin_rad_s: Triple(wx, wy, wz),
-            radius_m: T::gathered(proof, |lane| self.poses[particle(lane)].radius_m()),
+            radius_m,
             inverse_mass_per_kg: inverse_mass,
             inverse_inertia_per_kg_m2: inverse_inertia,
-        }
+        };
+        (Triple(x, y, z), ball)
     }
 }

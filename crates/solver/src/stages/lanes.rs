@@ -18,9 +18,6 @@ pub(super) trait Lanes: Number {
     /// All lanes the same.
     fn all(proof: Self::Proof, value: f64) -> Self;
 
-    /// A number for each lane.
-    fn gathered(proof: Self::Proof, of_lane: impl Fn(usize) -> f64) -> Self;
-
     /// The lanes; those there are not are 0.
     fn values(self) -> [f64; FOUR];
 
@@ -46,11 +43,6 @@ impl Lanes for f64 {
     #[inline(always)]
     fn all((): (), value: f64) -> Self {
         value
-    }
-
-    #[inline(always)]
-    fn gathered((): (), of_lane: impl Fn(usize) -> f64) -> Self {
-        of_lane(0)
     }
 
     #[inline(always)]
@@ -171,6 +163,11 @@ mod avx2 {
 
     impl Number for Lanes4 {
         #[inline(always)]
+        fn zero(self) -> Self {
+            self.with(self.constant(0.0))
+        }
+
+        #[inline(always)]
         fn times(self, factor: f64) -> Self {
             self.with(self.simd.avx._mm256_mul_pd(self.v, self.constant(factor)))
         }
@@ -253,15 +250,6 @@ mod avx2 {
         fn all(simd: V3, value: f64) -> Self {
             let v = simd.avx._mm256_set1_pd(value);
             Self { simd, v }
-        }
-
-        #[inline(always)]
-        fn gathered(simd: V3, of_lane: impl Fn(usize) -> f64) -> Self {
-            let lanes = [of_lane(0), of_lane(1), of_lane(2), of_lane(3)];
-            Self {
-                simd,
-                v: cast(lanes),
-            }
         }
 
         #[inline(always)]

@@ -17,16 +17,16 @@ const CELLS_PER_PARTICLE: usize = 4;
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the smaller index first, sorted. `clusters`: one for each particle.
 pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
     let active = near_others(poses, clusters, skin_m);
-    let Some(grid) = Grid::new(poses, &active, skin_m) else {
+    let Some(grid) = Grid::new(poses, clusters, &active, skin_m) else {
         return Vec::new();
     };
     let of_chunk = |some: &[u32]| {
         let mut pairs = Vec::new();
-        let mut of_one = Vec::new();
         for &i in some {
-            grid.above(poses, clusters, i, skin_m, &mut of_one);
-            of_one.sort_unstable();
-            pairs.extend(of_one.iter().map(|&j| [i, j]));
+            let first = pairs.len();
+            let (pose, cluster) = (&poses[i as usize], clusters[i as usize]);
+            grid.add_above(i, pose, cluster, skin_m, &mut pairs);
+            pairs[first..].sort_unstable();
         }
         pairs
     };
@@ -96,14 +96,24 @@ struct Grid {
     origin: [f64; 3],
     per_width: f64,
     counts: [usize; 3],
-    /// For each cell the first of its particles in `particles`; and at the end their number.
+    /// For each cell the first of its particles in `standing`; and at the end their number.
     starts: Vec<u32>,
-    particles: Vec<u32>,
+    /// Cell by cell.
+    standing: Vec<Standing>,
+}
+
+/// What is asked of a particle in a cell: a copy, so that those of a cell stand together.
+#[derive(Clone, Copy, Default)]
+struct Standing {
+    /// As in its pose.
+    position_m: [f64; 4],
+    particle: u32,
+    cluster: u32,
 }
 
 impl Grid {
     /// None where there are fewer than two particles.
-    fn new(poses: &[Pose], active: &[u32], skin_m: f64) -> Option<Self> {
+    fn new(poses: &[Pose], clusters: &[u32], active: &[u32], skin_m: f64) -> Option<Self> {
         if active.len() < 2 {
             return None;
         }
@@ -124,7 +134,7 @@ impl Grid {
             per_width: 1.0 / width,
             counts: counts_of(width),
             starts: Vec::new(),
-            particles: vec![0; active.len()],
+            standing: vec![Standing::default(); active.len()],
         };
         let cells: Vec<u32> = active
             .iter()
@@ -140,7 +150,11 @@ impl Grid {
         let mut next = starts.clone();
         for (&cell, &i) in cells.iter().zip(active) {
             let place = &mut next[cell as usize];
-            grid.particles[*place as usize] = i;
+            grid.standing[*place as usize] = Standing {
+                position_m: poses[i as usize].position_m,
+                particle: i,
+                cluster: clusters[i as usize],
+            };
             *place += 1;
         }
         grid.starts = starts;
@@ -158,28 +172,25 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// The particles of other clusters with a larger index than `i` that are near it, in no order.
-    fn above(&self, poses: &[Pose], clusters: &[u32], i: u32, skin_m: f64, found: &mut Vec<u32>) {
-        found.clear();
-        let (pose, cluster) = (&poses[i as usize], clusters[i as usize]);
+    /// Adds the pairs of a particle with those of other clusters that have a larger index and are near it, in no order.
+    fn add_above(&self, i: u32, pose: &Pose, cluster: u32, skin_m: f64, pairs: &mut Vec<[u32; 2]>) {
         let [x, y, z] = self.cell(pose);
         let around = |at: usize, k: usize| at.saturating_sub(1)..(at + 2).min(self.counts[k]);
         let reach = pose.radius_m() + skin_m;
+        let [px, py, pz, _] = pose.position_m;
+        let xs = around(x, 0);
         for z in around(z, 2) {
             for y in around(y, 1) {
-                let xs = around(x, 0);
                 // Cells beside each other follow one another.
                 let first = self.starts[self.number([xs.start, y, z])] as usize;
                 let end = self.starts[self.number([xs.end - 1, y, z]) + 1] as usize;
-                for &j in &self.particles[first..end] {
-                    if j <= i || clusters[j as usize] == cluster {
-                        continue;
-                    }
-                    let other = &poses[j as usize];
-                    let apart = (other.place() - pose.place()).norm_squared();
-                    let near = reach + other.radius_m();
-                    if apart < near * near {
-                        found.push(j);
+                for other in &self.standing[first..end] {
+                    let [ox, oy, oz, radius] = other.position_m;
+                    let apart = [ox - px, oy - py, oz - pz];
+                    let near = reach + radius;
+                    let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+                    if square < near * near && other.particle > i && other.cluster != cluster {
+                        pairs.push([i, other.particle]);
                     }
                 }
             }

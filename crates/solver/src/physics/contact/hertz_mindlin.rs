@@ -62,14 +62,15 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
         let elastic = (normal * overlap).times(2.0 / 3.0);
         let ratio = self.manner.damping_ratio.times(TSUJI);
         let tangential_ratio = self.manner.tangential_damping_ratio.times(TSUJI);
+        let critical = (normal * touch.mass_kg).root();
         Grip {
             elastic_n: elastic,
             energy_j: (elastic * overlap).times(0.4),
             normal_n_m: [e * contact_radius_before, normal],
             tangential_n_m: [g * contact_radius_before, tangential],
             softer: overlap.if_positive(contact_radius_before / contact_radius),
-            normal_damping_n_s_m: ratio * (normal * touch.mass_kg).root(),
-            tangential_damping_n_s_m: tangential_ratio * (tangential * touch.mass_kg).root(),
+            normal_damping_n_s_m: ratio * critical,
+            tangential_damping_n_s_m: tangential_ratio * (g / e).root() * critical,
         }
     }
 

@@ -16,7 +16,7 @@ use crate::physics::number::{Number, Triple};
 
 /// What becomes of rolling.
 pub trait RollingFriction<T: Number> {
-    /// The spring after a step that began with the elongation `before`, pressed by the normal force `pressed`, N.
+    /// The spring after a step that began with the elongation `before`, in the axes of that moment, pressed by the normal force `pressed`, N.
     fn roll(
         &self,
         grip: &Grip<T>,
@@ -68,12 +68,13 @@ impl<T: Number> RollingFriction<T> for NoRolling {
         _: T,
         _: f64,
     ) -> Slid<T> {
-        damped(touch.middle.times(0.0))
+        let none = touch.radius_m.zero();
+        damped(Triple(none, none, none))
     }
 
     #[inline(always)]
     fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
-        let none = touch.radius_m.times(0.0);
+        let none = touch.radius_m.zero();
         [none, none]
     }
 }
@@ -84,7 +85,7 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
         &self,
         _: &Grip<T>,
         touch: &Touch<T>,
-        _: &Carry<T>,
+        carry: &Carry<T>,
         _: Triple<T>,
         pressed: T,
         dt: f64,
@@ -94,13 +95,13 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
         let speed = rolling.square().root();
         let slow = limit.times(dt / ConstantMoment::SHARE) / touch.rolling_inertia_kg_m2;
         let coefficient = speed.if_positive(limit.if_positive(limit / speed.larger(slow)));
-        damped(rolling * coefficient)
+        damped(carry.to_end(rolling * coefficient))
     }
 
     /// Nothing: its viscous part follows the time step and is stable at any.
     #[inline(always)]
     fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
-        let none = touch.radius_m.times(0.0);
+        let none = touch.radius_m.zero();
         [none, none]
     }
 }
@@ -120,9 +121,10 @@ impl<T: Number> RollingFriction<T> for ElasticPlastic<T> {
         let [stiffness, damping] = self.linearised(grip, touch);
         let arm = self.friction * touch.radius_m;
         let stiffness_before = (grip.normal_n_m[0] * arm * arm).times(STIFFNESS);
-        let one = touch.radius_m.times(0.0).plus(1.0);
+        let one = touch.radius_m.zero().plus(1.0);
         slide(
-            carry.to_middle(before),
+            carry,
+            before,
             rolling.times(dt),
             [stiffness_before, stiffness],
             grip.softer.smaller(one),
@@ -152,12 +154,12 @@ fn rolling<T: Number>(touch: &Touch<T>) -> Triple<T> {
 /// A damper without a spring.
 #[inline(always)]
 fn damped<T: Number>(damping: Triple<T>) -> Slid<T> {
-    let none = damping.times(0.0);
+    let none = damping.0.zero();
     Slid {
-        spring: none,
-        force: none,
+        spring: Triple(none, none, none),
+        force: Triple(none, none, none),
         damping,
-        stored_j: none.0,
-        lost_j: none.0,
+        stored_j: none,
+        lost_j: none,
     }
 }

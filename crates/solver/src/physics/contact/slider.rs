@@ -1,8 +1,9 @@
 //! A spring that slides: tangential friction and elastic-plastic rolling friction are the same thing with other units.
 
+use super::touch::Carry;
 use crate::physics::number::{Number, Triple};
 
-/// A spring after a step, in the axes of the middle of the step. Forces are those that the spring and its damper hold against the motion.
+/// A spring after a step, in the axes of the end of the step. Forces are those that the spring and its damper hold against the motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Slid<T> {
     /// Elongation.
@@ -17,13 +18,15 @@ pub struct Slid<T> {
     pub lost_j: T,
 }
 
-/// A spring that was stretched by `before` and has `moved` by this much, while its stiffness changed.
+/// A spring that was stretched by `before` and has `moved` by this much, while its stiffness changed. `before` is in the axes of the beginning of the
+/// step, `moved` and `damping` are in those of its middle.
 ///
 /// `kept` is the share of the old elongation that is left: with the old stiffness over the new one, the force stays as it was; with 1, the elongation.
 /// The motion adds its part halfway through that change. The spring is cut back where its force is above `limit`, and of the damper only so much
 /// acts that both together stay below it: a sliding contact is not damped, and there is no jump when it begins to slide.
 #[inline(always)]
 pub fn slide<T: Number>(
+    carry: &Carry<T>,
     before: Triple<T>,
     moved: Triple<T>,
     [stiffness_before, stiffness]: [T; 2],
@@ -31,15 +34,16 @@ pub fn slide<T: Number>(
     limit: T,
     damping: Triple<T>,
 ) -> Slid<T> {
+    let before = carry.to_middle(before);
     let stuck = before * kept + moved * kept.plus(1.0).times(0.5);
     let needed = stiffness * stuck.square().root();
     let held = limit.if_positive(limit / limit.larger(needed));
     let spring = stuck * held;
     let force = spring * stiffness;
 
-    let stored = (stiffness * spring.square()).times(0.5);
-    let stored_before = (stiffness_before * before.square()).times(0.5);
-    let work = (before * stiffness_before + force).dot(moved).times(0.5);
+    // The mean of the forces times the motion, less what the stored energy grows by.
+    let given = stiffness_before * before.dot(before + moved);
+    let taken = force.dot(spring - moved);
 
     // Largest q with |force + q damping| <= limit, and 1 at most.
     let along = force.dot(damping);
@@ -48,11 +52,13 @@ pub fn slide<T: Number>(
     let room = slack.if_positive(slack);
     let q = (along * along + square * room).root() - along;
     let share = q.if_positive(q / q.larger(square));
+
+    let at_end = carry.to_end(spring);
     Slid {
-        spring,
-        force,
-        damping: damping * share,
-        stored_j: stored,
-        lost_j: work - (stored - stored_before),
+        spring: at_end,
+        force: at_end * stiffness,
+        damping: carry.to_end(damping * share),
+        stored_j: force.dot(spring).times(0.5),
+        lost_j: (given - taken).times(0.5),
     }
 }

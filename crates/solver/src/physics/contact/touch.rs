@@ -100,7 +100,7 @@ pub fn touch_at_wall<T: Number>(foot: &Foot<T>, b: Ball<T>, dt: f64) -> Touch<T>
         normal: foot.normal,
         middle,
         overlap_m: overlap,
-        levers_m: [lever.times(0.0), lever],
+        levers_m: [lever.zero(), lever],
         velocity_m_s: moving - (b.spin_rad_s * arm).cross(middle),
         spin_rad_s: b.spin_rad_s - foot.spin_rad_s,
         mean_spin_rad_s: (foot.spin_rad_s + b.spin_rad_s).dot(middle).times(0.5),
@@ -140,52 +140,50 @@ pub fn torques<T: Number>(
 /// How vectors across the normal turn along with it in a step: as its two halves.
 #[derive(Debug, Clone, Copy)]
 pub struct Carry<T> {
-    normal: Triple<T>,
-    swing: Triple<T>,
+    /// The normals at the beginning, in the middle and at the end of the step.
+    normals: [Triple<T>; 3],
+    /// 1 / (1 + cosine) of half the turn of the normal.
     per_swing: T,
-    spin: Triple<T>,
-    per_spin: T,
+    /// Cosine and sine of half the mean turn about the normal.
+    spin: [T; 2],
 }
 
 impl<T: Number> Carry<T> {
     /// Of a step of `dt`, s.
     #[inline(always)]
     pub fn new(touch: &Touch<T>, dt: f64) -> Self {
-        let spin = touch.middle * touch.mean_spin_rad_s.times(0.25 * dt);
+        let (middle, normal) = (touch.middle, touch.normal);
+        let cosine = middle.dot(normal);
+        // The tangent of half the angle: of a quarter of the turn in the step.
+        let t = touch.mean_spin_rad_s.times(0.25 * dt);
+        let per = (t * t).plus(1.0).inverse().times(2.0);
         Self {
-            normal: touch.normal,
-            swing: touch.middle.cross(touch.normal),
-            per_swing: touch.middle.dot(touch.normal).plus(1.0).inverse(),
-            spin,
-            per_spin: spin.square().plus(1.0).times(0.5).inverse(),
+            normals: [middle * cosine.times(2.0) - normal, middle, normal],
+            per_swing: cosine.plus(1.0).inverse(),
+            spin: [per.plus(-1.0), t * per],
         }
     }
 
-    /// From the beginning of the step to its middle.
+    /// A vector across the normal, from the beginning of the step to its middle.
     #[inline(always)]
     pub fn to_middle(&self, vector: Triple<T>) -> Triple<T> {
-        self.spun(self.swung(vector))
+        let [before, middle, _] = self.normals;
+        self.spun(vector - (before + middle) * (middle.dot(vector) * self.per_swing))
     }
 
-    /// From the middle of the step to its end. What rounding leaves along the normal is taken away.
+    /// A vector across the normal, from the middle of the step to its end.
     #[inline(always)]
     pub fn to_end(&self, vector: Triple<T>) -> Triple<T> {
-        let there = self.swung(self.spun(vector));
-        there - self.normal * there.dot(self.normal)
+        let [_, middle, normal] = self.normals;
+        let spun = self.spun(vector);
+        spun - (middle + normal) * (normal.dot(spun) * self.per_swing)
     }
 
-    /// Turned as the normal is in half the step: `swing` is the axis times the sine of the angle, `per_swing` 1 / (1 + cosine).
-    #[inline(always)]
-    fn swung(&self, vector: Triple<T>) -> Triple<T> {
-        let once = self.swing.cross(vector);
-        vector + once + self.swing.cross(once) * self.per_swing
-    }
-
-    /// Turned by half the mean spin about the normal: `spin` is the axis times t = a quarter of the turn in the step, for the tangent of
-    /// half the angle, `per_spin` 2 / (1 + t^2).
+    /// Turned about the normal in the middle of the step.
     #[inline(always)]
     fn spun(&self, vector: Triple<T>) -> Triple<T> {
-        vector + self.spin.cross(vector + self.spin.cross(vector)) * self.per_spin
+        let [cosine, sine] = self.spin;
+        vector * cosine + self.normals[1].cross(vector) * sine
     }
 }
 

@@ -1,0 +1,89 @@
+//! A bed of spheres that touch as those of a heap do.
+
+use dem_run::check::ledger::Ledger;
+use dem_run::clusters::Clusters;
+use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::stages::neighbours::near_pairs;
+use dem_run::state::State;
+use dem_run::state::bonds::Bonds;
+use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use dem_run::state::order::spatial_order;
+use dem_run::state::particles::{Particles, Wrench};
+
+/// Cubes of a face-centred lattice along each side: with four sites each, of which some are left empty, about 20,000 spheres.
+const CUBES: usize = 18;
+const EMPTY: f64 = 0.143;
+const RADIUS_M: f64 = 1e-3;
+const SKIN_M: f64 = 0.1 * RADIUS_M;
+
+/// Spheres on a dense lattice with vacancies, of radii that differ by a thousandth: of their near pairs those overlap, by about as much, that happen to
+/// be large. About 2.9 pairs for each sphere touch, of 4.9 that are near. Nothing holds the bed together: its time step is so short that it does not move.
+pub(crate) fn bed(threads: usize) -> State {
+    let mut random = Random(1);
+    let side_m = 2.0 * RADIUS_M * std::f64::consts::SQRT_2;
+    let mut places = Vec::new();
+    for cube in 0..CUBES.pow(3) {
+        let corner = [cube % CUBES, cube / CUBES % CUBES, cube / CUBES.pow(2)];
+        for within in [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]] {
+            if random.next() > EMPTY {
+                places.push([0, 1, 2].map(|k| side_m * (corner[k] as f64 + within[k])));
+            }
+        }
+    }
+    let mut particles = Particles::default();
+    for i in spatial_order(&places) {
+        let radius_m = RADIUS_M * (1.0 + 2e-3 * (random.next() - 0.44));
+        particles.push_sphere(places[i as usize], radius_m, 2500.0);
+    }
+    for motion in &mut particles.motions {
+        motion.velocity_m_s = [0; 3].map(|_| 1e-3 * (random.next() - 0.5));
+        motion.spin_rad_s = [0; 3].map(|_| random.next() - 0.5);
+    }
+    let count = particles.len();
+    let mut state = State::new(particles, Bonds::default(), 1e-10, threads);
+    state.clusters = Some(Clusters::new(count, &state.bonds));
+    state.contacts = Some(contacts(&state, threads));
+    state.ledger = Ledger::opened(&state);
+    state
+}
+
+fn contacts(state: &State, threads: usize) -> Contacts {
+    let poses = &state.particles.poses;
+    let glass = Elastic {
+        young_modulus_pa: 1e8,
+        poisson_ratio: 0.3,
+    };
+    let mut contacts = Contacts {
+        kinds: vec![ContactKind {
+            law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &Behaviour::new(0.5, 0.5))),
+            rolling: Rolling::Free,
+        }],
+        kind_of: vec![0],
+        materials: vec![0; poses.len()],
+        skin_m: SKIN_M,
+        room_m: 0.5 * SKIN_M,
+        least_overlap: 1e-3,
+        resistance: vec![Wrench::default(); poses.len()],
+        lost_j: vec![[0.0; 2]; poses.len()],
+        ..Contacts::default()
+    };
+    let clusters: Vec<u32> = (0..poses.len() as u32).collect();
+    // As if they had come together: what they overlap by presses.
+    contacts.relist(near_pairs(poses, &clusters, SKIN_M), |_| 0.0);
+    contacts.divide(poses.len(), threads);
+    contacts
+}
+
+/// Numbers from 0 to 1 that look random (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
