@@ -177,6 +177,16 @@ pub struct BondDamping {
     pub torque: f64,
 }
 
+/// What the rate is of that strengthens bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RateOf {
+    /// "elongation": relative velocity along the bond over its initial length.
+    #[default]
+    Elongation,
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    RelativeVelocity,
+}
+
 /// What breaks a bond; whichever comes first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
@@ -190,6 +200,8 @@ pub struct BondFailure {
     pub von_mises_pa: Option<f64>,
     /// `rate_strengthening`: strain rate from which strengths rise with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
     pub rate_strengthening_from_1_s: Option<f64>,
+    /// `rate_of`: what that rate is of. The elongation unless given.
+    pub rate_of: RateOf,
     /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale is the strength given. None: all alike.
     pub weibull_modulus: Option<f64>,
 }

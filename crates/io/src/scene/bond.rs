@@ -3,7 +3,7 @@
 use super::field::Field;
 use super::table::Table;
 use super::tree::Value;
-use super::{BondDamping, BondFailure, BondKind, BondModel, Formulation};
+use super::{BondDamping, BondFailure, BondKind, BondModel, Formulation, RateOf};
 use crate::Result;
 use crate::units::{NUMBER, RATE, STRESS, VISCOUS_DAMPING};
 
@@ -24,6 +24,12 @@ const SHEAR_COEFFICIENT: f64 = 0.9;
 
 /// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20, 21] begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
+
+/// What a rate can be of.
+pub(super) const RATES: [(&str, RateOf); 2] = [
+    ("elongation", RateOf::Elongation),
+    ("relative-velocity", RateOf::RelativeVelocity),
+];
 
 pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     let table = field.table(&KEYS)?;
@@ -123,6 +129,7 @@ impl Default for BondFailure {
             compressive: true,
             von_mises_pa: None,
             rate_strengthening_from_1_s: None,
+            rate_of: RateOf::default(),
             weibull_modulus: None,
         }
     }
@@ -135,6 +142,7 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         "compressive",
         "von_mises",
         "rate_strengthening",
+        "rate_of",
         "weibull_modulus",
     ])?;
     let strength = |key| table.read(key, |field: Field<'_>| field.positive(&STRESS));
@@ -149,6 +157,9 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
             Some(field) => rate_strengthening(&field)?,
             None => None,
         },
+        rate_of: table
+            .read("rate_of", |field| field.choice(&RATES))?
+            .unwrap_or_default(),
         weibull_modulus: table.read("weibull_modulus", |field| field.positive(&NUMBER))?,
     };
     let criteria = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
@@ -157,6 +168,13 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
         let problem = format!("{} stands without a strength to exceed", field.path);
         return Err(field.refuse(problem, remedy));
+    }
+    if let (Some(field), None) = (table.get("rate_of"), table.get("rate_strengthening")) {
+        let problem = format!(
+            "{} stands without rate_strengthening, on which it acts",
+            field.path
+        );
+        return Err(field.refuse(problem, "add rate_strengthening = true, or remove rate_of"));
     }
     if let (Some(field), None) = (table.get("compressive"), failure.tension_pa) {
         let problem = format!("{} stands without tension, on which it acts", field.path);

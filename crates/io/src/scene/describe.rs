@@ -5,6 +5,7 @@ mod walls;
 
 use std::fmt::Write;
 
+use super::bond::RATES;
 use super::measure::TIMES;
 use super::run::START_OVERLAPS;
 use super::support::FREEDOMS;
@@ -165,6 +166,11 @@ impl Lines {
                 optional(limit, unit, "none"),
             );
         }
+        let rate_of = RATES.iter().find(|(_, of)| *of == failure.rate_of);
+        self.add(
+            format!("{path}.failure.rate_of"),
+            rate_of.map_or("", |(name, _)| name).to_owned(),
+        );
         self.add(
             format!("{path}.failure.compressive"),
             failure.compressive.to_string(),

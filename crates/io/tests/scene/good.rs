@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
     At, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
-    Formulation, Hold, Pick, Quantity, Relaxation, Rolling, Scene, Search, StartOverlap, Wall,
+    Formulation, Hold, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search, StartOverlap, Wall,
     WallMotion, WallShape,
 };
 use dem_io::units::{
@@ -317,6 +317,7 @@ fn bonds() {
             compressive: false,
             von_mises_pa: Some(3e6),
             rate_strengthening_from_1_s: Some(1e-5),
+            rate_of: RateOf::RelativeVelocity,
             weibull_modulus: Some(7.0),
         }
     );
@@ -574,7 +575,7 @@ fn words_on_contacts() {
             "clusters.min_broken 1",
             "clusters.force_every never",
             "relaxation.enabled true",
-            "relaxation.min_overlap 0.00001",
+            "relaxation.min_overlap 1e-5",
             "search.skin chosen by the program",
         ]
     );

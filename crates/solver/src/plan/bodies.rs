@@ -350,6 +350,7 @@ fn rule(kind: &BondKind) -> BondRule {
             compressive: failure.compressive,
         }),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
+        rate_of: failure.rate_of,
     }
 }
 

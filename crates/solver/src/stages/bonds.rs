@@ -255,6 +255,7 @@ mod tests {
                     compressive: false,
                 }),
                 strengthening_from_1_s: None,
+                rate_of: dem_io::scene::RateOf::Elongation,
             }],
             ..Bonds::default()
         };

@@ -1,5 +1,6 @@
 //! Bonds that have reached their strength break: checked once more by themselves, with the rate of their elongation where it strengthens them.
 
+use dem_io::scene::RateOf;
 use nalgebra::Vector3;
 
 use crate::physics::bond::failure::{Cause, cause, stresses, utilisation};
@@ -59,7 +60,11 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
         let [a, b] = bonds.ends[at].map(|end| end as usize);
         let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
         let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
-        let rate = elongation_rate(&c, &velocities, bonds.initial_length_m(at));
+        let length_m = bonds.initial_length_m(at);
+        let rate = match rule.rate_of {
+            RateOf::Elongation => elongation_rate(&c, &velocities, length_m),
+            RateOf::RelativeVelocity => (velocities[1] - velocities[0]).norm() / length_m,
+        };
         dynamic_increase_factor(rate, from)
     });
     let factor = bonds.strength_factor(at) * strengthening;

@@ -338,7 +338,9 @@ pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
                 largest_velocity_m_s,
                 factor,
             } => {
-                let pushed: f64 = (0..3).map(|k| wall.push.force_n[k] * direction[k]).sum();
+                // Without damping, which follows from the wall's own velocity: in a circle the two would drive each other.
+                let elastic = |k: usize| wall.push.force_n[k] - wall.damping.force_n[k];
+                let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
                 let missing = factor_at(factor, time_s) * force_n - pushed;
                 // Without contact there is nothing to go by: as fast as it may.
                 let wanted = if wall.stiffness_n_m > 0.0 {

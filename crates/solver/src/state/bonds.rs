@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use dem_io::scene::RateOf;
 use nalgebra::Vector3;
 
 use crate::physics::bond::failure::Criteria;
@@ -24,6 +25,8 @@ pub struct BondRule {
     pub criteria: Option<Criteria>,
     /// Strain rate from which strengths rise with the rate, 1/s. None: never.
     pub strengthening_from_1_s: Option<f64>,
+    /// What that rate is of.
+    pub rate_of: RateOf,
 }
 
 /// Bonds in a block.

@@ -82,6 +82,7 @@ pub(crate) fn bonded(
             damped: false,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
+            rate_of: dem_io::scene::RateOf::Elongation,
         }],
         ..Bonds::default()
     };

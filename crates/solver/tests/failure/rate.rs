@@ -1,5 +1,6 @@
 //! Bonds pulled at a constant rate break at their strength times the dynamic increase factor.
 
+use dem_io::scene::RateOf;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{act, move_on};
 
@@ -122,5 +123,41 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
             }
             assert_eq!(count, 2);
         }
+    });
+}
+
+/// A pair that turns as one body is pulled by its own turning, whose relative velocity is across the bond: no rate of elongation, but one of eq. 21 as it
+/// is printed.
+#[test]
+fn turning_strengthens_by_the_printed_rate_alone() {
+    on_one_thread(|| {
+        let breaks = |rate_of: RateOf| {
+            let mut state = rod(1, NORMAL, false);
+            state.bonds.rules[0].strengthening_from_1_s = Some(1.0);
+            state.bonds.rules[0].rate_of = rate_of;
+            // 40/s: a factor of 5.46; the turning pulls at twice the strength.
+            let spin_1_s = 40.0;
+            let half_m = 0.5 * LENGTH_M;
+            let per_mass = state.particles.motions[0].inverse_mass;
+            let area_m2 = std::f64::consts::PI * 1e-6;
+            let pull_n = half_m * spin_1_s * spin_1_s / per_mass;
+            let strength_pa = 0.5 * pull_n / area_m2;
+            let criteria = state.bonds.rules[0].criteria.as_mut().unwrap();
+            criteria.tension_pa = strength_pa;
+            for (motion, side) in state.particles.motions.iter_mut().zip([-1.0, 1.0]) {
+                motion.velocity_m_s = [0.0, side * half_m * spin_1_s, 0.0];
+                motion.spin_rad_s = [0.0, 0.0, spin_1_s];
+            }
+            for _ in 0..20_000 {
+                act(&mut state);
+                if !state.broken.is_empty() {
+                    return true;
+                }
+                move_on(&mut state);
+            }
+            false
+        };
+        assert!(breaks(RateOf::Elongation));
+        assert!(!breaks(RateOf::RelativeVelocity));
     });
 }

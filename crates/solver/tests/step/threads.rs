@@ -26,6 +26,7 @@ const BREAKING: BondRule = BondRule {
         compressive: true,
     }),
     strengthening_from_1_s: Some(1.1),
+    rate_of: dem_io::scene::RateOf::Elongation,
 };
 
 /// Three random bodies side by side: incremental, total, incremental; all break.
