@@ -2,4 +2,5 @@
 
 pub mod ledger;
 pub mod limit;
+pub mod lowest_frequency;
 pub mod watchdog;

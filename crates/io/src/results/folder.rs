@@ -15,6 +15,7 @@ const INDEX: &str = "frames.pvd";
 const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
 const SUMMARY: &str = "summary.json";
+const TEST_PAGE: &str = "test.html";
 const CHECKPOINT: &str = "checkpoint.dem";
 const LOCK: &str = ".lock";
 
@@ -123,6 +124,25 @@ impl ResultsFolder {
         self.path.join(PLOTS).join(format!("{name}.svg"))
     }
 
+    /// Writes a picture, which begins with [`plots::BEGIN`], to `plots/NAME.svg`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_picture(&self, name: &str, svg: &str) -> Result<()> {
+        make_folder(&self.path.join(PLOTS))?;
+        write_file(&self.plot(name), |out| out.write_all(svg.as_bytes()))
+    }
+
+    /// Writes the page of a laboratory test to `test.html`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_test_page(&self, html: &str) -> Result<()> {
+        write_file(&self.path.join(TEST_PAGE), |out| {
+            out.write_all(html.as_bytes())
+        })
+    }
+
     /// Makes the folder of the frames, unless it is there.
     ///
     /// # Errors
@@ -163,7 +183,7 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        self.remove_files("", |name| [INDEX, SERIES, EVENTS, SUMMARY].contains(&name))?;
+        self.remove_files("", |name| [INDEX, SERIES, EVENTS, SUMMARY, TEST_PAGE].contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
