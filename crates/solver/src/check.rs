@@ -2,5 +2,6 @@
 
 pub mod ledger;
 pub mod limit;
+pub mod linear;
 pub mod lowest_frequency;
 pub mod watchdog;

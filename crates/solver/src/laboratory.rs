@@ -1,5 +1,5 @@
 //! Quasi-static laboratory tests: `[test]` of a scene. [`arrange`] says how fast what moves, [`record`] notes force and way while it is
-//! loaded, [`evaluate`] compares them with [`theory`], [`page`] shows it.
+//! loaded, [`evaluate`] compares them with [`theory`], [`page`] shows it; [`watch`] does so for a run.
 
 pub mod arrange;
 pub mod crack;
@@ -7,6 +7,6 @@ pub mod evaluate;
 pub mod page;
 pub mod record;
 pub mod setup;
-pub mod theory;
 mod text;
+pub mod theory;
 pub mod watch;

@@ -19,6 +19,8 @@ pub struct Gauge {
     /// What is asked.
     pub measure: Measure,
     particles: Vec<u32>,
+    /// The wall that it is of, by number.
+    wall: Option<usize>,
     /// Whether those are all there are.
     of_all: bool,
     /// Mean position at the start, m. Length 3.
@@ -71,7 +73,9 @@ pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
         .iter()
         .map(|(name, measure)| {
             let particles = plan.sets.get(&measure.of).cloned().unwrap_or_default();
+            let mut walls = scene.walls.keys();
             Gauge {
+                wall: walls.position(|wall| *wall == measure.of),
                 name: name.clone(),
                 measure: measure.clone(),
                 of_all: particles.len() == plan.state.particles.len(),
@@ -91,6 +95,18 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
             Quantity::Velocity(_) | Quantity::AngularVelocity(_) | Quantity::KineticEnergy
         )
     };
+    let counts_mass = |g: &Gauge| {
+        let quantity = g.measure.quantity;
+        matches!(
+            quantity,
+            Quantity::MassFractionOfLargest | Quantity::MassOfLargest
+        )
+    };
+    let masses_kg = if gauges.iter().any(counts_mass) {
+        masses_of_pieces_kg(state)
+    } else {
+        Vec::new()
+    };
     let motions = if gauges.iter().any(needs_motions) {
         synchronous_motions(state)
     } else {
@@ -99,7 +115,7 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
     gauges
         .iter_mut()
         .map(|gauge| {
-            let value = gauge.read(state, &motions, balance);
+            let value = gauge.read(state, &motions, &masses_kg, balance);
             gauge.history.note(state.time_s, value);
             value
         })
@@ -107,8 +123,9 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
 }
 
 impl Gauge {
-    fn read(&self, state: &State, motions: &[Motion], balance: &Balance) -> f64 {
+    fn read(&self, state: &State, motions: &[Motion], masses_kg: &[f64], balance: &Balance) -> f64 {
         let p = &state.particles;
+        let wall = self.wall.and_then(|wall| state.walls.get(wall));
         let count = self.particles.len() as f64;
         let mean = |of: &dyn Fn(usize) -> f64| {
             self.particles.iter().map(|&i| of(i as usize)).sum::<f64>() / count
@@ -120,6 +137,7 @@ impl Gauge {
                 .sum::<f64>()
         };
         match self.measure.quantity {
+            Quantity::Position(k) if let Some(wall) = wall => wall.frame.position_m[k as usize],
             Quantity::Position(k) => mean(&|i| p.poses[i].position_m[k as usize]),
             Quantity::Displacement(k) => {
                 mean(&|i| p.poses[i].position_m[k as usize] - self.start_m[k as usize])
@@ -148,12 +166,17 @@ impl Gauge {
             Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
                 largest.max(bond_utilisation(state, at))
             }),
-            // Plans refuse measures of walls and fragments.
-            Quantity::Force(_)
-            | Quantity::Torque(_)
-            | Quantity::Count
-            | Quantity::MassFractionOfLargest
-            | Quantity::MassOfLargest => f64::NAN,
+            // Of the particles on the wall.
+            Quantity::Force(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.force_n[k as usize]),
+            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.torque_n_m[k as usize]),
+            Quantity::Count => {
+                let clusters = state.clusters.as_ref();
+                clusters.map_or(f64::NAN, |c| c.living().count() as f64)
+            }
+            Quantity::MassOfLargest => masses_kg.iter().copied().fold(0.0, f64::max),
+            Quantity::MassFractionOfLargest => {
+                masses_kg.iter().copied().fold(0.0, f64::max) / masses_kg.iter().sum::<f64>()
+            }
         }
     }
 
@@ -218,6 +241,16 @@ impl History {
         self.largest = Some(self.largest.map_or(value, |l| l.max(value)));
         self.smallest = Some(self.smallest.map_or(value, |s| s.min(value)));
     }
+}
+
+/// Mass of every cluster that is whole, kg.
+fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
+    let Some(clusters) = &state.clusters else {
+        return Vec::new();
+    };
+    let mass = |&i: &u32| 1.0 / state.particles.inverse_masses[i as usize];
+    let of_one = |id| clusters.members(id).iter().map(mass).sum();
+    clusters.living().map(of_one).collect()
 }
 
 /// What a bond carries: nothing if it is broken.

@@ -1,21 +1,27 @@
 //! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs and why each other is left out.
 
 pub mod bodies;
+mod contacts;
 pub mod sets;
+mod stages;
 pub mod time_step;
+mod walls;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Measure, Quantity, Scene};
+use dem_io::scene::{Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
+use crate::clusters::{Clusters, Triggers};
 use crate::stages::loads::SetLoad;
 use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
 use crate::state::particles::Wrench;
 
 use self::bodies::{PlacedBody, place_bodies};
+use self::contacts::{Kinds, are_needed, place_contacts};
 use self::sets::resolve_sets;
+pub use self::stages::PlannedStage;
 use self::time_step::{StepChoice, choose_step};
 
 /// Particles and bonds that are worth a thread of their own.
@@ -34,31 +40,21 @@ pub struct Plan {
     pub step: StepChoice,
     /// The stages of a step.
     pub stages: Vec<PlannedStage>,
-}
-
-/// A stage of the step: done or left out, and why.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PlannedStage {
-    /// What it does.
-    pub name: &'static str,
-    /// Whether the scene needs it.
-    pub needed: bool,
-    /// Why, or why not.
-    pub why: String,
+    /// What is odd about the scene but harmless, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
 ///
 /// # Errors
-/// Walls, contacts and measures of fragments, which are not simulated yet. What does not fit together: bonds without a kind, no density,
-/// a set without particles, a freedom held twice, a load on a held freedom, a time step above the limit.
+/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom, materials that
+/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
-    refuse_what_is_not_simulated(scene)?;
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let enough = 1 + (particles.len() + bonds.len()) / WORTH_A_THREAD;
@@ -70,40 +66,48 @@ pub fn plan(
     }
     state.supports = supports(scene, &sets)?;
     state.loads = loads(scene, &sets, &state.supports)?;
+    let mut notes = Vec::new();
+    place_meetings(scene, &bodies, &mut state, &mut notes)?;
     let step = choose_step(scene, &mut state, allow_any_step)?;
     state.time_step_s = step.step_s;
-    let stages = stages(&state);
+    let stages = stages::stages(&state, scene);
     Ok(Plan {
         state,
         bodies,
         sets,
         step,
         stages,
+        notes,
     })
 }
 
-/// Scenes may say more than is simulated.
-fn refuse_what_is_not_simulated(scene: &Scene) -> Result<()> {
-    let remedy = match (scene.walls.is_empty(), scene.contacts.is_empty()) {
-        (true, true) => None,
-        (false, true) => Some("remove [walls]"),
-        (true, false) => Some("remove [contacts]"),
-        (false, false) => Some("remove [walls] and [contacts]"),
-    };
-    if let Some(remedy) = remedy {
-        let problem = "walls and contacts are not simulated yet";
-        return Err(Diagnostic::input(&scene.source, problem, remedy));
-    }
-    let of_fragments = |(_, measure): &(&String, &Measure)| {
+/// Clusters, contacts and walls, where the scene needs them.
+fn place_meetings(
+    scene: &Scene,
+    bodies: &[PlacedBody],
+    state: &mut State,
+    notes: &mut Vec<String>,
+) -> Result<()> {
+    let breaks = state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
+    let counts_pieces = scene.measures.values().any(|measure| {
         matches!(
             measure.quantity,
             Quantity::Count | Quantity::MassFractionOfLargest | Quantity::MassOfLargest
         )
+    });
+    if !(breaks || counts_pieces || are_needed(scene)) {
+        return Ok(());
+    }
+    state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
+    state.triggers = Triggers {
+        interval: scene.clusters.interval,
+        min_broken: scene.clusters.min_broken,
+        force_every: scene.clusters.force_every,
     };
-    if let Some((name, _)) = scene.measures.iter().find(of_fragments) {
-        let place = format!("{}: [measures.{name}]", scene.source);
-        let problem = "fragments are not measured yet";
-        return Err(Diagnostic::input(place, problem, "remove this measure"));
+    if are_needed(scene) {
+        let kinds = Kinds::new(scene)?;
+        place_contacts(scene, &kinds, bodies, state)?;
+        state.walls = walls::place_walls(scene, &kinds, bodies, state, notes)?;
     }
     Ok(())
 }
@@ -206,86 +210,4 @@ fn loads(
 /// The particles of a set that the scene is known to have.
 fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
     sets.get(name).map_or(&[], Vec::as_slice)
-}
-
-/// What a step consists of, and what is left out.
-fn stages(state: &State) -> Vec<PlannedStage> {
-    let bonds = state.bonds.len();
-    let rules = &state.bonds.rules;
-    let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
-    let stage = |name, needed, yes: String, no: &str| PlannedStage {
-        name,
-        needed,
-        why: if needed { yes } else { no.to_owned() },
-    };
-    let scattered = !state.bonds.strength_factors.is_empty();
-    vec![
-        stage(
-            "bond forces",
-            bonds > 0,
-            format!("{bonds} bonds"),
-            "no body has bonds",
-        ),
-        stage(
-            "bond history",
-            any(&|rule| rule.incremental) && bonds > 0,
-            "bonds of the incremental formulation".to_owned(),
-            "every bond has the total formulation",
-        ),
-        stage(
-            "failure",
-            any(&|rule| rule.criteria.is_some()),
-            "bonds have strengths".to_owned(),
-            "no bond has a strength",
-        ),
-        stage(
-            "strength by rate",
-            any(&|rule| rule.strengthening_from_1_s.is_some()),
-            "only for bonds that would break without it".to_owned(),
-            "no rate strengthening asked for",
-        ),
-        stage(
-            "scattered strength",
-            scattered,
-            "a factor for each bond".to_owned(),
-            "no Weibull modulus given",
-        ),
-        stage(
-            "bond damping",
-            !state.bond_resistance.is_empty(),
-            "bonds are damped".to_owned(),
-            "no bond is damped: no relative velocities",
-        ),
-        stage(
-            "particle damping",
-            state.particle_damping > 0.0,
-            format!("gamma {}", state.particle_damping),
-            "not asked for",
-        ),
-        stage(
-            "loads",
-            !state.loads.is_empty(),
-            on_particles(state.loads.iter().map(|l| l.particles.len()).sum()),
-            "no loads",
-        ),
-        stage(
-            "supports",
-            !state.supports.is_empty(),
-            on_particles(state.supports.iter().map(|s| s.held.len()).sum()),
-            "no supports",
-        ),
-        stage(
-            "gravity",
-            state.gravity_m_s2 != [0.0; 3],
-            {
-                let [x, y, z] = state.gravity_m_s2;
-                format!("[{x}, {y}, {z}] m/s2")
-            },
-            "no gravity",
-        ),
-    ]
-}
-
-fn on_particles(count: usize) -> String {
-    format!("on {count} particle{}", if count == 1 { "" } else { "s" })
 }

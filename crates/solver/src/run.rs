@@ -1,6 +1,7 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod limits;
 mod progress;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,9 +13,9 @@ use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
 use crate::check::ledger::balance;
-use crate::check::limit::limit;
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
+use crate::laboratory::watch::{TestSettings, Watch};
 use crate::measure::{Gauge, gauges, read_gauges};
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
@@ -22,19 +23,14 @@ use crate::output::series;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::snapshot::{Snapshot, fingerprint};
-use crate::stages::bonds::largest_strain;
 use crate::state::State;
 use crate::step::{act, move_on};
 
-use self::events::{change_step, follow_limit, new_step, write_breaks};
+use self::events::{change_step, new_step, write_breaks};
+use self::limits::{Limits, went_through};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
 
-/// Steps between two looks at the strains of the bonds.
-const STRAIN_EVERY: u64 = 64;
-/// The limit of the step is looked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
-/// stiffer across.
-const MORE_STRAIN: f64 = 0.02;
 /// Wall time between two checkpoints where the scene names no other rhythm.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
@@ -49,6 +45,8 @@ pub struct RunSettings<'a> {
     pub threads: usize,
     /// Set when the run is to stop.
     pub interrupted: &'a AtomicBool,
+    /// What is known of the scene's laboratory test, for which it has been arranged. None: it is not evaluated.
+    pub test: Option<TestSettings>,
 }
 
 /// Files that grow during a run.
@@ -101,18 +99,24 @@ pub fn run(
     tell: &dyn Fn(f64),
 ) -> Result<Summary> {
     let mut gauges = gauges(scene, &plan);
+    let watch = match (&scene.test, settings.test) {
+        (Some(test), Some(of_test)) => Some(Watch::new(scene, test, of_test, &plan)?),
+        _ => None,
+    };
     let Plan {
         mut state,
         bodies,
         step: choice,
         stages,
+        notes,
         ..
     } = plan;
     let fingerprint = fingerprint(&state);
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
     let size = state.particles.len() + state.bonds.len();
     let rhythm = Rhythm::of(scene, choice.step_s, size);
-    let mut progress = Progress::new(rhythm, choice.limit.step_s);
+    let mut progress = Progress::new(rhythm, &choice);
+    let limits = Limits::of(scene, &state);
     let mut changed_step = None;
     let is_continued = settings.resume.is_some();
     if let Some(snapshot) = settings.resume {
@@ -130,7 +134,7 @@ pub fn run(
         }
         changed_step = change_step(&mut state, &choice);
     }
-    let columns = series::columns(&gauges);
+    let columns = series::columns(scene.walls.keys(), &gauges);
     let mut files = match (settings.folder, order) {
         (Some(folder), Some(order)) => {
             let continued = is_continued.then_some(&progress);
@@ -152,10 +156,16 @@ pub fn run(
     let mut saved = clock;
     let (ended_by, last) = loop {
         act(&mut state);
+        if let Some(problem) = went_through(&state, &bodies) {
+            return Err(with_checkpoint(problem, files.as_ref()));
+        }
         if let Some(files) = &mut files {
             write_breaks(&state, &bodies, files)?;
         }
-        let ends = state.time_s + 0.5 * state.time_step_s >= end_s;
+        let broke = watch
+            .as_ref()
+            .is_some_and(|watch| watch.note(&mut progress.test, &state));
+        let ends = broke || state.time_s + 0.5 * state.time_step_s >= end_s;
         let row_due = ends || due(&state, rhythm.row_s, progress.next_row);
         let frame_due = ends
             || rhythm
@@ -180,7 +190,7 @@ pub fn run(
             progress.next_row = next(&state, rhythm.row_s);
             let values = read_gauges(&mut gauges, &state, balance);
             if let Some(files) = &mut files {
-                let row = series::row(balance, state.broken_count, state.time_step_s, &values);
+                let row = series::row(&state, balance, &values);
                 files.series.append(state.time_s, &row)?;
             }
             tell((state.time_s / end_s).min(1.0));
@@ -197,17 +207,19 @@ pub fn run(
         }
         if let (true, Some(balance)) = (ends || rests, balanced) {
             progress.rested = !ends;
-            break (if ends { "end time" } else { "rest" }, balance);
+            progress.broke = broke;
+            let why = match (broke, ends, &watch) {
+                (true, ..) => "breakage",
+                (false, true, Some(_)) => "end of the stroke",
+                (false, true, None) => "end time",
+                (false, false, _) => "rest",
+            };
+            break (why, balance);
         }
         move_on(&mut state);
 
-        if state.steps.is_multiple_of(STRAIN_EVERY) {
-            let strain = largest_strain(&state.bonds, &state.particles.poses);
-            if strain > progress.limit_strain + MORE_STRAIN {
-                progress.limit_strain = strain;
-                progress.limit_s = limit(&mut state).step_s;
-                follow_limit(&mut state, progress.limit_s, scene, files.as_mut())?;
-            }
+        if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {
+            return Err(with_checkpoint(problem, files.as_ref()));
         }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
@@ -220,6 +232,9 @@ pub fn run(
     };
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
+    let test = watch
+        .map(|watch| watch.finish(&progress.test, &state, progress.broke, settings.folder))
+        .transpose()?;
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
     let summary = Summary {
         scene: scene.source.clone(),
@@ -251,10 +266,12 @@ pub fn run(
             .filter(|s| !s.needed)
             .map(|s| s.name.to_owned())
             .collect(),
+        notes,
         results: settings
             .folder
             .map(|folder| folder.path().display().to_string()),
         resumed_with: changed_step,
+        test,
     };
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.

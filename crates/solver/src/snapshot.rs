@@ -14,6 +14,10 @@ use crate::state::State;
 use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
 
+mod meetings;
+
+use self::meetings::Meetings;
+
 /// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
 type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
 
@@ -32,6 +36,7 @@ pub struct Snapshot {
     broken: Vec<u32>,
     histories: Vec<[f64; 6]>,
     ledger: Ledger,
+    meetings: Meetings,
     /// What the gauges have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
@@ -85,6 +90,7 @@ impl Snapshot {
                 })
                 .collect(),
             ledger: state.ledger,
+            meetings: Meetings::taken(state),
             measures,
             progress,
         }
@@ -200,6 +206,7 @@ impl Snapshot {
         };
         state.bonds.histories = self.histories.iter().map(history).collect();
         state.ledger = self.ledger;
+        self.meetings.restore(state)?;
         state.steps = self.steps;
         state.time_s = self.time_s;
         state.time_step_s = self.time_step_s;

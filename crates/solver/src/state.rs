@@ -61,6 +61,8 @@ pub struct State {
     pub time_step_s: f64,
     /// The step before, s; 0 at the start.
     pub previous_time_step_s: f64,
+    /// Largest speed of a particle in the step before, m/s.
+    pub fastest_m_s: f64,
     /// Bonds that broke in the last kick.
     pub broken: Vec<Break>,
     /// Bonds broken so far.
@@ -101,6 +103,7 @@ impl State {
             time_s: 0.0,
             time_step_s,
             previous_time_step_s: 0.0,
+            fastest_m_s: 0.0,
             broken: Vec::new(),
             broken_count: 0,
             clock: StageClock::default(),

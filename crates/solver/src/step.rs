@@ -110,10 +110,10 @@ pub fn act(state: &mut State) {
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
-    let fastest_m_s = drift(&mut state.particles, state.time_step_s);
+    state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
     if let Some(contacts) = &mut state.contacts {
         let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
-        contacts.room_m -= (fastest_m_s + of_walls_m_s) * state.time_step_s;
+        contacts.room_m -= (state.fastest_m_s + of_walls_m_s) * state.time_step_s;
     }
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;

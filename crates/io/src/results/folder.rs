@@ -183,7 +183,9 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        self.remove_files("", |name| [INDEX, SERIES, EVENTS, SUMMARY, TEST_PAGE].contains(&name))?;
+        self.remove_files("", |name| {
+            [INDEX, SERIES, EVENTS, SUMMARY, TEST_PAGE].contains(&name)
+        })?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {

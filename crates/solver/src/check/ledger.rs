@@ -49,7 +49,6 @@ struct Work {
     bond_damping: f64,
     particle_damping: f64,
     contact_damping: f64,
-    walls: f64,
 }
 
 /// The ledger at a moment.
@@ -145,10 +144,11 @@ impl Ledger {
         self.floor_j
     }
 
-    /// What a run could have in energy at most: that of the start, what loads, supports and gravity gave, J.
-    pub fn put_in_j(&self, gravity_m_s2: [f64; 3]) -> f64 {
+    /// What a run could have in energy at most: that of the start, what loads, supports, walls and gravity gave, J.
+    pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
-        let given = self.work.loads.abs() + self.work.supports.abs() + fallen.abs();
+        let pushed = walls_work_j(walls).abs();
+        let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen.abs();
         self.opening_j.abs() + given + self.floor_j
     }
 
@@ -172,26 +172,28 @@ impl Work {
         self.bond_damping += factor * other.bond_damping;
         self.particle_damping += factor * other.particle_damping;
         self.contact_damping += factor * other.contact_damping;
-        self.walls += factor * other.walls;
     }
 }
 
-/// Powers of loads, damping and walls, W: of walls as they moved in the step just made (0) or as they will in the one to come (1).
+/// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to come (1).
+fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
+    push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
+}
+
+/// Powers of loads and damping, W; of walls for the step just made (0) or the one to come (1).
 fn powers(state: &State, step: usize) -> Work {
     let motions = &state.particles.motions;
     let [bonds, particles, contacts] = state.resistances();
-    let of_walls = |push: &dyn Fn(&Wall) -> &Push| -> f64 {
-        let power =
-            |wall: &Wall| push(wall).power_w(wall.velocities_m_s[step], wall.spins_rad_s[step]);
-        state.walls.iter().map(power).sum()
-    };
+    let of_walls = state.walls.iter();
+    let of_walls: f64 = of_walls
+        .map(|wall| wall_power_w(wall, &wall.damping, step))
+        .sum();
     Work {
         loads: loads_power_w(&state.loads, state.time_s, motions),
         supports: 0.0,
         bond_damping: -power_w(bonds, motions),
         particle_damping: -power_w(particles, motions),
-        contact_damping: of_walls(&|wall| &wall.damping) - power_w(contacts, motions),
-        walls: of_walls(&|wall| &wall.push),
+        contact_damping: of_walls - power_w(contacts, motions),
     }
 }
 
@@ -201,11 +203,19 @@ pub fn before_kick(state: &mut State) {
     state.ledger.settle();
     let half_s = 0.5 * state.previous_time_step_s;
     state.ledger.work.add(&powers, half_s);
+    for wall in &mut state.walls {
+        wall.work_j += wall.pending_j + half_s * wall_power_w(wall, &wall.push, 0);
+        wall.pending_j = 0.0;
+    }
 }
 
 /// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
 pub fn after_kick(state: &mut State) {
     let pending = powers(state, 1);
+    let half_s = 0.5 * state.time_step_s;
+    for wall in &mut state.walls {
+        wall.pending_j = half_s * wall_power_w(wall, &wall.push, 1);
+    }
     let State {
         ledger,
         particles,
@@ -276,6 +286,7 @@ pub fn balance(state: &mut State) -> Balance {
     let p = &state.particles;
     let kinetic = kinetic_energy(p, |i| motions[i]);
     let elastic = elastic_energy(state);
+    let wall_work = walls_work_j(&state.walls);
     let (mut contact_elastic, mut friction) = match &state.contacts {
         Some(contacts) => (elastic_energy_j(contacts, p), friction_j(contacts)),
         None => (0.0, 0.0),
@@ -296,14 +307,14 @@ pub fn balance(state: &mut State) -> Balance {
         + friction
         + ledger.released_j;
     let stored = elastic.total() + contact_elastic;
-    let given = work.loads + work.supports + work.walls;
+    let given = work.loads + work.supports + wall_work;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
     let largest = [
         kinetic + stored,
         gravity.abs(),
         work.loads.abs(),
         work.supports.abs(),
-        work.walls.abs(),
+        wall_work.abs(),
     ];
     ledger.scale_j = largest.into_iter().fold(ledger.scale_j, f64::max);
     ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
@@ -326,7 +337,7 @@ pub fn balance(state: &mut State) -> Balance {
         gravity_j: gravity,
         load_work_j: work.loads,
         support_work_j: work.supports,
-        wall_work_j: work.walls,
+        wall_work_j: wall_work,
         bond_damping_j: work.bond_damping,
         particle_damping_j: work.particle_damping,
         contact_elastic_j: contact_elastic,
@@ -344,6 +355,11 @@ pub fn balance(state: &mut State) -> Balance {
         ),
         momentum_scales: [ledger.momentum_scale, ledger.angular_momentum_scale],
     }
+}
+
+/// Work that all walls did on particles so far, J.
+fn walls_work_j(walls: &[Wall]) -> f64 {
+    walls.iter().map(|wall| wall.work_j).sum()
 }
 
 /// A ratio that is 0 where there is nothing to compare with.

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use crate::check::linear::{LinearContact, Weights, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::damping::damping_wrenches;
@@ -42,22 +43,24 @@ pub struct Limit {
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always against its force, which damping of particles
 /// raises by its share of it: K counts 1 + gamma times.
 ///
-/// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. The wrenches of the state are overwritten.
+/// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. Contacts count at the overlap that they have, stuck.
+/// The wrenches of the state are overwritten.
 pub fn limit(state: &mut State) -> Limit {
-    let (k, iterations) = largest_eigenvalue(state, Weights::STIFFNESS);
+    let contacts = &linear_contacts(state);
+    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS);
     let stiffer = if state.particle_resistance.is_empty() {
         1.0
     } else {
         1.0 + state.particle_damping
     };
-    let c = if state.bond_resistance.is_empty() {
+    let c = if state.bond_resistance.is_empty() && contacts.is_empty() {
         0.0
     } else {
-        largest_eigenvalue(state, Weights::DAMPING).0
+        largest_eigenvalue(state, contacts, Weights::DAMPING).0
     };
     Limit {
         step_s: if c > 0.0 {
-            damped_limit(state, stiffer, safe_step(stiffer * k, c))
+            damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
         } else {
             safe_step(stiffer * k, 0.0)
         },
@@ -74,9 +77,26 @@ pub fn safe_step(k: f64, c: f64) -> f64 {
     4.0 / (c + (c * c + 4.0 * k).sqrt())
 }
 
+impl Limit {
+    /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2, and c, 1/s, of its own: the largest eigenvalue of a sum is
+    /// at most the sum of the largest ones.
+    pub fn with_more(&self, [k, c]: [f64; 2]) -> f64 {
+        if k == 0.0 && c == 0.0 {
+            return self.step_s;
+        }
+        // What is there grows with the square of the step; with damping, at least with the step itself.
+        let present = 2.0 / self.step_s;
+        if self.damping_1_s > 0.0 {
+            safe_step(k, c + present)
+        } else {
+            safe_step(k + present * present, c)
+        }
+    }
+}
+
 /// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a step that is not too long. By the secant of the
 /// eigenvalue over dt; not above the limit if the eigenvalues found are the largest, and less than `NEAR` below it.
-fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
+fn damped_limit(state: &mut State, contacts: &[LinearContact], stiffer: f64, safe_s: f64) -> f64 {
     let (mut safe_s, mut step_s) = (safe_s, safe_s);
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
@@ -84,7 +104,7 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
             stiffness: 0.25 * stiffer * step_s * step_s,
             damping: 0.5 * step_s,
         };
-        let (value, _) = largest_eigenvalue(state, both);
+        let (value, _) = largest_eigenvalue(state, contacts, both);
         // The eigenvalue grows at least with the step and at most with its square.
         let not_too_long = if value < 1.0 {
             step_s / value.sqrt()
@@ -109,20 +129,13 @@ fn damped_limit(state: &mut State, stiffer: f64, safe_s: f64) -> f64 {
     safe_s
 }
 
-/// Weights of the two symmetric operators of a body in a sum of them.
-#[derive(Debug, Clone, Copy)]
-struct Weights {
-    /// Of K, from displacements to forces.
-    stiffness: f64,
-    /// Of C, from velocities to forces.
-    damping: f64,
-}
-
 impl Weights {
+    /// K alone.
     const STIFFNESS: Self = Self {
         stiffness: 1.0,
         damping: 0.0,
     };
+    /// C alone.
     const DAMPING: Self = Self {
         stiffness: 0.0,
         damping: 1.0,
@@ -134,7 +147,11 @@ pub(super) type Field = Vec<[f64; 6]>;
 
 /// Largest eigenvalue of a sum of the operators over mass, and the iterations needed.
 /// An upper bound by the residual: never too small by more than that is too large.
-fn largest_eigenvalue(state: &mut State, weights: Weights) -> (f64, usize) {
+fn largest_eigenvalue(
+    state: &mut State,
+    contacts: &[LinearContact],
+    weights: Weights,
+) -> (f64, usize) {
     let roots = inverse_mass_roots(state);
     // Allocated once: allocators find it hard to use the place of an aligned array again.
     let mut displaced = state.particles.poses.clone();
@@ -151,8 +168,14 @@ fn largest_eigenvalue(state: &mut State, weights: Weights) -> (f64, usize) {
             let weight = weights.stiffness;
             add_stiffness_times(state, weight, &roots, &present, &mut displaced, &mut image);
         }
-        if weights.damping > 0.0 {
+        if weights.damping > 0.0 && !state.bond_resistance.is_empty() {
             add_damping_times(state, weights.damping, &roots, &present, &mut image);
+        }
+        if !contacts.is_empty() {
+            let motions = motions(&present, &roots);
+            let wrenches = &mut state.particles.wrenches;
+            linear_wrenches(contacts, weights, &motions, wrenches);
+            add_forces(-1.0, wrenches, &roots, &mut image);
         }
         let alpha = dot(&image, &present);
         for (image, present) in image.iter_mut().flatten().zip(present.iter().flatten()) {
@@ -297,6 +320,18 @@ fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     state.bonds.rules = rules;
 }
 
+/// Displacements and rotations, or velocities and spins, that a field stands for.
+fn motions(field: &Field, roots: &Field) -> Vec<Motion> {
+    let motion = |(field, roots): (&[f64; 6], &[f64; 6])| {
+        let [vx, vy, vz, wx, wy, wz] = scaled(field, roots);
+        Motion {
+            velocity_m_s: [vx, vy, vz],
+            spin_rad_s: [wx, wy, wz],
+        }
+    };
+    field.iter().zip(roots).map(motion).collect()
+}
+
 /// Adds `weight` times the damping times a field to `sum`.
 fn add_damping_times(
     state: &mut State,
@@ -305,17 +340,7 @@ fn add_damping_times(
     field: &Field,
     sum: &mut Field,
 ) {
-    let motions: Vec<Motion> = field
-        .iter()
-        .zip(roots)
-        .map(|(field, roots)| {
-            let [vx, vy, vz, wx, wy, wz] = scaled(field, roots);
-            Motion {
-                velocity_m_s: [vx, vy, vz],
-                spin_rad_s: [wx, wy, wz],
-            }
-        })
-        .collect();
+    let motions = motions(field, roots);
     let State {
         bonds,
         particles,

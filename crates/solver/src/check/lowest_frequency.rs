@@ -78,13 +78,9 @@ fn lowest_elastic(
         from_unit.set_column(row, &(vector / root));
     }
     let rigid = (to_unit * rigid).qr().q();
-    let without_rigid =
-        DMatrix::identity(kept.len(), kept.len()) - &rigid * rigid.transpose();
-    let elastic = &without_rigid
-        * from_unit.transpose()
-        * symmetric(stiffness)
-        * from_unit
-        * &without_rigid;
+    let without_rigid = DMatrix::identity(kept.len(), kept.len()) - &rigid * rigid.transpose();
+    let elastic =
+        &without_rigid * from_unit.transpose() * symmetric(stiffness) * from_unit * &without_rigid;
     let mut found: Vec<f64> = SymmetricEigen::new(symmetric(&elastic))
         .eigenvalues
         .iter()
@@ -168,9 +164,7 @@ impl Basis {
                 let mut direction = Vector3::zeros();
                 direction[axis] = 1.0;
                 let (moved, turned) = (value * direction, 0.5 * gradient.cross(&direction));
-                [
-                    moved.x, moved.y, moved.z, turned.x, turned.y, turned.z,
-                ]
+                [moved.x, moved.y, moved.z, turned.x, turned.y, turned.z]
             })
             .collect()
     }
@@ -191,11 +185,7 @@ impl Basis {
             }
             DVector::from_column_slice(&sum)
         };
-        let sums: Vec<DVector<f64>> = forces
-            .par_chunks(CHUNK)
-            .enumerate()
-            .map(of_chunk)
-            .collect();
+        let sums: Vec<DVector<f64>> = forces.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
         sums.iter().sum()
     }
 
@@ -203,9 +193,10 @@ impl Basis {
     fn rigid(&self) -> DMatrix<f64> {
         let mut rigid = DMatrix::zeros(FIELDS, RIGID);
         let linear = |k: usize| {
-            let found = self.powers.iter().position(|powers| {
-                powers.iter().sum::<usize>() == 1 && powers[k] == 1
-            });
+            let found = self
+                .powers
+                .iter()
+                .position(|powers| powers.iter().sum::<usize>() == 1 && powers[k] == 1);
             3 * found.unwrap_or_default()
         };
         for axis in 0..3 {

@@ -45,7 +45,8 @@ impl Watchdog {
         let p = &state.particles;
         let kinetic = kinetic_energy(p, |i| p.motions[i]);
         // Not a number is due as well.
-        let quiet = kinetic <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2);
+        let quiet = kinetic
+            <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2, &state.walls);
         !quiet
     }
 
@@ -57,7 +58,7 @@ impl Watchdog {
         // A load that has only just begun has moved nothing yet: what it does in the half step to come counts as well.
         let power_w = loads_power_w(&state.loads, state.time_s, &state.particles.motions);
         let coming = 0.5 * state.time_step_s * power_w.abs();
-        let put_in = state.ledger.put_in_j(state.gravity_m_s2) + coming;
+        let put_in = state.ledger.put_in_j(state.gravity_m_s2, &state.walls) + coming;
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }

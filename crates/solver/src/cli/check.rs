@@ -36,6 +36,9 @@ pub(super) fn check(
                 "bonds": plan.state.bonds.len(),
                 "time_step_s": plan.step.step_s,
                 "limit_s": plan.step.limit.step_s,
+                "foreseen_limit_s": plan.step.foreseen_s,
+                "impact_speed_m_s": plan.step.impact_speed_m_s,
+                "notes": plan.notes,
                 "limit_undamped_s": plan.step.limit.undamped_step_s,
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
                 "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
@@ -73,17 +76,27 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
     );
     let why = if choice.given { "given" } else { "chosen" };
     let step = significant(choice.step_s, 5);
-    let limit = if choice.limit.step_s.is_finite() {
+    let limit = if choice.foreseen_s.is_finite() {
         format!(
             "{} of the largest stable one, {} s ({} Lanczos steps)",
             significant(choice.share_of_limit(), 3),
-            significant(choice.limit.step_s, 5),
+            significant(choice.foreseen_s, 5),
             choice.limit.iterations,
         )
     } else {
         "nothing vibrates, so none is too large".to_owned()
     };
     line("time step", format!("{step} s {why}: {limit}"));
+    if choice.foreseen_s < choice.limit.step_s {
+        line(
+            "",
+            format!(
+                "at rest the largest would be {} s; impacts at {} m/s are foreseen",
+                significant(choice.limit.step_s, 5),
+                significant(choice.impact_speed_m_s, 3)
+            ),
+        );
+    }
     if choice.limit.damping_1_s > 0.0 {
         line(
             "",
@@ -124,6 +137,9 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
         let name = if stage.needed { "does" } else { "leaves out" };
         line(name, format!("{}: {}", stage.name, stage.why));
     }
+    for note in &plan.notes {
+        line("note", note.clone());
+    }
     line(
         "memory",
         match bytes as f64 {
@@ -153,6 +169,11 @@ fn memory_bytes(state: &State) -> usize {
         + 8 * b.strength_factors.len()
         + 32 * b.damping.len()
         + 48 * b.histories.len()
+        + state.contacts.as_ref().map_or(0, |contacts| {
+            // Every particle may come to touch a few others.
+            (64 + 16 + 5 + 3 * (8 + 64)) * contacts.materials.len()
+        })
+        + state.clusters.as_ref().map_or(0, |_| 24 * p.len())
 }
 
 /// Time of a step, tried on a copy, s.

@@ -1,11 +1,12 @@
 //! Where a wall stands and how it is turned.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::Touch;
 
 /// Place and orientation of a wall's own frame in space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Its origin, m. Length 3.
     pub position_m: [f64; 3],

@@ -35,7 +35,9 @@ pub fn arrange(
     };
     let lowest_frequency_hz = lowest_in_test(scene, test, bodies, threads)?;
     let period_s = 1.0 / lowest_frequency_hz;
-    let rate = test.rate_m_s.unwrap_or(test.stroke_m / (test.periods * period_s));
+    let rate = test
+        .rate_m_s
+        .unwrap_or(test.stroke_m / (test.periods * period_s));
     let rate = faster * rate;
     let ramp = Factor::Ramp { until_s: period_s };
     let mut scene = scene.clone();

@@ -55,7 +55,11 @@ impl View {
         };
         // What loads comes from above; a bar that is pulled along x is drawn upright as well.
         let up = direction.map(|c| -c);
-        let flip = if along.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+        let flip = if along.iter().sum::<f64>() < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let along = along.map(|c| flip * c);
         let axes = [along, up, cross(along, up)];
         let ends = |axis: [f64; 3]| {
@@ -129,7 +133,10 @@ fn write_svg(out: &mut String, picture: &CrackPicture<'_>, view: &View) -> std::
          font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"12\" fill=\"#222222\">"
     )?;
     writeln!(out, "<title>Crack</title>")?;
-    writeln!(out, "<rect width=\"{WIDTH}\" height=\"{height:.0}\" fill=\"#ffffff\"/>")?;
+    writeln!(
+        out,
+        "<rect width=\"{WIDTH}\" height=\"{height:.0}\" fill=\"#ffffff\"/>"
+    )?;
     let title = match picture.broken.len() {
         1 => "1 broken bond".to_owned(),
         count => format!("{count} broken bonds"),
@@ -169,7 +176,10 @@ fn write_particles(out: &mut String, picture: &CrackPicture<'_>, view: &View) ->
     for sphere in shown.iter().rev() {
         let [x, y] = view.place([sphere[0], sphere[1], sphere[2]]);
         let radius = view.scale * sphere[3];
-        writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\"/>")?;
+        writeln!(
+            out,
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\"/>"
+        )?;
     }
     writeln!(out, "</g>")
 }
@@ -187,7 +197,11 @@ fn write_marks(out: &mut String, picture: &CrackPicture<'_>, view: &View) -> std
     for side in [-1.0, 1.0] {
         let [x, y] = at(side * setup.crack_within_m);
         if upright {
-            writeln!(out, "<path d=\"M{SIDE} {y:.1}H{:.1}\" {dashed}/>", WIDTH - SIDE)?;
+            writeln!(
+                out,
+                "<path d=\"M{SIDE} {y:.1}H{:.1}\" {dashed}/>",
+                WIDTH - SIDE
+            )?;
         } else {
             writeln!(out, "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" {dashed}/>")?;
         }
@@ -241,8 +255,8 @@ fn colour(share: f64) -> String {
     let at = 4.0 * share.clamp(0.0, 1.0);
     let below = (at as usize).min(3);
     let part = at - below as f64;
-    let [r, g, b] =
-        [0, 1, 2].map(|k| ((1.0 - part) * STEPS[below][k] + part * STEPS[below + 1][k]).round() as u8);
+    let [r, g, b] = [0, 1, 2]
+        .map(|k| ((1.0 - part) * STEPS[below][k] + part * STEPS[below + 1][k]).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 

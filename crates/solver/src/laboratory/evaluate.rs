@@ -148,7 +148,10 @@ pub struct Slope {
 /// Largest force, and the slope of the force over a `way` before it, between 10 % and 40 % of it. By least squares. None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let peak = peak(rows)?;
-    let up_to = |share: f64| rows.iter().position(|row| row.force_n >= share * peak.force_n);
+    let up_to = |share: f64| {
+        rows.iter()
+            .position(|row| row.force_n >= share * peak.force_n)
+    };
     let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
     if elastic.len() < FEWEST_ROWS {
         return None;
@@ -211,8 +214,18 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
             add("stiffness of the body", of_body, "N/m", theory);
             let bending = |k: f64| k / shape;
             let with_shear = |k: f64| k * (1.0 + shear) / shape;
-            add("modulus without shear", stiffness.map(bending), "Pa", modulus);
-            add("modulus with shear", stiffness.map(with_shear), "Pa", modulus);
+            add(
+                "modulus without shear",
+                stiffness.map(bending),
+                "Pa",
+                modulus,
+            );
+            add(
+                "modulus with shear",
+                stiffness.map(with_shear),
+                "Pa",
+                modulus,
+            );
             add(MODULUS, of_body.map(with_shear), "Pa", modulus);
             let theory = strength.map(|strength| beam.force_n(strength));
             add(FAILURE_FORCE, failure, "N", theory);
@@ -251,7 +264,12 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
     }
     let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
-    add("failure travel", travel.filter(|_| evidence.broken), "m", None);
+    add(
+        "failure travel",
+        travel.filter(|_| evidence.broken),
+        "m",
+        None,
+    );
     if !evidence.broken {
         add("largest force", largest, "N", None);
     }
@@ -289,7 +307,12 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
     let test = evidence.test;
     if let Some(modulus) = result.figure(MODULUS) {
         let factor = modulus / bonds.young_modulus_pa;
-        found.push(Figure::new("modulus over that of the bonds", factor, "", None));
+        found.push(Figure::new(
+            "modulus over that of the bonds",
+            factor,
+            "",
+            None,
+        ));
         if let Some(wanted) = test.young_modulus_pa {
             let name = "modulus of bonds for that wanted";
             found.push(Figure::new(name, wanted / factor, "Pa", None));
@@ -298,7 +321,12 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
     let of_bonds = bonds.failure.von_mises_pa.or(bonds.failure.tension_pa);
     if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
         let factor = strength / of_bonds;
-        found.push(Figure::new("strength over that of the bonds", factor, "", None));
+        found.push(Figure::new(
+            "strength over that of the bonds",
+            factor,
+            "",
+            None,
+        ));
         if let Some(wanted) = test.strength_pa {
             let name = "strength of bonds for that wanted";
             found.push(Figure::new(name, wanted / factor, "Pa", None));

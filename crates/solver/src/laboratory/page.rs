@@ -136,7 +136,12 @@ const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;max-
 table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .9em .25em 0;text-align:left;border-bottom:1px solid #e4e4e4}\
 td.n,th.n{text-align:right}svg{max-width:100%;height:auto}";
 
-fn write_page(out: &mut String, files: &TestFiles<'_>, curve: &str, crack: &str) -> std::fmt::Result {
+fn write_page(
+    out: &mut String,
+    files: &TestFiles<'_>,
+    curve: &str,
+    crack: &str,
+) -> std::fmt::Result {
     let result = files.result;
     let title = result.kind.replace('-', " ");
     writeln!(
@@ -153,7 +158,10 @@ fn write_page(out: &mut String, files: &TestFiles<'_>, curve: &str, crack: &str)
     write_table(out, "Calibration", "error", &result.calibration)?;
     write_table(out, "Dimensions", "error", &result.dimensions)?;
     if !result.half_the_rate_changes.is_empty() {
-        writeln!(out, "<h2>Rate</h2>\n<p>The same test at half the rate, against twice the rate, changes</p>\n<table>")?;
+        writeln!(
+            out,
+            "<h2>Rate</h2>\n<p>The same test at half the rate, against twice the rate, changes</p>\n<table>"
+        )?;
         for figure in &result.half_the_rate_changes {
             writeln!(
                 out,

@@ -67,7 +67,13 @@ pub struct Loading {
 
 impl Loading {
     /// Of a test that takes `end_s`, in a state before the first step.
-    pub fn of(walls: Vec<usize>, supports: Vec<usize>, setup: &Setup, state: &State, end_s: f64) -> Self {
+    pub fn of(
+        walls: Vec<usize>,
+        supports: Vec<usize>,
+        setup: &Setup,
+        state: &State,
+        end_s: f64,
+    ) -> Self {
         let every = end_s / INTERVALS / state.time_step_s;
         let mut loading = Self {
             walls,
@@ -83,15 +89,23 @@ impl Loading {
 
     /// Where what loads stands along the direction, on average, m.
     fn place_m(&self, setup: &Setup, state: &State) -> f64 {
-        let walls = self.walls.iter().map(|&at| state.walls[at].frame.position_m);
-        let held = self.supports.iter().flat_map(|&at| &state.supports[at].held);
+        let walls = self
+            .walls
+            .iter()
+            .map(|&at| state.walls[at].frame.position_m);
+        let held = self
+            .supports
+            .iter()
+            .flat_map(|&at| &state.supports[at].held);
         let gripped = held.map(|held| {
             let [x, y, z, _] = state.particles.poses[held.particle as usize].position_m;
             [x, y, z]
         });
         let (sum, count) = walls
             .chain(gripped)
-            .fold((0.0, 0.0), |(sum, count), place| (sum + dot(place, setup.direction), count + 1.0));
+            .fold((0.0, 0.0), |(sum, count), place| {
+                (sum + dot(place, setup.direction), count + 1.0)
+            });
         sum / f64::max(count, 1.0)
     }
 
@@ -101,7 +115,10 @@ impl Loading {
             .walls
             .iter()
             .map(|&at| dot(state.walls[at].push.force_n, setup.direction));
-        let held = self.supports.iter().flat_map(|&at| &state.supports[at].held);
+        let held = self
+            .supports
+            .iter()
+            .flat_map(|&at| &state.supports[at].held);
         let of_supports = held.map(|held| {
             let [x, y, z, ..] = held.reactions[0];
             dot([x, y, z], setup.direction)

@@ -71,14 +71,15 @@ pub fn setup(
 ) -> Result<Setup> {
     let extent = |axis: &Vector3<f64>| extent(state, particles, axis);
     let direction = Vector3::from(test.direction);
-    let radii = particles.iter().map(|&i| state.particles.poses[i as usize].radius_m());
+    let radii = particles
+        .iter()
+        .map(|&i| state.particles.poses[i as usize].radius_m());
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
     let found = match test.kind {
-        TestKind::FourPointBending | TestKind::ThreePointBending => {
-            beam(scene, test, extent).map_err(|(problem, remedy)| {
+        TestKind::FourPointBending | TestKind::ThreePointBending => beam(scene, test, extent)
+            .map_err(|(problem, remedy)| {
                 Diagnostic::input(format!("{}: [test]", scene.source), problem, remedy)
-            })?
-        }
+            })?,
         TestKind::BrazilianDisc => disc(test, direction, extent),
         TestKind::Compression | TestKind::Tension => bar(test, direction, volume_m3, extent),
     };
@@ -121,7 +122,11 @@ fn beam(
         .walls
         .iter()
         .partition(|(name, _)| test.moves.contains(name));
-    let wanted = if test.kind == TestKind::FourPointBending { 2 } else { 1 };
+    let wanted = if test.kind == TestKind::FourPointBending {
+        2
+    } else {
+        1
+    };
     if loads.len() != wanted || supports.len() != 2 {
         return Err((
             format!(
@@ -143,9 +148,17 @@ fn beam(
     let direction = Vector3::from(test.direction);
     let across = loads[0].1;
     let along = across.cross(&direction);
-    if along.norm() < 0.999 || [&loads, &supports].into_iter().flatten().any(|(_, axis)| axis.dot(&across).abs() < 0.999) {
+    if along.norm() < 0.999
+        || [&loads, &supports]
+            .into_iter()
+            .flatten()
+            .any(|(_, axis)| axis.dot(&across).abs() < 0.999)
+    {
         let remedy = "turn them: all have one axis, and direction is square to it";
-        return Err(("the pins stand askew to each other or to direction".to_owned(), remedy));
+        return Err((
+            "the pins stand askew to each other or to direction".to_owned(),
+            remedy,
+        ));
     }
     let along = along.normalize();
     let place = |pins: &[(Vector3<f64>, Vector3<f64>)]| -> Vec<f64> {
@@ -165,14 +178,22 @@ fn beam(
     };
     let [low, high] = extent(&along);
     if !(low < held[1] && high > held[0]) || beam.span_m <= beam.load_distance_m {
-        let remedy = "the supports are further apart than the loading pins, and the body lies on them";
-        return Err(("the body or the loading pins are not between the supports".to_owned(), remedy));
+        let remedy =
+            "the supports are further apart than the loading pins, and the body lies on them";
+        return Err((
+            "the body or the loading pins are not between the supports".to_owned(),
+            remedy,
+        ));
     }
     let centre = middle([held[0], held[1]]) * along
         + middle(extent(&across)) * across
         + middle(extent(&direction)) * direction;
     // A crack of three-point bending starts under the pin: it may stray by half the height.
-    let crack_within_m = if loaded.len() == 2 { 0.5 * beam.load_distance_m } else { 0.5 * beam.height_m };
+    let crack_within_m = if loaded.len() == 2 {
+        0.5 * beam.load_distance_m
+    } else {
+        0.5 * beam.height_m
+    };
     Ok(Setup {
         specimen: Specimen::Beam(beam),
         direction: test.direction,
@@ -190,7 +211,10 @@ fn beam(
 fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f64>), Refusal> {
     let WallShape::Cylinder { from_m, to_m, .. } = &wall.shape else {
         let problem = format!("the wall '{name}' is no cylinder, which pins are");
-        return Err((problem, "write cylinder = { from, to, radius }, or remove the wall"));
+        return Err((
+            problem,
+            "write cylinder = { from, to, radius }, or remove the wall",
+        ));
     };
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, wall.tilt_rad, 0.0));
     let turned = tilted * UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
@@ -201,11 +225,7 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f6
 }
 
 /// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.
-fn disc(
-    test: &Test,
-    direction: Vector3<f64>,
-    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> Setup {
+fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Setup {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let square = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
     let axis = square
@@ -278,9 +298,7 @@ fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
     match setup.specimen {
         Specimen::Beam(beam) => {
             let spot = (SPOT * beam.height_m).max(2.0 * setup.mean_radius_m);
-            let at = |place: f64| {
-                pick(&|x, z| (x.abs() - place).abs() < spot && z.abs() < spot)
-            };
+            let at = |place: f64| pick(&|x, z| (x.abs() - place).abs() < spot && z.abs() < spot);
             setup.moving = at(0.5 * beam.load_distance_m);
             setup.resting = at(0.5 * beam.span_m);
         }

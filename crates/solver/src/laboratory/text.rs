@@ -7,7 +7,28 @@ use dem_io::units::significant;
 use super::evaluate::{Figure, TestResult};
 use super::page::{percent, shown};
 
+/// A change by half the rate above this is worth a word.
+const MUCH: f64 = 0.02;
+
 impl TestResult {
+    /// What speaks against the test. Empty: nothing.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        if self.crack.as_ref().is_some_and(|crack| !crack.is_within) {
+            doubts.push("the crack is not where the test wants it".to_owned());
+        }
+        for figure in &self.half_the_rate_changes {
+            if figure.value.abs() > MUCH {
+                doubts.push(format!(
+                    "half the rate changes {} by {}: take more periods (test.periods)",
+                    figure.name,
+                    percent(figure.value)
+                ));
+            }
+        }
+        doubts
+    }
+
     /// What is no number in a table: how fast, whether it broke, where it began, where the crack is, what the rate changes. Each with a name.
     pub fn sentences(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
@@ -36,7 +57,11 @@ impl TestResult {
             );
         }
         if let Some(crack) = &self.crack {
-            let is = if crack.is_within { "within" } else { "not within" };
+            let is = if crack.is_within {
+                "within"
+            } else {
+                "not within"
+            };
             say(
                 "crack",
                 format!(
@@ -77,9 +102,17 @@ impl fmt::Display for TestResult {
 }
 
 fn line(figure: &Figure, width: usize) -> String {
-    let mut text = format!("{:width$} {}", figure.name, shown(figure.value, &figure.unit));
+    let mut text = format!(
+        "{:width$} {}",
+        figure.name,
+        shown(figure.value, &figure.unit)
+    );
     if let (Some(theory), Some(error)) = (figure.theory, figure.error) {
-        text += &format!("   theory {}   error {}", shown(theory, &figure.unit), percent(error));
+        text += &format!(
+            "   theory {}   error {}",
+            shown(theory, &figure.unit),
+            percent(error)
+        );
     }
     text
 }

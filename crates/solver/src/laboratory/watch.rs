@@ -41,7 +41,12 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// Those of [`setup`].
-    pub fn new(scene: &'a Scene, test: &'a Test, settings: TestSettings, plan: &Plan) -> Result<Self> {
+    pub fn new(
+        scene: &'a Scene,
+        test: &'a Test,
+        settings: TestSettings,
+        plan: &Plan,
+    ) -> Result<Self> {
         let state = &plan.state;
         let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
         let setup = setup(scene, test, state, particles, settings.volume_m3)?;

@@ -2,16 +2,20 @@
 
 use crate::check::ledger::Balance;
 use crate::measure::Gauge;
+use crate::state::State;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 8] = [
+pub(super) const ENERGIES: [&str; 11] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
     "load_work_j",
     "support_work_j",
+    "wall_work_j",
     "bond_damping_j",
     "particle_damping_j",
+    "contact_damping_j",
+    "friction_j",
     "released_j",
 ];
 /// Names of the columns after those.
@@ -23,13 +27,17 @@ const OTHERS: [&str; 5] = [
     "time_step_s",
 ];
 
-/// Names of all columns after the time, with units, no two alike.
-pub fn columns(gauges: &[Gauge]) -> Vec<String> {
+/// Names of all columns after the time, with units, no two alike: energies and errors, force on and work of each wall, measures.
+pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, gauges: &[Gauge]) -> Vec<String> {
     let mut columns: Vec<String> = ENERGIES
         .iter()
         .chain(&OTHERS)
         .map(|&name| name.to_owned())
         .collect();
+    for wall in walls {
+        let of_wall = ["force_x_n", "force_y_n", "force_z_n", "work_j"];
+        columns.extend(of_wall.map(|what| format!("wall_{wall}_{what}")));
+    }
     for gauge in gauges {
         let mut name = match gauge.unit() {
             "" => gauge.name.clone(),
@@ -48,23 +56,33 @@ pub fn columns(gauges: &[Gauge]) -> Vec<String> {
 }
 
 /// A row in the order of [`columns`].
-pub fn row(balance: &Balance, broken: u64, time_step_s: f64, measured: &[f64]) -> Vec<f64> {
+pub fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
     let always = [
         balance.kinetic_j,
         balance.elastic_j(),
         balance.gravity_j,
         balance.load_work_j,
         balance.support_work_j,
+        balance.wall_work_j,
         balance.bond_damping_j,
         balance.particle_damping_j,
+        balance.contact_damping_j,
+        balance.friction_j,
         balance.released_j,
         balance.energy_error,
         balance.momentum_error,
         balance.angular_momentum_error,
-        broken as f64,
-        time_step_s,
+        state.broken_count as f64,
+        state.time_step_s,
     ];
+    let of_walls = state.walls.iter().flat_map(|wall| {
+        let [x, y, z] = wall.push.force_n.map(|f| -f);
+        [x, y, z, wall.work_j]
+    });
     // Adding 0 takes the sign from a zero.
-    let values = always.into_iter().chain(measured.iter().copied());
+    let values = always
+        .into_iter()
+        .chain(of_walls)
+        .chain(measured.iter().copied());
     values.map(|value| value + 0.0).collect()
 }

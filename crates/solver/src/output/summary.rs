@@ -6,6 +6,7 @@ use dem_io::units::significant;
 use serde::Serialize;
 
 use crate::check::ledger::Balance;
+use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 
 /// Energy errors above this share are worth a word.
@@ -18,7 +19,7 @@ pub struct Summary {
     pub scene: String,
     /// Program and version.
     pub program: String,
-    /// Why it ended: "end time" or "rest".
+    /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
     pub ended_by: String,
     /// Simulated, s.
     pub simulated_s: f64,
@@ -58,11 +59,16 @@ pub struct Summary {
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub left_out: Vec<String>,
+    /// What is odd about the scene but harmless.
+    pub notes: Vec<String>,
     /// Folder of the results.
     pub results: Option<String>,
     /// The change of the time step, where it went on from a checkpoint with another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resumed_with: Option<String>,
+    /// What came of the scene's laboratory test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub test: Option<TestResult>,
 }
 
 impl Summary {
@@ -81,6 +87,7 @@ impl Summary {
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
+        doubts.extend(self.test.iter().flat_map(TestResult::doubts));
         doubts
     }
 }
@@ -104,6 +111,9 @@ impl fmt::Display for Summary {
         let width = names.max().unwrap_or(0).max(12);
         for measure in &self.measures {
             writeln!(f, "{}", measure_text(measure, width))?;
+        }
+        if let Some(test) = &self.test {
+            write!(f, "{test}")?;
         }
         writeln!(
             f,
@@ -148,6 +158,9 @@ impl fmt::Display for Summary {
             )?;
         }
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
+        for note in &self.notes {
+            writeln!(f, "note         {note}")?;
+        }
         let doubts = self.doubts();
         let verdict = if doubts.is_empty() {
             "sound: nothing to mind".to_owned()

@@ -3,8 +3,20 @@
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
-use crate::check::limit::{Limit, limit};
+use nalgebra::Vector3;
+
+use crate::check::limit::{Limit, limit, safe_step};
+use crate::check::linear::{at_impact, largest_contact_rate_1_s2};
+use crate::geometry::{Bounds, Shape};
 use crate::state::State;
+use crate::state::walls::Wall;
+
+/// Share of its own limit with which an impact is followed, at most: a sphere that bounces keeps its energy to some 3e-3 of it then, and
+/// to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a contact does not.
+const SHARE_OF_IMPACT: f64 = 0.25;
+
+/// Share of the smallest radius that a particle may move in a step.
+pub const FARTHEST: f64 = 0.5;
 
 /// The chosen step and what it was chosen from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,8 +25,14 @@ pub struct StepChoice {
     pub step_s: f64,
     /// Whether it was given, not found.
     pub given: bool,
-    /// The exact limit.
+    /// The exact limit of the state at the start.
     pub limit: Limit,
+    /// Largest step that is stable in the first impacts, too, as far as they can be foreseen, s.
+    pub foreseen_s: f64,
+    /// Speed of those impacts, m/s.
+    pub impact_speed_m_s: f64,
+    /// Largest stiffness over mass of a contact that the step allows for, 1/s2.
+    pub contact_rate_1_s2: f64,
     /// Rayleigh's estimate [Platzer 14], s; infinite where no modulus is known.
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) [Platzer 15], s; infinite without bonds.
@@ -22,9 +40,9 @@ pub struct StepChoice {
 }
 
 impl StepChoice {
-    /// Step over limit.
+    /// Step over the smaller of both limits.
     pub fn share_of_limit(&self) -> f64 {
-        self.step_s / self.limit.step_s
+        self.step_s / self.foreseen_s.min(self.limit.step_s)
     }
 }
 
@@ -42,22 +60,30 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             "check the units of places, radii, density, modulus and damping",
         ));
     }
+    let impact_speed_m_s = impact_speed(scene, state);
+    let [k, c, rate] = at_impact(state, impact_speed_m_s);
+    let foreseen_s = limit.with_more([k, c]);
     let step_s = match run.time_step_s {
         Some(given) => {
-            if given > limit.step_s && !allow_any_step {
+            if given > foreseen_s && !allow_any_step {
                 return Err(Diagnostic::input(
                     format!("{}: run.time_step", scene.source),
-                    format!(
-                        "{given:.4e} s is above the largest stable step of {:.4e} s",
-                        limit.step_s
-                    ),
+                    format!("{given:.4e} s is above the largest stable step of {foreseen_s:.4e} s"),
                     "write time_step = \"auto\", or --force-step to see what happens",
                 ));
             }
             given
         }
         None => {
-            let largest = (run.safety * limit.step_s).min(run.end_time_s / 100.0);
+            let across = FARTHEST * smallest_radius_m(state) / impact_speed_m_s;
+            let largest = (run.safety * foreseen_s)
+                .min(SHARE_OF_IMPACT * safe_step(k, c))
+                .min(run.end_time_s / 100.0)
+                .min(if state.contacts.is_some() {
+                    across
+                } else {
+                    f64::INFINITY
+                });
             run.end_time_s / (run.end_time_s / largest).ceil()
         }
     };
@@ -65,6 +91,9 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         step_s,
         given: run.time_step_s.is_some(),
         limit,
+        foreseen_s,
+        impact_speed_m_s,
+        contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state)),
         rayleigh_s: rayleigh_s(scene, state),
         thesis_s: thesis_s(state),
     })
@@ -103,4 +132,85 @@ fn thesis_s(state: &State) -> f64 {
             0.17 / (bonds.normal(at) * a.max(b)).sqrt()
         })
         .fold(f64::INFINITY, f64::min)
+}
+
+/// Radius of the smallest particle, m; infinite without particles.
+pub fn smallest_radius_m(state: &State) -> f64 {
+    let radii = state.particles.poses.iter().map(|pose| pose.radius_m());
+    radii.fold(f64::INFINITY, f64::min)
+}
+
+/// A speed that no impact will exceed until bonds or loads drive something faster, m/s: of particles and walls against each other at the start, and
+/// what a fall through the whole scene adds. 0 where nothing can touch.
+fn impact_speed(scene: &Scene, state: &State) -> f64 {
+    if state.contacts.is_none() {
+        return 0.0;
+    }
+    let of_particles = state.particles.motions.iter().map(|m| m.velocity_m_s);
+    let of_walls = state.walls.iter().map(wall_velocity);
+    let start_m_s = Bounds::of(of_particles.chain(of_walls)).diagonal_m();
+    let gravity = Vector3::from(scene.run.gravity_m_s2);
+    let g = gravity.norm();
+    if g == 0.0 {
+        return start_m_s;
+    }
+    let by_time = g * scene.run.end_time_s;
+    let by_height = (2.0 * g * fall_m(state, &(gravity / g))).sqrt();
+    start_m_s.hypot(by_time.min(by_height))
+}
+
+/// Largest velocity of a wall, m/s, turning left out.
+fn wall_velocity(wall: &Wall) -> [f64; 3] {
+    use dem_io::scene::WallMotion;
+    match &wall.motion {
+        WallMotion::Velocity { velocity_m_s, .. } => *velocity_m_s,
+        WallMotion::Servo {
+            direction,
+            largest_velocity_m_s,
+            ..
+        } => direction.map(|d| d * largest_velocity_m_s),
+        WallMotion::Fixed | WallMotion::Displacement { .. } => [0.0; 3],
+    }
+}
+
+/// How far anything can fall along `down` before it meets a wall or another particle, at most, m.
+fn fall_m(state: &State, down: &Vector3<f64>) -> f64 {
+    let heights = state.particles.poses.iter().map(|p| p.place().dot(down));
+    let (mut high, mut low) = (f64::INFINITY, f64::NEG_INFINITY);
+    for height in heights {
+        high = high.min(height);
+        low = low.max(height);
+    }
+    let mut farthest = low - high;
+    for wall in &state.walls {
+        let to_wall = match &wall.shape {
+            Shape::Plane(_) => {
+                let far = |pose: &crate::state::particles::Pose| {
+                    let mut found = Vec::new();
+                    let centre = wall.frame.to_wall(pose.place().into());
+                    wall.shape.touches(centre, f64::INFINITY, &mut found);
+                    found.first().map_or(0.0, |touch| {
+                        let normal = Vector3::from(wall.frame.direction_to_space(touch.normal));
+                        let slope = normal.dot(down);
+                        if slope > 0.05 {
+                            touch.distance_m / slope
+                        } else {
+                            0.0
+                        }
+                    })
+                };
+                state.particles.poses.iter().map(far).fold(0.0, f64::max)
+            }
+            other => {
+                let Bounds { low, high: top } = other.bounds();
+                let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
+                    let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { top[k] });
+                    Vector3::from(wall.frame.to_space(corner)).dot(down)
+                });
+                corners.into_iter().fold(f64::NEG_INFINITY, f64::max) - high
+            }
+        };
+        farthest = farthest.max(to_wall);
+    }
+    farthest.max(0.0)
 }

@@ -2,7 +2,6 @@
 
 use dem_io::Result;
 use dem_io::results::Event;
-use dem_io::scene::Scene;
 
 use super::Files;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
@@ -38,32 +37,6 @@ pub(super) fn write_breaks(
     Ok(())
 }
 
-/// Takes a smaller step where the limit has fallen below the one that was taken, and notes it.
-pub(super) fn follow_limit(
-    state: &mut State,
-    limit_s: f64,
-    scene: &Scene,
-    files: Option<&mut Files<'_>>,
-) -> Result<()> {
-    let largest = scene.run.safety * limit_s;
-    if scene.run.time_step_s.is_some() || state.time_step_s <= largest {
-        return Ok(());
-    }
-    // So that the end time is met.
-    let left_s = scene.run.end_time_s - state.time_s;
-    let step_s = if left_s > 0.0 {
-        left_s / (left_s / largest).ceil()
-    } else {
-        largest
-    };
-    let detail = change(state.time_step_s, step_s);
-    state.time_step_s = step_s;
-    match files {
-        Some(files) => files.events.append(&[new_step(state, "limit", &detail)]),
-        None => Ok(()),
-    }
-}
-
 /// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.
 pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<String> {
     let before_s = state.time_step_s;
@@ -76,7 +49,7 @@ pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<Stri
     (step_s != before_s).then(|| change(before_s, step_s))
 }
 
-fn change(before_s: f64, after_s: f64) -> String {
+pub(super) fn change(before_s: f64, after_s: f64) -> String {
     format!("time step {before_s:.4e} s -> {after_s:.4e} s")
 }
 

@@ -1,10 +1,12 @@
 //! Where a run stands besides its state: what is written next, and what has been seen.
 
-use dem_io::scene::{Factor, Scene};
+use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::{Balance, over};
+use crate::laboratory::record::Record;
+use crate::plan::time_step::StepChoice;
 use crate::state::State;
 
 /// Rows of the time series unless asked otherwise.
@@ -31,10 +33,16 @@ pub struct Progress {
     pub(super) limit_s: f64,
     /// Largest strain of a bond at that time.
     pub(super) limit_strain: f64,
+    /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
+    pub(super) contact_rate_1_s2: f64,
     /// Since when the kinetic energy has been small against the elastic, s.
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
     pub(super) rested: bool,
+    /// What has been noted of a laboratory test.
+    pub(super) test: Record,
+    /// Whether that has ended because the body broke.
+    pub(super) broke: bool,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -60,15 +68,24 @@ fn first_after(time_s: f64, every_s: f64) -> u64 {
     ((time_s / every_s).floor() as u64).saturating_add(1)
 }
 
-/// When the last load or support has changed for the last time, s.
+/// When the last load, support or wall has changed for the last time, s; infinite where a wall moves on and on.
 fn last_change_s(state: &State) -> f64 {
     let loads = state.loads.iter().map(|load| &load.factor);
     let supports = state.supports.iter().map(|support| &support.factor);
-    let ends = loads.chain(supports).map(|factor| match factor {
+    let end = |factor: &Factor| match factor {
         Factor::One => 0.0,
         Factor::Ramp { until_s } => *until_s,
         Factor::Table(points) => points.last().map_or(0.0, |[time_s, _]| *time_s),
+    };
+    let of_walls = state.walls.iter().map(|wall| match &wall.motion {
+        WallMotion::Fixed => 0.0,
+        WallMotion::Displacement { factor, .. } | WallMotion::Servo { factor, .. } => end(factor),
+        WallMotion::Velocity { factor, .. } => match factor {
+            Factor::Table(points) if points.last().is_some_and(|[_, f]| *f == 0.0) => end(factor),
+            _ => f64::INFINITY,
+        },
     });
+    let ends = loads.chain(supports).map(end).chain(of_walls);
     ends.fold(0.0, f64::max)
 }
 
@@ -93,10 +110,11 @@ impl Rhythm {
 
 impl Progress {
     /// Of a run that has not begun.
-    pub(super) fn new(rhythm: Rhythm, limit_s: f64) -> Self {
+    pub(super) fn new(rhythm: Rhythm, choice: &StepChoice) -> Self {
         Self {
             rhythm,
-            limit_s,
+            limit_s: choice.foreseen_s,
+            contact_rate_1_s2: choice.contact_rate_1_s2,
             ..Self::default()
         }
     }
@@ -129,6 +147,12 @@ impl Progress {
             return over(
                 format!("this run has come to rest at {before_s:.6e} s"),
                 "set a smaller run.rest",
+            );
+        }
+        if self.broke {
+            return over(
+                format!("the body of this test has broken at {before_s:.6e} s"),
+                "run its fragments in another scene",
             );
         }
         self.rested = false;

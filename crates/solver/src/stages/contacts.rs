@@ -63,12 +63,21 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
 pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Particles) {
     let poses = &particles.poses;
     let pairs = near_pairs(poses, clusters, contacts.skin_m);
-    contacts.relist(pairs, |[a, b]| {
-        let (a, b) = (&poses[a as usize], &poses[b as usize]);
-        a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
-    });
+    let relaxes = contacts.relaxes;
+    contacts.relist(
+        pairs,
+        |pair| {
+            if relaxes { overlap_m(poses, pair) } else { 0.0 }
+        },
+    );
     contacts.divide(particles.len(), contacts.shares.len().max(1));
     contacts.room_m = 0.5 * contacts.skin_m;
+}
+
+/// Overlap of two particles, m; below 0 where they are apart.
+pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
+    let [a, b] = pair.map(|i| &poses[i as usize]);
+    a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
 }
 
 /// Elastic energy of all contacts, J.

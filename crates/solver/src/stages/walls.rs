@@ -103,6 +103,8 @@ struct Met {
     moments: [Vector3<f64>; 2],
     elastic_j: f64,
     lost_j: f64,
+    /// Whether the centre of the particle has gone through the surface.
+    crossed: bool,
     /// Along the normal, N/m.
     stiffness_n_m: f64,
 }
@@ -126,6 +128,9 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles, resistance: &mut 
     wall.elastic_j += met.elastic_j;
     wall.stiffness_n_m += met.stiffness_n_m;
     wall.friction_j += met.lost_j;
+    if met.crossed {
+        wall.crossed = Some(met.touch.particle);
+    }
     wall.touching.push(met.touch);
 }
 
@@ -261,6 +266,8 @@ fn meet_at(
         moments: [vector(moment_on_b), vector(damping.rolling_n_m)],
         elastic_j: energy.normal + energy.tangential + energy.rolling,
         lost_j: lost.sliding + lost.rolling,
+        crossed: touch.overlap_m > ball.radius_m
+            || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
         stiffness_n_m: match &kind.law {
             Law::HertzMindlin(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
             Law::Linear(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
@@ -363,8 +370,8 @@ pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
             fastest = fastest.max(spin_norm * far.fold(0.0, f64::max));
         }
         fastest = fastest.max(Vector3::from(velocity).norm());
-        for k in 0..3 {
-            wall.frame.position_m[k] += dt * velocity[k];
+        for (place, velocity) in wall.frame.position_m.iter_mut().zip(velocity) {
+            *place += dt * velocity;
         }
         wall.frame.turned = turn(wall.frame.turned, spin.map(|w| w * dt));
         wall.velocities_m_s[0] = velocity;

@@ -6,6 +6,7 @@ use super::particles::Wrench;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+use serde::{Deserialize, Serialize};
 
 /// Normal law of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +28,16 @@ pub enum Rolling {
     Spring(ElasticPlastic),
 }
 
+impl ContactKind {
+    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m.
+    pub fn normal_n_m(&self, overlap_m: f64, radius_m: f64) -> f64 {
+        match &self.law {
+            Law::HertzMindlin(law) => 2.0 * law.young_modulus_pa * (radius_m * overlap_m).sqrt(),
+            Law::Linear(law) => law.normal_n_m,
+        }
+    }
+}
+
 /// How a pair of materials meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactKind {
@@ -38,7 +49,7 @@ pub struct ContactKind {
 
 /// What a contact remembers: tangential spring x, y, z (m) and the overlap of the law (m); rolling spring x, y, z (rad) and the overlap at which the
 /// law begins (m), which is 0 but for pairs that [parted overlapping](crate::physics::contact::relaxation).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// Tangential spring and overlap.
     pub slid: [f64; 4],
@@ -65,6 +76,8 @@ pub struct Contacts {
     pub skin_m: f64,
     /// What every particle may move before pairs have to be looked for again, m.
     pub room_m: f64,
+    /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
+    pub relaxes: bool,
     /// A pair that parted overlapping is ordinary below this share of its reduced radius.
     pub least_overlap: f64,
     /// Damping forces of contacts on particles. Empty: no contacts.

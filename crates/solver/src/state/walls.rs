@@ -1,6 +1,7 @@
 //! Walls: where they stand, how they move, what touches them and what that does to them.
 
 use dem_io::scene::WallMotion;
+use serde::{Deserialize, Serialize};
 
 use super::contacts::{ContactKind, Memory};
 use crate::geometry::{Frame, Shape};
@@ -38,10 +39,42 @@ pub struct Wall {
     pub elastic_j: f64,
     /// Energy that friction took so far, J.
     pub friction_j: f64,
+    /// A particle whose centre has gone through its surface.
+    pub crossed: Option<u32>,
+    /// Work that it did on the particles up to the present, and in the half step to come, J.
+    pub work_j: f64,
+    /// See `work_j`.
+    pub pending_j: f64,
+}
+
+impl Wall {
+    /// A wall that stands still and that nothing touches, of no material.
+    pub fn standing(shape: Shape, frame: Frame) -> Self {
+        Self {
+            shape,
+            frame,
+            motion: WallMotion::Fixed,
+            surface_velocity_m_s: [0.0; 3],
+            kind_of: Vec::new(),
+            kinds: Vec::new(),
+            velocities_m_s: [[0.0; 3]; 2],
+            spins_rad_s: [[0.0; 3]; 2],
+            near: Vec::new(),
+            touching: Vec::new(),
+            push: Push::default(),
+            damping: Push::default(),
+            stiffness_n_m: 0.0,
+            elastic_j: 0.0,
+            friction_j: 0.0,
+            crossed: None,
+            work_j: 0.0,
+            pending_j: 0.0,
+        }
+    }
 }
 
 /// A particle that touches a wall, and what is remembered of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WallTouch {
     /// Which particle.
     pub particle: u32,
@@ -54,7 +87,7 @@ pub struct WallTouch {
 }
 
 /// What a wall does to the particles that touch it, together.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Push {
     /// N.
     pub force_n: [f64; 3],

@@ -4,28 +4,18 @@ use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::ledger::{Ledger, balance};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::state::State;
-use dem_run::state::walls::{Push, Wall};
+use dem_run::state::walls::Wall;
 use dem_run::step::{act, move_on};
 
 use crate::clouds::{cloud, kinds};
 
 fn wall(shape: Shape, motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
     Wall {
-        shape,
-        frame: Frame::default(),
         motion,
         surface_velocity_m_s: belt_m_s,
         kind_of: vec![0, 2],
         kinds: kinds().to_vec(),
-        velocities_m_s: [[0.0; 3]; 2],
-        spins_rad_s: [[0.0; 3]; 2],
-        near: Vec::new(),
-        touching: Vec::new(),
-        push: Push::default(),
-        damping: Push::default(),
-        stiffness_n_m: 0.0,
-        elastic_j: 0.0,
-        friction_j: 0.0,
+        ..Wall::standing(shape, Frame::default())
     }
 }
 

@@ -1,0 +1,282 @@
+//! Contacts as the limit of the time step sees them: springs and dashpots at the overlap that they have, or that an impact will give them.
+
+use nalgebra::Vector3;
+
+use crate::physics::contact::rolling::NoRolling;
+use crate::physics::contact::touch::{Ball, Foot, Touch, torques, touch, touch_at_wall};
+use crate::physics::contact::{Linearised, NormalLaw, linearised};
+use crate::physics::number::Triple;
+use crate::state::State;
+use crate::state::contacts::{ContactKind, Law, Rolling};
+use crate::state::particles::{Motion, Particles, Wrench};
+use crate::state::walls::{Wall, WallTouch};
+
+/// Translation and rotation of an end answer to a tangential force together: 1/m + R^2/I is so many times 1/m for a sphere.
+const WITH_ROTATION: f64 = 3.5;
+
+/// A contact that is there.
+#[derive(Debug, Clone, Copy)]
+pub struct LinearContact {
+    /// Its particles; None: a wall.
+    ends: [Option<u32>; 2],
+    touch: Touch,
+    answer: Linearised,
+}
+
+/// All contacts of a state that touch.
+pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
+    let mut found = Vec::new();
+    let p = &state.particles;
+    if let Some(contacts) = &state.contacts {
+        for (&pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
+            let overlap_m = memory.slid[3];
+            if overlap_m > 0.0 {
+                let [a, b] = pair.map(|end| end as usize);
+                let apart = p.poses[b].place() - p.poses[a].place();
+                let mut touch = touch(triple(&apart), [a, b].map(|i| ball(p, i)), 0.0);
+                touch.overlap_m = overlap_m;
+                let kind = &contacts.kinds[contacts.kind(pair)];
+                found.push(LinearContact {
+                    ends: pair.map(Some),
+                    touch,
+                    answer: answer(kind, &touch),
+                });
+            }
+        }
+        for wall in &state.walls {
+            let touching = wall.touching.iter();
+            let touching = touching.filter(|touch| touch.memory.slid[3] > 0.0);
+            found.extend(touching.map(|touch| at_wall(wall, touch, &contacts.materials, p)));
+        }
+    }
+    found
+}
+
+fn at_wall(
+    wall: &Wall,
+    there: &WallTouch,
+    materials: &[u8],
+    particles: &Particles,
+) -> LinearContact {
+    let i = there.particle as usize;
+    let overlap_m = there.memory.slid[3];
+    let touch = wall_touch(particles, i, &Vector3::from(there.normal), overlap_m);
+    let kind = &wall.kinds[usize::from(wall.kind_of[usize::from(materials[i])])];
+    LinearContact {
+        ends: [None, Some(there.particle)],
+        touch,
+        answer: answer(kind, &touch),
+    }
+}
+
+/// A particle at rest against a wall at rest.
+fn wall_touch(particles: &Particles, i: usize, normal: &Vector3<f64>, overlap_m: f64) -> Touch {
+    let foot = Foot {
+        normal: triple(normal),
+        normal_before: triple(normal),
+        distance_m: particles.poses[i].radius_m() - overlap_m,
+        velocity_m_s: Triple(0.0, 0.0, 0.0),
+        spin_rad_s: Triple(0.0, 0.0, 0.0),
+    };
+    touch_at_wall(&foot, ball(particles, i), 0.0)
+}
+
+fn ball(particles: &Particles, i: usize) -> Ball {
+    Ball {
+        velocity_m_s: Triple(0.0, 0.0, 0.0),
+        spin_rad_s: Triple(0.0, 0.0, 0.0),
+        radius_m: particles.poses[i].radius_m(),
+        inverse_mass_per_kg: particles.inverse_masses[i],
+        inverse_inertia_per_kg_m2: particles.inverse_inertias[i],
+    }
+}
+
+fn answer(kind: &ContactKind, touch: &Touch) -> Linearised {
+    match &kind.law {
+        Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch),
+        Law::Linear(law) => with_law(law, &kind.rolling, touch),
+    }
+}
+
+fn with_law(law: &impl NormalLaw<f64>, rolling: &Rolling, touch: &Touch) -> Linearised {
+    match rolling {
+        Rolling::Free => linearised(law, &NoRolling, touch),
+        Rolling::Constant(rolling) => linearised(law, rolling, touch),
+        Rolling::Spring(rolling) => linearised(law, rolling, touch),
+    }
+}
+
+/// Weights of the two symmetric operators of a body in a sum of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Weights {
+    /// Of K, from displacements to forces.
+    pub stiffness: f64,
+    /// Of C, from velocities to forces.
+    pub damping: f64,
+}
+
+/// Sets `wrenches` to what the contacts do to particles that are displaced, or move, by `motions`; one of each for each particle.
+pub fn linear_wrenches(
+    contacts: &[LinearContact],
+    weights: Weights,
+    motions: &[Motion],
+    wrenches: &mut [Wrench],
+) {
+    wrenches.fill(Wrench::default());
+    let moving = |end: Option<u32>| end.map_or_else(Motion::default, |i| motions[i as usize]);
+    for contact in contacts {
+        let (touch, answer) = (&contact.touch, &contact.answer);
+        let of = |stiffness: f64, damping: f64| {
+            weights.stiffness * stiffness + weights.damping * damping
+        };
+        let along = of(answer.normal_n_m, answer.normal_damping_n_s_m);
+        let across = of(answer.tangential_n_m, answer.tangential_damping_n_s_m);
+        let rolling = of(answer.rolling_n_m_rad, answer.rolling_damping_n_m_s);
+
+        let [a, b] = contact.ends.map(moving);
+        let spins = [a, b].map(|m| Vector3::from(m.spin_rad_s));
+        let velocities = [a, b].map(|m| Vector3::from(m.velocity_m_s));
+        let n = vector(touch.normal);
+        let [lever_a, lever_b] = touch.levers_m;
+        let relative =
+            velocities[1] - velocities[0] - (lever_a * spins[0] + lever_b * spins[1]).cross(&n);
+        let closing = relative.dot(&n) * n;
+        let force = -along * closing - across * (relative - closing);
+        let turning = spins[1] - spins[0];
+        let moment = -rolling * (turning - turning.dot(&n) * n);
+        let on_ends = torques(touch, triple(&force), triple(&moment));
+        for ((end, torque), side) in contact.ends.into_iter().zip(on_ends).zip([-1.0, 1.0]) {
+            if let Some(i) = end {
+                wrenches[i as usize].add(&(side * force), &vector(torque));
+            }
+        }
+    }
+}
+
+/// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all that touch, 1/s2: how far the limit may have fallen since
+/// this was smaller. 0 where nothing touches.
+pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
+    use rayon::prelude::*;
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let p = &state.particles;
+    let of_pair = |at: usize| {
+        let overlap_m = contacts.memories[at].slid[3];
+        if overlap_m <= 0.0 {
+            return 0.0;
+        }
+        let pair = contacts.pairs[at];
+        let [a, b] = pair.map(|end| end as usize);
+        let [ra, rb] = [a, b].map(|i| p.poses[i].radius_m());
+        let kind = &contacts.kinds[contacts.kind(pair)];
+        let per_mass = p.inverse_masses[a] + p.inverse_masses[b];
+        kind.normal_n_m(overlap_m, ra * rb / (ra + rb)) * per_mass
+    };
+    let of_pairs = (0..contacts.pairs.len())
+        .into_par_iter()
+        .with_min_len(4096)
+        .map(of_pair)
+        .reduce(|| 0.0, f64::max);
+    let of_walls = state.walls.iter().flat_map(|wall| {
+        wall.touching.iter().map(|touch| {
+            let i = touch.particle as usize;
+            let material = usize::from(contacts.materials[i]);
+            let kind = &wall.kinds[usize::from(wall.kind_of[material])];
+            let overlap_m = touch.memory.slid[3].max(0.0);
+            kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.inverse_masses[i]
+        })
+    });
+    of_walls.fold(of_pairs, f64::max)
+}
+
+/// What the first impact at a speed, m/s, will add to the largest eigenvalues of stiffness and damping over mass, 1/s2 and 1/s, if a particle meets a wall or
+/// another of its size by itself; and its [rate](largest_contact_rate_1_s2), 1/s2. A particle that a body pushes from behind may go deeper.
+pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
+    let Some(contacts) = &state.contacts else {
+        return [0.0; 3];
+    };
+    let p = &state.particles;
+    let materials = contacts.kind_of.len().isqrt();
+    let mut largest = [0.0_f64; 3];
+    let mut take = |kind: &ContactKind, i: usize, at_wall: bool| {
+        let n = Vector3::x();
+        let overlap_m = overlap_at_impact_m(kind, p, i, speed_m_s, at_wall);
+        let touch = if at_wall {
+            wall_touch(p, i, &n, overlap_m)
+        } else {
+            let apart = Triple(2.0 * p.poses[i].radius_m() - overlap_m, 0.0, 0.0);
+            touch(apart, [ball(p, i); 2], 0.0)
+        };
+        let ends = if at_wall { 1.0 } else { 2.0 };
+        let per_mass = ends * p.inverse_masses[i];
+        let answer = answer(kind, &touch);
+        let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
+        let damping = answer
+            .normal_damping_n_s_m
+            .max(WITH_ROTATION * answer.tangential_damping_n_s_m);
+        largest[0] = largest[0].max(per_mass * stiffest);
+        largest[1] = largest[1].max(per_mass * damping);
+        largest[2] = largest[2].max(per_mass * answer.normal_n_m);
+    };
+    for i in smallest_by_material(state) {
+        let material = usize::from(contacts.materials[i]);
+        let row = &contacts.kind_of[material * materials..(material + 1) * materials];
+        for &kind in row {
+            if let Some(kind) = contacts.kinds.get(usize::from(kind)) {
+                take(kind, i, false);
+            }
+        }
+        for wall in &state.walls {
+            if let Some(kind) = wall.kinds.get(usize::from(wall.kind_of[material])) {
+                take(kind, i, true);
+            }
+        }
+    }
+    largest
+}
+
+/// The smallest particle of each material, on which impacts are fastest.
+fn smallest_by_material(state: &State) -> Vec<usize> {
+    let mut smallest: Vec<Option<usize>> = Vec::new();
+    let Some(contacts) = &state.contacts else {
+        return Vec::new();
+    };
+    let radius = |i: usize| state.particles.poses[i].radius_m();
+    for (i, &material) in contacts.materials.iter().enumerate() {
+        let material = usize::from(material);
+        if smallest.len() <= material {
+            smallest.resize(material + 1, None);
+        }
+        if smallest[material].is_none_or(|other| radius(i) < radius(other)) {
+            smallest[material] = Some(i);
+        }
+    }
+    smallest.into_iter().flatten().collect()
+}
+
+fn overlap_at_impact_m(
+    kind: &ContactKind,
+    particles: &Particles,
+    i: usize,
+    speed_m_s: f64,
+    at_wall: bool,
+) -> f64 {
+    let half = if at_wall { 1.0 } else { 0.5 };
+    let mass_kg = half / particles.inverse_masses[i];
+    match &kind.law {
+        Law::HertzMindlin(law) => {
+            let radius_m = half * particles.poses[i].radius_m();
+            law.overlap_at_impact_m(radius_m, mass_kg, speed_m_s)
+        }
+        Law::Linear(law) => speed_m_s * (mass_kg / law.normal_n_m).sqrt(),
+    }
+}
+
+fn triple(v: &Vector3<f64>) -> Triple<f64> {
+    Triple(v.x, v.y, v.z)
+}
+
+fn vector(t: Triple<f64>) -> Vector3<f64> {
+    Vector3::new(t.0, t.1, t.2)
+}

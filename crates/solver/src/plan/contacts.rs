@@ -1,0 +1,250 @@
+//! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of particles may.
+
+use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene};
+use dem_io::{Diagnostic, Result};
+
+use super::bodies::{PlacedBody, particle_of_file};
+use crate::clusters::Clusters;
+use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::linear::Linear;
+use crate::physics::contact::manner::{Behaviour, Elastic};
+use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+use crate::stages::contacts::{list_contacts, overlap_m};
+use crate::state::State;
+use crate::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use crate::state::particles::Wrench;
+
+/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise.
+const SKIN: f64 = 0.1;
+/// Ends that overlap at the start by less than this share of the smaller radius only touch: files round.
+pub(super) const ROUNDING: f64 = 1e-6;
+/// Materials that a byte can tell apart, and one that stands for none.
+const MOST_MATERIALS: usize = 255;
+const NO_KIND: u8 = u8::MAX;
+
+/// Kinds of contacts, and which pair of materials has which.
+pub(super) struct Kinds<'a> {
+    /// Names of the materials, by number.
+    names: Vec<&'a str>,
+    /// In the order of [`Scene::contacts`].
+    pub(super) kinds: Vec<ContactKind>,
+    /// Row by row; [`NO_KIND`] where the scene says nothing. Length materials squared.
+    of_pair: Vec<u8>,
+}
+
+impl<'a> Kinds<'a> {
+    /// # Errors
+    /// More materials or pairs than bytes can tell apart.
+    pub(super) fn new(scene: &'a Scene) -> Result<Self> {
+        let names: Vec<&str> = scene.materials.keys().map(String::as_str).collect();
+        let count = names.len();
+        let pairs = scene.contacts.len();
+        if count > MOST_MATERIALS || pairs > MOST_MATERIALS {
+            return Err(Diagnostic::input(
+                &scene.source,
+                format!("the scene has {count} materials and {pairs} pairs in [contacts]"),
+                format!("use {MOST_MATERIALS} of each at most"),
+            ));
+        }
+        let mut of_pair = vec![NO_KIND; count * count];
+        for (kind, contact) in (0..).zip(&scene.contacts) {
+            let [a, b] = [0, 1].map(|end| number(&names, &contact.materials[end]));
+            of_pair[a * count + b] = kind;
+            of_pair[b * count + a] = kind;
+        }
+        Ok(Self {
+            kinds: scene.contacts.iter().map(|c| kind(scene, c)).collect(),
+            names,
+            of_pair,
+        })
+    }
+
+    /// Number of a material.
+    pub(super) fn material(&self, name: &str) -> usize {
+        number(&self.names, name)
+    }
+
+    /// The kinds in which a material meets all others.
+    pub(super) fn row(&self, material: usize) -> &[u8] {
+        let count = self.names.len();
+        &self.of_pair[material * count..(material + 1) * count]
+    }
+
+    /// Refuses a pair of materials that the scene says nothing of. `who` needs it, in words.
+    pub(super) fn need(&self, scene: &Scene, pair: [usize; 2], who: &str) -> Result<()> {
+        if self.row(pair[0])[pair[1]] != NO_KIND {
+            return Ok(());
+        }
+        let [a, b] = pair.map(|material| self.names[material]);
+        Err(Diagnostic::input(
+            format!("{}: [contacts]", scene.source),
+            format!("nothing is said of {a} with {b}, which {who}"),
+            format!("add {a}-{b} = {{ restitution = 0.5, friction = 0.5 }} to [contacts]"),
+        ))
+    }
+}
+
+fn number(names: &[&str], name: &str) -> usize {
+    names.iter().position(|n| *n == name).unwrap_or_default()
+}
+
+fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
+    let behaviour = Behaviour::new(contact.restitution, contact.friction);
+    let elastic = |name: &String| {
+        let material: Option<&Material> = scene.materials.get(name);
+        Elastic {
+            young_modulus_pa: material
+                .and_then(|m| m.young_modulus_pa)
+                .unwrap_or(f64::INFINITY),
+            poisson_ratio: material.map_or(0.0, |m| m.poisson_ratio),
+        }
+    };
+    let [a, b] = &contact.materials;
+    ContactKind {
+        law: match contact.law {
+            ContactLaw::HertzMindlin => {
+                Law::HertzMindlin(HertzMindlin::new([elastic(a), elastic(b)], &behaviour))
+            }
+            ContactLaw::Linear {
+                normal_n_m,
+                tangential_ratio,
+            } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &behaviour)),
+        },
+        rolling: match contact.rolling {
+            SceneRolling::None => Rolling::Free,
+            SceneRolling::ConstantTorque { friction } => {
+                Rolling::Constant(ConstantMoment { friction })
+            }
+            SceneRolling::SpringDashpot { friction, damping } => Rolling::Spring(ElasticPlastic {
+                friction,
+                damping_ratio: damping,
+            }),
+        },
+    }
+}
+
+/// Whether the particles of a scene can meet each other or walls, as far as it says how.
+pub(super) fn are_needed(scene: &Scene) -> bool {
+    !scene.contacts.is_empty() || !scene.walls.is_empty()
+}
+
+/// Puts contacts into a state whose clusters are known.
+///
+/// # Errors
+/// A pair of materials that may meet without a word on how; particles of different clusters that overlap, unless they may.
+pub(super) fn place_contacts(
+    scene: &Scene,
+    kinds: &Kinds<'_>,
+    bodies: &[PlacedBody],
+    state: &mut State,
+) -> Result<()> {
+    let Some(clusters) = state.clusters.as_ref() else {
+        return Ok(());
+    };
+    need_pairs(scene, kinds, bodies, clusters, state)?;
+    let p = &state.particles;
+    let largest_m = p.poses.iter().map(|q| q.radius_m()).fold(0.0, f64::max);
+    let mut materials = vec![0_u8; p.len()];
+    for body in bodies {
+        let material = kinds.material(&scene.bodies[&body.name].material);
+        for &i in &body.particles {
+            materials[i as usize] = material as u8;
+        }
+    }
+    let mut contacts = Contacts {
+        kinds: kinds.kinds.clone(),
+        kind_of: kinds.of_pair.clone(),
+        materials,
+        skin_m: scene.search.skin.unwrap_or(SKIN) * largest_m,
+        least_overlap: scene.relaxation.min_overlap,
+        relaxes: true,
+        resistance: vec![Wrench::default(); p.len()],
+        lost_j: vec![[0.0; 2]; p.len()],
+        ..Contacts::default()
+    };
+    contacts.divide(p.len(), state.shares.len().max(1));
+    // What overlaps now is no fruit of a break: it relaxes whenever it is let in at all.
+    list_contacts(&mut contacts, &clusters.of_particle, p);
+    if scene.run.start_overlap == dem_io::scene::StartOverlap::Refuse {
+        refuse_overlaps(scene, &contacts, bodies, state)?;
+    }
+    contacts.relaxes = scene.relaxation.enabled;
+    contacts.room_m = -1.0;
+    state.contacts = Some(contacts);
+    Ok(())
+}
+
+/// Whether the scene says how all those meet that can.
+fn need_pairs(
+    scene: &Scene,
+    kinds: &Kinds<'_>,
+    bodies: &[PlacedBody],
+    clusters: &Clusters,
+    state: &State,
+) -> Result<()> {
+    let material = |body: &PlacedBody| kinds.material(&scene.bodies[&body.name].material);
+    for (n, body) in bodies.iter().enumerate() {
+        let first = body.first_particle;
+        let cluster_of = |i: &u32| clusters.of_particle[*i as usize];
+        let is_in_pieces = body
+            .particles
+            .iter()
+            .any(|i| cluster_of(i) != clusters.of_particle[first]);
+        let breaks = body.bonds.first().is_some_and(|_| {
+            let rule = state.bonds.rule_of(body.first_bond);
+            state.bonds.rules[rule].criteria.is_some()
+        });
+        if breaks || is_in_pieces {
+            let why = if breaks {
+                "can break into"
+            } else {
+                "consists of"
+            };
+            let who = format!("pieces that the body '{}' {why} need", body.name);
+            kinds.need(scene, [material(body); 2], &who)?;
+        }
+        for other in &bodies[n + 1..] {
+            let who = format!("the bodies '{}' and '{}' need", body.name, other.name);
+            kinds.need(scene, [material(body), material(other)], &who)?;
+        }
+    }
+    Ok(())
+}
+
+/// Refuses particles of different clusters that overlap: names the deepest pair.
+fn refuse_overlaps(
+    scene: &Scene,
+    contacts: &Contacts,
+    bodies: &[PlacedBody],
+    state: &State,
+) -> Result<()> {
+    let poses = &state.particles.poses;
+    let overlapping: Vec<(f64, [u32; 2])> = contacts
+        .pairs
+        .iter()
+        .map(|&pair| (overlap_m(poses, pair), pair))
+        .filter(|&(overlap, pair)| {
+            let radii = pair.map(|i| poses[i as usize].radius_m());
+            overlap > ROUNDING * radii[0].min(radii[1])
+        })
+        .collect();
+    let Some((overlap, pair)) = overlapping.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return Ok(());
+    };
+    let [a, b] = pair.map(|i| match particle_of_file(bodies, i) {
+        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
+        None => format!("particle {i}"),
+    });
+    let more = match overlapping.len() {
+        1 => String::new(),
+        count => format!(", the deepest of {count} such pairs"),
+    };
+    Err(Diagnostic::input(
+        &scene.source,
+        format!(
+            "{a} and {b} overlap by {} at the start although no bond joins them{more}",
+            dem_io::units::show_length(*overlap)
+        ),
+        "move the bodies apart; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press",
+    ))
+}

@@ -1,0 +1,149 @@
+//! What a step of a scene consists of, and what it leaves out and why.
+
+use dem_io::scene::Scene;
+
+use crate::state::State;
+
+/// A stage of the step: done or left out, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedStage {
+    /// What it does.
+    pub name: &'static str,
+    /// Whether the scene needs it.
+    pub needed: bool,
+    /// Why, or why not.
+    pub why: String,
+}
+
+/// What a step consists of, and what is left out.
+pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
+    let bonds = state.bonds.len();
+    let rules = &state.bonds.rules;
+    let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
+    let stage = |name, needed, yes: String, no: &str| PlannedStage {
+        name,
+        needed,
+        why: if needed { yes } else { no.to_owned() },
+    };
+    let contacts = state.contacts.as_ref();
+    let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
+    let breaks = any(&|rule| rule.criteria.is_some()) && bonds > 0;
+    let meets = contacts.is_some() && (pieces > 1 || breaks);
+    let rolls = scene
+        .contacts
+        .iter()
+        .any(|c| c.rolling != dem_io::scene::Rolling::None);
+    let scattered = !state.bonds.strength_factors.is_empty();
+    vec![
+        stage(
+            "bond forces",
+            bonds > 0,
+            format!("{bonds} bonds"),
+            "no body has bonds",
+        ),
+        stage(
+            "bond history",
+            any(&|rule| rule.incremental) && bonds > 0,
+            "bonds of the incremental formulation".to_owned(),
+            "every bond has the total formulation",
+        ),
+        stage(
+            "failure",
+            any(&|rule| rule.criteria.is_some()),
+            "bonds have strengths".to_owned(),
+            "no bond has a strength",
+        ),
+        stage(
+            "strength by rate",
+            any(&|rule| rule.strengthening_from_1_s.is_some()),
+            "only for bonds that would break without it".to_owned(),
+            "no rate strengthening asked for",
+        ),
+        stage(
+            "scattered strength",
+            scattered,
+            "a factor for each bond".to_owned(),
+            "no Weibull modulus given",
+        ),
+        stage(
+            "cluster search",
+            state.clusters.is_some() && breaks,
+            format!(
+                "every {} steps, if bonds have broken",
+                state.triggers.interval
+            ),
+            "no bond can break",
+        ),
+        stage(
+            "contacts of particles",
+            meets,
+            format!("{pieces} pieces at the start"),
+            if contacts.is_some() {
+                "there is one body, and no bond can break"
+            } else if breaks || pieces > 1 || scene.bodies.len() > 1 {
+                "the scene has no [contacts]: bodies and pieces pass through each other"
+            } else {
+                "nothing can touch"
+            },
+        ),
+        stage(
+            "relaxation",
+            meets && (contacts.is_some_and(|c| c.relaxes) && breaks),
+            "overlaps of pieces that part are where their contact begins".to_owned(),
+            if scene.relaxation.enabled {
+                "no pieces part"
+            } else {
+                "switched off: pieces that part overlapping fly apart"
+            },
+        ),
+        stage(
+            "walls",
+            !state.walls.is_empty(),
+            format!("{}", state.walls.len()),
+            "no walls",
+        ),
+        stage(
+            "rolling friction",
+            contacts.is_some() && rolls,
+            "materials have it".to_owned(),
+            "no materials have it",
+        ),
+        stage(
+            "bond damping",
+            !state.bond_resistance.is_empty(),
+            "bonds are damped".to_owned(),
+            "no bond is damped: no relative velocities",
+        ),
+        stage(
+            "particle damping",
+            state.particle_damping > 0.0,
+            format!("gamma {}", state.particle_damping),
+            "not asked for",
+        ),
+        stage(
+            "loads",
+            !state.loads.is_empty(),
+            on_particles(state.loads.iter().map(|l| l.particles.len()).sum()),
+            "no loads",
+        ),
+        stage(
+            "supports",
+            !state.supports.is_empty(),
+            on_particles(state.supports.iter().map(|s| s.held.len()).sum()),
+            "no supports",
+        ),
+        stage(
+            "gravity",
+            state.gravity_m_s2 != [0.0; 3],
+            {
+                let [x, y, z] = state.gravity_m_s2;
+                format!("[{x}, {y}, {z}] m/s2")
+            },
+            "no gravity",
+        ),
+    ]
+}
+
+fn on_particles(count: usize) -> String {
+    format!("on {count} particle{}", if count == 1 { "" } else { "s" })
+}
