@@ -138,11 +138,7 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         "[\"NAME\"], walls that load the body"
     };
     let moves = table.need("moves", example)?;
-    let moves = moves
-        .items()?
-        .iter()
-        .map(|item| moved(item, pulls, known))
-        .collect::<Result<Vec<String>>>()?;
+    let moves = all_moved(&moves, pulls, known)?;
     let along = table.need("direction", "[0, 0, -1], in which they move")?;
     let direction = direction(&along, "a direction")?;
     if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
@@ -214,6 +210,23 @@ fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
             Err(table.refuse(problem, format!("name one of {}", names.join(", "))))
         }
     }
+}
+
+/// What `moves` names, each once.
+fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<String>> {
+    let mut moves: Vec<String> = Vec::new();
+    for item in field.items()? {
+        let name = moved(&item, pulls, known)?;
+        if moves.contains(&name) {
+            let problem = format!(
+                "{} is \"{name}\", which stands in the list already",
+                item.path
+            );
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        moves.push(name);
+    }
+    Ok(moves)
 }
 
 /// What an item of `moves` names: a wall that stands still, or a set that no support holds.

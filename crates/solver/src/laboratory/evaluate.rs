@@ -214,12 +214,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
             add("stiffness of the body", of_body, "N/m", theory);
             let bending = |k: f64| k / shape;
             let with_shear = |k: f64| k * (1.0 + shear) / shape;
-            add(
-                "modulus without shear",
-                stiffness.map(bending),
-                "Pa",
-                modulus,
-            );
+            add(EQ_18, stiffness.map(bending), "Pa", modulus);
             add(
                 "modulus with shear",
                 stiffness.map(with_shear),
@@ -291,6 +286,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
 
 /// Names of figures that are looked up.
 const STIFFNESS: &str = "stiffness";
+const EQ_18: &str = "modulus without shear";
 /// Modulus of the body by its own deflection or elongation, shear counted.
 pub const MODULUS: &str = "modulus of the body";
 /// Largest force before the body broke.
@@ -317,6 +313,12 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
             let name = "modulus of bonds for that wanted";
             found.push(Figure::new(name, wanted / factor, "Pa", None));
         }
+    }
+    // As the thesis does it, with all that gives way at the pins in it.
+    if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
+        let name = "the same by eq. 18";
+        let value = wanted / modulus * bonds.young_modulus_pa;
+        found.push(Figure::new(name, value, "Pa", None));
     }
     let of_bonds = bonds.failure.von_mises_pa.or(bonds.failure.tension_pa);
     if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {

@@ -110,6 +110,15 @@ fn middle([low, high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
+/// A unit vector or its opposite, whichever points along its axis rather than against it.
+fn forwards(along: Vector3<f64>) -> Vector3<f64> {
+    if along[along.iamax()] < 0.0 {
+        -along
+    } else {
+        along
+    }
+}
+
 type Refusal = (String, &'static str);
 
 /// A beam between pins.
@@ -160,7 +169,7 @@ fn beam(
             remedy,
         ));
     }
-    let along = along.normalize();
+    let along = forwards(along.normalize());
     let place = |pins: &[(Vector3<f64>, Vector3<f64>)]| -> Vec<f64> {
         let mut places: Vec<f64> = pins.iter().map(|(place, _)| place.dot(&along)).collect();
         places.sort_by(f64::total_cmp);
@@ -233,7 +242,7 @@ fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> 
         .map_or(Vector3::y(), |axis| {
             (axis - direction * axis.dot(&direction)).normalize()
         });
-    let along = axis.cross(&direction);
+    let along = forwards(axis.cross(&direction));
     let diameter_m = test.height_m.unwrap_or_else(|| size(extent(&direction)));
     let centre = middle(extent(&along)) * along
         + middle(extent(&axis)) * axis
