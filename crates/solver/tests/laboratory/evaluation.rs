@@ -79,11 +79,10 @@ pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
         bond,
         cause: Cause::VonMises,
     });
-    Record {
-        rows: rows.collect(),
-        broken: broken.to_vec(),
-        ..Record::default()
-    }
+    let mut record = Record::default();
+    record.rows = rows.collect();
+    record.broken = broken.to_vec();
+    record
 }
 
 pub(crate) const PLACES: [[f64; 3]; 2] = [[0.1, 0.01, 0.002], [0.15, 0.02, 0.01]];
