@@ -1,19 +1,23 @@
-//! Results of a run: a folder of frames, time series, events, plots and a summary.
+//! Results of a run: a folder of frames, time series, events, fragments, plots and a summary.
 //!
 //! A crash or a full disk never destroys what was there: files appear whole or not at all, and tables grow by whole rows.
 //! A run that was interrupted and continued leaves the same bytes as one that was not.
 
 pub mod events;
 pub mod folder;
+pub mod fragments;
 pub mod frames;
 mod growing;
 pub mod plots;
 pub mod series;
+pub mod stored_frame;
 pub mod summary;
 
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};
+pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
 pub use plots::{Axis, Line, Plot, svg};
 pub use series::{Series, SeriesFile, read_series};
+pub use stored_frame::{StoredFragment, StoredFrame, read_frame};
 pub use summary::write_json;

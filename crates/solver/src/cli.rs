@@ -1,6 +1,7 @@
 //! The command line of dem-run: arguments as typed, and what is done with them.
 
 mod check;
+mod fragment;
 
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -51,6 +52,13 @@ enum Command {
         #[command(flatten)]
         scene: SceneArguments,
     },
+    /// Write a fragment of a run as a body: its particles where they stand in a frame, and the bonds that hold
+    #[command(
+        after_help = "Bonds keep the lengths at which they are free of force: one that is stretched stays so. Velocities, and that bonds are bent, \
+                      twisted or sheared, are not kept.\n\
+                      Example:\n  dem-run fragment results --largest -o piece.vtp"
+    )]
+    Fragment(fragment::FragmentArguments),
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +118,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             let scene_data = arranged.map_or(scene_data, |arranged| arranged.scene);
             check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
         }),
+        Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         None if arguments.run.scene.names_a_scene() => in_pool(&arguments.run.scene, |threads| {
             run_scene(&arguments.run, threads, interrupt)
         }),

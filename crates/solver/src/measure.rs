@@ -248,7 +248,7 @@ fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
     };
-    let mass = |&i: &u32| 1.0 / state.particles.inverse_masses[i as usize];
+    let mass = |&i: &u32| 1.0 / state.particles.motions[i as usize].inverse_mass;
     let of_one = |id| clusters.members(id).iter().map(mass).sum();
     clusters.living().map(of_one).collect()
 }

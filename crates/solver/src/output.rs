@@ -1,5 +1,6 @@
-//! What a run tells: frames, time series, events, plots, and the summary at its end.
+//! What a run tells: frames, time series, events, fragments, plots, and the summary at its end.
 
+pub mod fragments;
 pub mod frames;
 pub mod plots;
 pub mod series;

@@ -1,6 +1,7 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod fragments;
 mod limits;
 mod progress;
 
@@ -8,15 +9,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use dem_io::checkpoint::write_checkpoint;
-use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
 use crate::check::ledger::balance;
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
+use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::measure::{Gauge, gauges, read_gauges};
+use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
@@ -26,7 +29,8 @@ use crate::snapshot::{Snapshot, fingerprint};
 use crate::state::State;
 use crate::step::{act, move_on};
 
-use self::events::{change_step, new_step, write_breaks};
+use self::events::{change_step, new_step, write_breaks, write_splits};
+use self::fragments::write_fragments;
 use self::limits::{Limits, went_through};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
@@ -55,6 +59,8 @@ struct Files<'a> {
     series: SeriesFile,
     events: EventFile,
     frames: FrameFiles,
+    /// None: nothing can break into fragments.
+    fragments: Option<FragmentFile>,
     order: FrameOrder,
 }
 
@@ -64,8 +70,13 @@ impl<'a> Files<'a> {
         folder: &'a ResultsFolder,
         order: FrameOrder,
         columns: &[String],
+        has_fragments: bool,
         continued: Option<&Progress>,
     ) -> Result<Self> {
+        let fragments = has_fragments.then(|| match continued {
+            Some(at) => FragmentFile::continue_at(&folder.fragments(), at.fragments_bytes),
+            None => FragmentFile::create(&folder.fragments()),
+        });
         let (series, events, frames) = match continued {
             Some(at) => (
                 SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
@@ -83,6 +94,7 @@ impl<'a> Files<'a> {
             series,
             events,
             frames,
+            fragments: fragments.transpose()?,
             order,
         })
     }
@@ -138,7 +150,14 @@ pub fn run(
     let mut files = match (settings.folder, order) {
         (Some(folder), Some(order)) => {
             let continued = is_continued.then_some(&progress);
-            Some(Files::open(folder, order, &columns, continued)?)
+            let has_fragments = state.clusters.is_some();
+            Some(Files::open(
+                folder,
+                order,
+                &columns,
+                has_fragments,
+                continued,
+            )?)
         }
         _ => None,
     };
@@ -161,6 +180,7 @@ pub fn run(
         }
         if let Some(files) = &mut files {
             write_breaks(&state, &bodies, files)?;
+            write_splits(&state, files)?;
         }
         let broke = watch
             .as_ref()
@@ -199,6 +219,10 @@ pub fn run(
             progress.next_frame = rhythm.frame_s.map_or(0, |s| next(&state, s));
             files.order.write(&state, &mut files.frames)?;
         }
+        let fragments_due = frame_due || rests || (row_due && progress.has_new_fragments(&state));
+        if let (true, Some(files)) = (fragments_due, &mut files) {
+            write_fragments(&state, &mut progress, files)?;
+        }
         // The ledger of this step has been looked at: what is saved is sound. Looking at it only to save would change its later figures.
         let checkpoint_due = checkpoint_due
             || (row_due && rhythm.checkpoint_s.is_none() && saved.elapsed() >= CHECKPOINT_EVERY);
@@ -236,6 +260,11 @@ pub fn run(
         .map(|watch| watch.finish(&progress.test, &state, progress.broke, settings.folder))
         .transpose()?;
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
+    let fragments = state
+        .clusters
+        .as_ref()
+        .map(|clusters| fragments_of(clusters, &state.particles, &state.particles.motions));
+    let of_state = state.clusters.as_ref().zip(fragments.as_ref());
     let summary = Summary {
         scene: scene.source.clone(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -246,6 +275,7 @@ pub fn run(
         particles: state.particles.len(),
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,
+        fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         steps: state.steps,
         time_step_s: state.time_step_s,
         limit_s: progress.limit_s,
@@ -279,6 +309,10 @@ pub fn run(
         save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
         write_json(&files.folder.summary(), &summary)?;
         write_plots(files.folder, &gauges)?;
+        if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
+            write_tree(files.folder, clusters)?;
+            write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
+        }
     }
     Ok(summary)
 }
@@ -295,6 +329,10 @@ fn save(
     files.events.sync()?;
     progress.series_bytes = files.series.length_bytes();
     progress.events_bytes = files.events.length_bytes();
+    if let Some(fragments) = &files.fragments {
+        fragments.sync()?;
+        progress.fragments_bytes = fragments.length_bytes();
+    }
     progress.frame_times_s = files.frames.times_s().to_vec();
     let measures = gauges.iter().map(|gauge| gauge.history).collect();
     let snapshot = Snapshot::taken(

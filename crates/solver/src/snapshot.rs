@@ -194,6 +194,7 @@ impl Snapshot {
             p.motions[i] = Motion {
                 velocity_m_s,
                 spin_rad_s,
+                ..p.motions[i]
             };
         }
         for &at in &self.broken {
@@ -225,11 +226,8 @@ pub fn fingerprint(state: &State) -> u64 {
         }
     };
     let (p, b) = (&state.particles, &state.bonds);
-    for numbers in [
-        &p.inverse_masses,
-        &b.torsion_per_bending,
-        &b.strength_factors,
-    ] {
+    let inverse_masses = p.motions.iter().map(|motion| motion.inverse_mass).collect();
+    for numbers in [&inverse_masses, &b.torsion_per_bending, &b.strength_factors] {
         add(numbers.len() as u64);
         numbers.iter().for_each(|n| add(n.to_bits()));
     }

@@ -78,7 +78,7 @@ fn steady(value: f64, unit: f64) -> f64 {
 fn axis(label: &str) -> Axis {
     Axis {
         label: label.to_owned(),
-        log: false,
+        ..Axis::default()
     }
 }
 

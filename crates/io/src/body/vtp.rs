@@ -10,6 +10,7 @@ mod header;
 mod read;
 
 pub use read::read;
+pub(crate) use read::read_frame;
 
 use std::io::{self, Write};
 

@@ -14,6 +14,8 @@ const PLOTS: &str = "plots";
 const INDEX: &str = "frames.pvd";
 const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
+const FRAGMENTS: &str = "fragments.csv";
+const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
 const TEST_PAGE: &str = "test.html";
 const CHECKPOINT: &str = "checkpoint.dem";
@@ -83,7 +85,7 @@ impl ResultsFolder {
 
     /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
     pub fn frame(&self, number: usize) -> PathBuf {
-        self.path.join(frame_name(number))
+        frame_in(&self.path, number)
     }
 
     /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
@@ -99,6 +101,16 @@ impl ResultsFolder {
     /// Events: `events.csv`.
     pub fn events(&self) -> PathBuf {
         self.path.join(EVENTS)
+    }
+
+    /// Fragments at chosen moments: `fragments.csv`.
+    pub fn fragments(&self) -> PathBuf {
+        self.path.join(FRAGMENTS)
+    }
+
+    /// Which fragment broke off which: `fragment-tree.csv`.
+    pub fn fragment_tree(&self) -> PathBuf {
+        self.path.join(FRAGMENT_TREE)
     }
 
     /// Summary: `summary.json`.
@@ -183,9 +195,16 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        self.remove_files("", |name| {
-            [INDEX, SERIES, EVENTS, SUMMARY, TEST_PAGE].contains(&name)
-        })?;
+        const OTHERS: [&str; 7] = [
+            INDEX,
+            SERIES,
+            EVENTS,
+            FRAGMENTS,
+            FRAGMENT_TREE,
+            SUMMARY,
+            TEST_PAGE,
+        ];
+        self.remove_files("", |name| OTHERS.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
@@ -211,6 +230,37 @@ impl ResultsFolder {
         }
         Ok(())
     }
+}
+
+/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be writing there.
+///
+/// # Errors
+/// There is no such folder, or it cannot be read.
+pub fn frames_in(path: &Path) -> Result<Vec<usize>> {
+    if !path.is_dir() {
+        return Err(Diagnostic::input(
+            path.display().to_string(),
+            "there is no such folder",
+            "name the folder of results of a run",
+        ));
+    }
+    let frames = path.join(FRAMES);
+    if !frames.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut numbers = Vec::new();
+    for entry in entries(&frames)? {
+        let entry = entry.map_err(|error| explain(&frames, &error))?;
+        let name = entry.file_name().and_then(|name| name.to_str());
+        numbers.extend(name.and_then(frame_number));
+    }
+    numbers.sort_unstable();
+    Ok(numbers)
+}
+
+/// Frame `number` of the results folder `path`.
+pub fn frame_in(path: &Path, number: usize) -> PathBuf {
+    path.join(frame_name(number))
 }
 
 /// The name of a frame in the folder, with `/` on every system: ParaView wants it so.

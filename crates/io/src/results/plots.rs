@@ -56,6 +56,8 @@ pub struct Axis {
     pub label: String,
     /// Logarithmic, in decades. Values that are not positive are left out.
     pub log: bool,
+    /// Of counts: there are no numbers between whole ones. Not for an axis with logarithms.
+    pub whole: bool,
 }
 
 /// A line through points in their order.

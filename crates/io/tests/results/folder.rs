@@ -17,6 +17,8 @@ fn names_in_the_folder() {
     assert_eq!(folder.frames_index(), at("frames.pvd"));
     assert_eq!(folder.series(), at("series.csv"));
     assert_eq!(folder.events(), at("events.csv"));
+    assert_eq!(folder.fragments(), at("fragments.csv"));
+    assert_eq!(folder.fragment_tree(), at("fragment-tree.csv"));
     assert_eq!(folder.summary(), at("summary.json"));
     assert_eq!(folder.checkpoint(), at("checkpoint.dem"));
     assert_eq!(folder.plot("a/b: c"), at("plots/a_b_ c.svg"));
@@ -51,6 +53,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "frames.pvd",
         "series.csv",
         "events.csv",
+        "fragments.csv",
+        "fragment-tree.csv",
         "summary.json",
         "checkpoint.dem",
     ];

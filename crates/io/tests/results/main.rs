@@ -3,8 +3,10 @@
 
 mod checkpoints;
 mod folder;
+mod fragments;
 mod frames;
 mod plots;
+mod stored_frame;
 mod tables;
 
 use std::path::{Path, PathBuf};

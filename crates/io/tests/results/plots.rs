@@ -171,6 +171,7 @@ fn axis(label: &str, log: bool) -> Axis {
     Axis {
         label: label.to_owned(),
         log,
+        whole: false,
     }
 }
 
@@ -252,6 +253,38 @@ fn decades_on_an_axis_with_logarithms() {
     );
     let picture = read(&svg(&far));
     assert!(picture.texts.len() < 40);
+}
+
+#[test]
+fn few_decades_have_numbers_in_between() {
+    let two = vec![vec![[2e-3, 0.1], [9e-2, 0.2]]];
+    let two = plot("size (m)", "share", [true, false], two);
+    assert_texts(
+        &two,
+        &[
+            "10⁻³",
+            "2×10⁻³",
+            "5×10⁻³",
+            "10⁻²",
+            "2×10⁻²",
+            "5×10⁻²",
+            "10⁻¹",
+        ],
+    );
+    let three = vec![vec![[2e-3, 0.1], [0.9, 0.2]]];
+    let three = plot("size (m)", "share", [true, false], three);
+    assert!(!has(&read(&svg(&three)), "2×10⁻³"));
+    assert_texts(&three, &["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+}
+
+#[test]
+fn counts_have_whole_numbers_only() {
+    let points = vec![vec![[0.0, 1.0], [0.05, 3.0]]];
+    let mut counted = plot("time (s)", "fragments", [false; 2], points);
+    assert_texts(&counted, &["1.0", "1.5", "2.0", "2.5", "3.0"]);
+    counted.y.whole = true;
+    assert_texts(&counted, &["1", "2", "3"]);
+    assert!(!has(&read(&svg(&counted)), "1.5"));
 }
 
 #[test]

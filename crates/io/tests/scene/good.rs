@@ -283,7 +283,7 @@ fn how_contacts_are_found() {
         };
         let relaxation = Relaxation {
             enabled: true,
-            min_overlap: 1e-3,
+            min_overlap: 1e-5,
         };
         assert_eq!(scene.clusters, clusters);
         assert_eq!(scene.relaxation, relaxation);
@@ -638,7 +638,7 @@ fn words_on_contacts() {
             "clusters.min_broken 1",
             "clusters.force_every never",
             "relaxation.enabled true",
-            "relaxation.min_overlap 0.001",
+            "relaxation.min_overlap 0.00001",
             "search.skin chosen by the program",
         ]
     );

@@ -113,9 +113,11 @@ impl Ledger {
     /// The ledger of a state before its first step.
     pub fn opened(state: &State) -> Self {
         let p = &state.particles;
-        let mass_kg = ordered_sum(p.len(), |i| 1.0 / p.inverse_masses[i]);
+        let mass_kg = ordered_sum(p.len(), |i| 1.0 / p.motions[i].inverse_mass);
         let about_m = [0, 1, 2].map(|k| {
-            ordered_sum(p.len(), |i| p.poses[i].position_m[k] / p.inverse_masses[i]) / mass_kg
+            ordered_sum(p.len(), |i| {
+                p.poses[i].position_m[k] / p.motions[i].inverse_mass
+            }) / mass_kg
         });
         let mut ledger = Self {
             about_m,
@@ -374,8 +376,10 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let resistances = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
-        let (per_mass, per_inertia) =
-            (half_s * p.inverse_masses[i], half_s * p.inverse_inertias[i]);
+        let (per_mass, per_inertia) = (
+            half_s * motion.inverse_mass,
+            half_s * motion.inverse_inertia,
+        );
         let [bonds, particles, contacts] = resistances;
         for wrenches in [&p.wrenches, bonds, particles, contacts] {
             if let Some(wrench) = wrenches.get(i) {
@@ -442,8 +446,8 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
 fn momenta(particles: &Particles, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
     let sums = ordered_sums(particles.len(), |i| {
         let (pose, motion) = (&particles.poses[i], &particles.motions[i]);
-        let mass = 1.0 / particles.inverse_masses[i];
-        let inertia = 1.0 / particles.inverse_inertias[i];
+        let mass = 1.0 / motion.inverse_mass;
+        let inertia = 1.0 / motion.inverse_inertia;
         let momentum = motion.velocity_m_s.map(|v| mass * v);
         let spin = motion.spin_rad_s.map(|w| inertia * w);
         let mut part = [[0.0; 3]; 2];

@@ -223,7 +223,10 @@ fn inverse_mass_roots(state: &State) -> Field {
     let p = &state.particles;
     let mut roots: Field = (0..p.len())
         .map(|i| {
-            let (m, j) = (p.inverse_masses[i].sqrt(), p.inverse_inertias[i].sqrt());
+            let (m, j) = (
+                p.motions[i].inverse_mass.sqrt(),
+                p.motions[i].inverse_inertia.sqrt(),
+            );
             [m, m, m, j, j, j]
         })
         .collect();
@@ -327,6 +330,7 @@ fn motions(field: &Field, roots: &Field) -> Vec<Motion> {
         Motion {
             velocity_m_s: [vx, vy, vz],
             spin_rad_s: [wx, wy, wz],
+            ..Motion::default()
         }
     };
     field.iter().zip(roots).map(motion).collect()

@@ -86,8 +86,8 @@ fn ball(particles: &Particles, i: usize) -> Ball {
         velocity_m_s: Triple(0.0, 0.0, 0.0),
         spin_rad_s: Triple(0.0, 0.0, 0.0),
         radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: particles.inverse_masses[i],
-        inverse_inertia_per_kg_m2: particles.inverse_inertias[i],
+        inverse_mass_per_kg: particles.motions[i].inverse_mass,
+        inverse_inertia_per_kg_m2: particles.motions[i].inverse_inertia,
     }
 }
 
@@ -170,7 +170,7 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
         let [a, b] = pair.map(|end| end as usize);
         let [ra, rb] = [a, b].map(|i| p.poses[i].radius_m());
         let kind = &contacts.kinds[contacts.kind(pair)];
-        let per_mass = p.inverse_masses[a] + p.inverse_masses[b];
+        let per_mass = p.motions[a].inverse_mass + p.motions[b].inverse_mass;
         kind.normal_n_m(overlap_m, ra * rb / (ra + rb)) * per_mass
     };
     let of_pairs = (0..contacts.pairs.len())
@@ -184,7 +184,7 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
             let material = usize::from(contacts.materials[i]);
             let kind = &wall.kinds[usize::from(wall.kind_of[material])];
             let overlap_m = touch.memory.slid[3].max(0.0);
-            kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.inverse_masses[i]
+            kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.motions[i].inverse_mass
         })
     });
     of_walls.fold(of_pairs, f64::max)
@@ -209,7 +209,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
             touch(apart, [ball(p, i); 2], 0.0)
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
-        let per_mass = ends * p.inverse_masses[i];
+        let per_mass = ends * p.motions[i].inverse_mass;
         let answer = answer(kind, &touch);
         let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
         let damping = answer
@@ -263,7 +263,7 @@ fn overlap_at_impact_m(
     at_wall: bool,
 ) -> f64 {
     let half = if at_wall { 1.0 } else { 0.5 };
-    let mass_kg = half / particles.inverse_masses[i];
+    let mass_kg = half / particles.motions[i].inverse_mass;
     match &kind.law {
         Law::HertzMindlin(law) => {
             let radius_m = half * particles.poses[i].radius_m();

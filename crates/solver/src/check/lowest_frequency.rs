@@ -43,8 +43,8 @@ pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {
         let p = &state.particles;
         for (i, (force, moved)) in forces.iter_mut().zip(&field).enumerate() {
             for k in 0..3 {
-                force[k] = moved[k] / p.inverse_masses[i];
-                force[3 + k] = moved[3 + k] / p.inverse_inertias[i];
+                force[k] = moved[k] / p.motions[i].inverse_mass;
+                force[3 + k] = moved[3 + k] / p.motions[i].inverse_inertia;
             }
         }
         mass.set_column(j, &basis.work(state, &forces));

@@ -2,9 +2,10 @@
 
 use dem_io::{Diagnostic, Result};
 
-use super::ledger::{Balance, kinetic_energy};
+use super::ledger::{Balance, elastic_energy, kinetic_energy};
 use crate::physics::bond::pair::frequencies;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
+use crate::stages::contacts::contact_energy_j;
 use crate::stages::loads::loads_power_w;
 use crate::state::State;
 
@@ -76,7 +77,9 @@ fn unstable(
         "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere; the time step is {:.4e} s and began at {:.3} of the largest stable one",
         state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
     );
-    if let Some((at, own_step_s)) = culprit(state) {
+    if let Some(contact) = contact_culprit(state) {
+        problem += &contact;
+    } else if let Some((at, own_step_s)) = culprit(state) {
         let [a, b] = state.bonds.ends[at];
         let places = [a, b].map(|end| state.particles.poses[end as usize].place());
         let middle = 0.5 * (places[0] + places[1]);
@@ -103,6 +106,34 @@ fn unstable(
     Diagnostic::unstable("", problem, remedy)
 }
 
+/// The contact that holds most energy, in words, if contacts hold more than bonds.
+fn contact_culprit(state: &State) -> Option<String> {
+    let contacts = state.contacts.as_ref()?;
+    let p = &state.particles;
+    let energy = |at: usize| contact_energy_j(contacts, p, at);
+    let at = (0..contacts.pairs.len()).max_by(|&a, &b| energy(a).total_cmp(&energy(b)));
+    let of_pairs: f64 = (0..contacts.pairs.len()).map(energy).sum();
+    let wall = (0..state.walls.len()).max_by(|&a, &b| {
+        state.walls[a]
+            .elastic_j
+            .total_cmp(&state.walls[b].elastic_j)
+    });
+    let of_walls: f64 = state.walls.iter().map(|wall| wall.elastic_j).sum();
+    if of_pairs + of_walls <= elastic_energy(state).total() {
+        return None;
+    }
+    if let Some(wall) = wall.filter(|_| of_walls > of_pairs) {
+        return Some(format!(
+            "; most of it in contacts with wall {} of the scene (in the order of their names)",
+            wall + 1
+        ));
+    }
+    let [x, y, z, _] = p.poses[contacts.pairs[at?][0] as usize].position_m;
+    Some(format!(
+        "; most of it in contacts of particles, above all at ({x:.4e}, {y:.4e}, {z:.4e}) m"
+    ))
+}
+
 /// The bond with the largest energy and the critical step of its two particles alone, s. Where energies are no numbers: the bond with the smallest step.
 fn culprit(state: &State) -> Option<(usize, f64)> {
     let own_step = |at: usize| {
@@ -110,8 +141,8 @@ fn culprit(state: &State) -> Option<(usize, f64)> {
         let p = &state.particles;
         frequencies(
             &state.bonds.stiffness(at),
-            ends.map(|end| p.inverse_masses[end]),
-            ends.map(|end| p.inverse_inertias[end]),
+            ends.map(|end| p.motions[end].inverse_mass),
+            ends.map(|end| p.motions[end].inverse_inertia),
         )
         .critical_step_s()
     };

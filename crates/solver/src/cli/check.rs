@@ -161,7 +161,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
 fn memory_bytes(state: &State) -> usize {
     let p = &state.particles;
     let b = &state.bonds;
-    let per_particle = 64 + 48 + 64 + 3 * 8;
+    let per_particle = 3 * 64 + 8;
     let per_bond = 8 + 8 * 8;
     p.len() * per_particle
         + b.len() * per_bond

@@ -44,7 +44,7 @@ pub fn fragments(clusters: &Clusters, particles: &Particles, motions: &[Motion])
 fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Fragment {
     let members = clusters.members(id);
     let place = |i: u32| particles.poses[i as usize].place();
-    let mass = |i: u32| 1.0 / particles.inverse_masses[i as usize];
+    let mass = |i: u32| 1.0 / particles.motions[i as usize].inverse_mass;
     let velocity = |i: u32| Vector3::from(motions[i as usize].velocity_m_s);
 
     // Relative to one of them, so that a place far from the origin costs no digits.
@@ -73,7 +73,7 @@ fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Moti
     let mut inertia = Matrix3::zeros();
     let mut angular_momentum = Vector3::zeros();
     for &i in members {
-        let own = 1.0 / particles.inverse_inertias[i as usize];
+        let own = 1.0 / particles.motions[i as usize].inverse_inertia;
         let arm = place(i) - centre;
         let spin = Vector3::from(motions[i as usize].spin_rad_s);
         angular_momentum += mass(i) * arm.cross(&(velocity(i) - mean_velocity)) + own * spin;

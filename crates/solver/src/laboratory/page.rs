@@ -79,11 +79,11 @@ pub fn curve(record: &Record, result: &TestResult) -> Plot {
         title: result.kind.replace('-', " "),
         x: Axis {
             label: "displacement (m)".to_owned(),
-            log: false,
+            ..Axis::default()
         },
         y: Axis {
             label: "force (N)".to_owned(),
-            log: false,
+            ..Axis::default()
         },
         lines,
         reference: failure.map(|force| (force, "failure force wanted".to_owned())),

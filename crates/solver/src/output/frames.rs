@@ -1,6 +1,7 @@
 //! Frames: all particles and bonds at one time, in the order of the bodies' files.
 
 use dem_io::Result;
+use dem_io::results::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS};
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 
 use crate::check::ledger::synchronous_motions;
@@ -67,6 +68,18 @@ impl FrameOrder {
             let (now, start): ([f64; 3], _) = (position(i), self.start[i]);
             [0, 1, 2].map(|k| now[k] - start[k])
         };
+        let radius = |i: usize| p.poses[particle(i)].radius_m();
+        let body = |i: usize| self.bodies[i];
+        let velocity = |i: usize| motions[particle(i)].velocity_m_s;
+        let spin = |i: usize| motions[particle(i)].spin_rad_s;
+        let cluster = |i: usize| {
+            let clusters = state.clusters.as_ref();
+            clusters.map_or(0, |clusters| clusters.of_particle[particle(i)])
+        };
+        let density = |i: usize| {
+            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius(i).powi(3);
+            1.0 / (p.motions[particle(i)].inverse_mass * volume)
+        };
         let bond = |i: usize| self.bonds[i] as usize;
         // Dear to compute, and seven arrays follow from them.
         let loads: Vec<BondLoad> = (0..self.bonds.len())
@@ -81,34 +94,46 @@ impl FrameOrder {
             let stresses = stresses(i);
             stresses.shear_pa + stresses.torsion_pa
         };
+        let bond_radius = |i: usize| bonds.radius_m(bond(i));
+        let initial_length = |i: usize| bonds.initial_length_m(bond(i));
+        let normal_force = |i: usize| loads[i].normal_n;
+        let shear_force = |i: usize| loads[i].shear_n;
+        let torsion = |i: usize| loads[i].torsion_n_m;
+        let bending = |i: usize| loads[i].bending_n_m;
+        let utilisation = |i: usize| utilisation_under(state, bond(i), &loads[i]);
+        let broken = |i: usize| u32::from(bonds.is_broken(bond(i)));
+        let mut particle_arrays = vec![
+            scalars(RADIUS, &radius),
+            counts("body", &body),
+            vectors("displacement_m", &displacement),
+            vectors("velocity_m_s", &velocity),
+            vectors("angular_velocity_rad_s", &spin),
+        ];
+        let mut bond_arrays = vec![
+            scalars(BOND_RADIUS, &bond_radius),
+            scalars("normal_force_n", &normal_force),
+            scalars("shear_force_n", &shear_force),
+            scalars("torsion_n_m", &torsion),
+            scalars("bending_n_m", &bending),
+            scalars("normal_stress_pa", &normal_stress),
+            scalars("shear_stress_pa", &shear_stress),
+            scalars("utilisation", &utilisation),
+            counts(BROKEN, &broken),
+        ];
+        if state.clusters.is_some() {
+            // With these a fragment can be taken out as a body.
+            particle_arrays.push(counts(CLUSTER, &cluster));
+            particle_arrays.push(scalars(DENSITY, &density));
+            bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
+        }
         files.append(&Frame {
             time_s: state.time_s,
             particles: self.particles.len(),
             position_m: &position,
-            particle_arrays: &[
-                scalars("radius_m", &|i| p.poses[particle(i)].radius_m()),
-                counts("body", &|i| self.bodies[i]),
-                vectors("displacement_m", &displacement),
-                vectors("velocity_m_s", &|i| motions[particle(i)].velocity_m_s),
-                vectors("angular_velocity_rad_s", &|i| {
-                    motions[particle(i)].spin_rad_s
-                }),
-            ],
+            particle_arrays: &particle_arrays,
             bonds: self.bonds.len(),
             ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
-            bond_arrays: &[
-                scalars("bond_radius_m", &|i| bonds.radius_m(bond(i))),
-                scalars("normal_force_n", &|i| loads[i].normal_n),
-                scalars("shear_force_n", &|i| loads[i].shear_n),
-                scalars("torsion_n_m", &|i| loads[i].torsion_n_m),
-                scalars("bending_n_m", &|i| loads[i].bending_n_m),
-                scalars("normal_stress_pa", &normal_stress),
-                scalars("shear_stress_pa", &shear_stress),
-                scalars("utilisation", &|i| {
-                    utilisation_under(state, bond(i), &loads[i])
-                }),
-                counts("broken", &|i| u32::from(bonds.is_broken(bond(i)))),
-            ],
+            bond_arrays: &bond_arrays,
         })
     }
 }

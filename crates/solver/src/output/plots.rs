@@ -3,11 +3,12 @@
 use dem_io::Result;
 use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
 
+use super::fragments::{COUNT, SIZES};
 use super::series::ENERGIES;
 use crate::measure::Gauge;
 
 /// Plots that every run has or may have, which no measure may overwrite.
-const OVERALL: [&str; 3] = [ENERGY, ERRORS, BROKEN];
+const OVERALL: [&str; 5] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES];
 const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";
@@ -41,7 +42,8 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
     errors.y.log = true;
     folder.write_plot(ERRORS, &errors)?;
     if column(&series, "broken_bonds").iter().any(|v| *v != 0.0) {
-        let broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
+        let mut broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
+        broken.y.whole = true;
         folder.write_plot(BROKEN, &broken)?;
     }
     let first = series.columns.len() - gauges.len();
@@ -87,11 +89,11 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
         title: title.to_owned(),
         x: Axis {
             label: "time (s)".to_owned(),
-            log: false,
+            ..Axis::default()
         },
         y: Axis {
             label: y.to_owned(),
-            log: false,
+            ..Axis::default()
         },
         lines: columns.iter().map(line).collect(),
         reference: None,

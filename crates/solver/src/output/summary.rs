@@ -5,6 +5,7 @@ use std::fmt;
 use dem_io::units::significant;
 use serde::Serialize;
 
+use super::fragments::FragmentSummary;
 use crate::check::ledger::Balance;
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
@@ -33,6 +34,9 @@ pub struct Summary {
     pub bonds: usize,
     /// Bonds that broke.
     pub broken_bonds: u64,
+    /// What the bodies broke into, where they can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fragments: Option<FragmentSummary>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.
@@ -155,6 +159,14 @@ impl fmt::Display for Summary {
                 f,
                 "broken       {} of {} bonds",
                 self.broken_bonds, self.bonds
+            )?;
+        }
+        if let Some(fragments) = &self.fragments {
+            writeln!(
+                f,
+                "fragments    {}, the largest {} of the mass",
+                fragments.count,
+                significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
         writeln!(f, "left out     {}", self.left_out.join(", "))?;

@@ -174,7 +174,10 @@ fn place_particles(
 
 /// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold them.
 fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> {
-    let inert = [particles.inverse_masses[i], particles.inverse_inertias[i]];
+    let inert = [
+        particles.motions[i].inverse_mass,
+        particles.motions[i].inverse_inertia,
+    ];
     let is_placed = particles.poses[i].position_m.iter().all(|x| x.is_finite());
     if is_placed && inert.into_iter().all(f64::is_normal) {
         return Ok(());
@@ -197,7 +200,7 @@ fn set_moving(entry: &BodyEntry, particles: &mut Particles, first: usize) {
     let mut moment = Vector3::zeros();
     let mut mass = 0.0;
     for i in first..particles.len() {
-        let one = 1.0 / particles.inverse_masses[i];
+        let one = 1.0 / particles.motions[i].inverse_mass;
         moment += one * particles.poses[i].place();
         mass += one;
     }
@@ -301,8 +304,8 @@ fn check_bond(
     }
     let step_s = frequencies(
         answer,
-        ends.map(|end| particles.inverse_masses[end]),
-        ends.map(|end| particles.inverse_inertias[end]),
+        ends.map(|end| particles.motions[end].inverse_mass),
+        ends.map(|end| particles.motions[end].inverse_inertia),
     )
     .critical_step_s();
     let is_usable = |x: f64| x.is_normal() && x > 0.0;
@@ -358,8 +361,8 @@ fn damping(
 ) -> [f64; 4] {
     let damping = &kind.damping;
     let reduced = reduced(
-        ends.map(|end| particles.inverse_masses[end]),
-        ends.map(|end| particles.inverse_inertias[end]),
+        ends.map(|end| particles.motions[end].inverse_mass),
+        ends.map(|end| particles.motions[end].inverse_inertia),
     );
     let by_chen = if damping.each_mode {
         chen_by_mode(answer, &reduced, damping.viscous)

@@ -116,7 +116,7 @@ fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
         .map(|i| {
             let radius = p.poses[i].radius_m();
             let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
-            let density = 1.0 / (p.inverse_masses[i] * volume);
+            let density = 1.0 / (p.motions[i].inverse_mass * volume);
             std::f64::consts::PI * radius * density.sqrt() * smallest
         })
         .fold(f64::INFINITY, f64::min)
@@ -124,11 +124,11 @@ fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
 
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all bonds [Platzer 15].
 fn thesis_s(state: &State) -> f64 {
-    let inverse_masses = &state.particles.inverse_masses;
+    let motions = &state.particles.motions;
     let bonds = &state.bonds;
     (0..bonds.len())
         .map(|at| {
-            let [a, b] = bonds.ends[at].map(|end| inverse_masses[end as usize]);
+            let [a, b] = bonds.ends[at].map(|end| motions[end as usize].inverse_mass);
             0.17 / (bonds.normal(at) * a.max(b)).sqrt()
         })
         .fold(f64::INFINITY, f64::min)

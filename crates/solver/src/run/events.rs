@@ -4,6 +4,7 @@ use dem_io::Result;
 use dem_io::results::Event;
 
 use super::Files;
+use crate::output::fragments::split_text;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
 use crate::state::State;
@@ -37,6 +38,23 @@ pub(super) fn write_breaks(
     Ok(())
 }
 
+/// The clusters that were found in pieces in this step.
+pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
+    let Some(clusters) = &state.clusters else {
+        return Ok(());
+    };
+    let details: Vec<String> = state
+        .splits
+        .iter()
+        .map(|split| split_text(split, &clusters.history))
+        .collect();
+    let events: Vec<Event<'_>> = details
+        .iter()
+        .map(|detail| of_all(state, "split", "", detail))
+        .collect();
+    files.events.append(&events)
+}
+
 /// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.
 pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<String> {
     let before_s = state.time_step_s;
@@ -55,10 +73,15 @@ pub(super) fn change(before_s: f64, after_s: f64) -> String {
 
 /// The event of a new time step.
 pub(super) fn new_step<'a>(state: &State, cause: &'a str, detail: &'a str) -> Event<'a> {
+    of_all(state, "time_step", cause, detail)
+}
+
+/// An event that no bond and no place has to itself.
+fn of_all<'a>(state: &State, kind: &'a str, cause: &'a str, detail: &'a str) -> Event<'a> {
     Event {
         step: state.steps,
         time_s: state.time_s,
-        kind: "time_step",
+        kind,
         bond: None,
         particle_a: None,
         particle_b: None,

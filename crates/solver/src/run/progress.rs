@@ -26,6 +26,9 @@ pub struct Progress {
     pub(super) next_checkpoint: u64,
     pub(super) series_bytes: u64,
     pub(super) events_bytes: u64,
+    pub(super) fragments_bytes: u64,
+    /// Number of fragments when they were written last.
+    pub(super) fragments_written: u64,
     pub(super) frame_times_s: Vec<f64>,
     /// Largest errors of energy, momentum and angular momentum so far: J, N s, N m s.
     largest_errors: [f64; 3],

@@ -78,9 +78,9 @@ fn remove(
     let on_ends = [-forces.force_on_b, forces.force_on_b];
     for ((end, force), torque) in ends.into_iter().zip(on_ends).zip(forces.torques) {
         particles.wrenches[end].add(&-force, &-torque);
-        let per_mass = half_kick_s * particles.inverse_masses[end];
-        let per_inertia = half_kick_s * particles.inverse_inertias[end];
         let motion = &mut particles.motions[end];
+        let per_mass = half_kick_s * motion.inverse_mass;
+        let per_inertia = half_kick_s * motion.inverse_inertia;
         for k in 0..3 {
             motion.velocity_m_s[k] += per_mass * force[k];
             motion.spin_rad_s[k] += per_inertia * torque[k];

@@ -42,8 +42,6 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         contacts: known,
         poses: &p.poses,
         motions: &p.motions,
-        inverse_masses: &p.inverse_masses,
-        inverse_inertias: &p.inverse_inertias,
         dt,
     };
     let books = Books {
@@ -83,15 +81,20 @@ pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
 /// Elastic energy of all contacts, J.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
     ordered_sum(contacts.pairs.len(), |at| {
-        if contacts.memories[at] == Memory::default() {
-            return 0.0;
-        }
-        let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
-        match &kind.law {
-            Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-            Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-        }
+        contact_energy_j(contacts, particles, at)
     })
+}
+
+/// Elastic energy of contact `at`, J.
+pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -> f64 {
+    if contacts.memories[at] == Memory::default() {
+        return 0.0;
+    }
+    let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
+    match &kind.law {
+        Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+        Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+    }
 }
 
 /// Elastic energy of a contact as it was taken down, J.
@@ -108,8 +111,8 @@ fn stored_j(
         velocity_m_s: Triple(0.0, 0.0, 0.0),
         spin_rad_s: Triple(0.0, 0.0, 0.0),
         radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: particles.inverse_masses[i],
-        inverse_inertia_per_kg_m2: particles.inverse_inertias[i],
+        inverse_mass_per_kg: particles.motions[i].inverse_mass,
+        inverse_inertia_per_kg_m2: particles.motions[i].inverse_inertia,
     };
     let [a, b] = ends.map(|i| particles.poses[i].place());
     let apart = b - a;
@@ -139,8 +142,6 @@ struct Scene<'a> {
     contacts: &'a Contacts,
     poses: &'a [Pose],
     motions: &'a [Motion],
-    inverse_masses: &'a [f64],
-    inverse_inertias: &'a [f64],
     dt: f64,
 }
 
@@ -336,8 +337,6 @@ impl ShareWork<'_> {
             for &at in own.get(soon..soon + FOUR).unwrap_or_default() {
                 let b = pairs[at as usize][1] as usize;
                 fetch_soon(&scene.motions[b]);
-                fetch_soon(&scene.inverse_masses[b]);
-                fetch_soon(&scene.inverse_inertias[b]);
                 fetch_soon(&books.memories[at as usize - share.own.start]);
                 if particles.contains(&b) {
                     fetch_soon(&books.wrenches[b - particles.start]);
@@ -436,14 +435,14 @@ impl Scene<'_> {
     #[inline(always)]
     fn ball<T: Lanes>(&self, proof: T::Proof, particle: impl Fn(usize) -> usize) -> Ball<T> {
         let [vx, vy, vz, inverse_mass] = T::columns(proof, |lane| {
-            let i = particle(lane);
-            let [x, y, z] = self.motions[i].velocity_m_s;
-            [x, y, z, self.inverse_masses[i]]
+            let motion = &self.motions[particle(lane)];
+            let [x, y, z] = motion.velocity_m_s;
+            [x, y, z, motion.inverse_mass]
         });
         let [wx, wy, wz, inverse_inertia] = T::columns(proof, |lane| {
-            let i = particle(lane);
-            let [x, y, z] = self.motions[i].spin_rad_s;
-            [x, y, z, self.inverse_inertias[i]]
+            let motion = &self.motions[particle(lane)];
+            let [x, y, z] = motion.spin_rad_s;
+            [x, y, z, motion.inverse_inertia]
         });
         Ball {
             velocity_m_s: Triple(vx, vy, vz),

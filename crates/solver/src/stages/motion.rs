@@ -18,11 +18,7 @@ pub fn kick(
     kick_s: f64,
 ) {
     let Particles {
-        motions,
-        wrenches,
-        inverse_masses,
-        inverse_inertias,
-        ..
+        motions, wrenches, ..
     } = particles;
     let fall = gravity_m_s2.map(|g| kick_s * g);
     motions
@@ -31,8 +27,8 @@ pub fn kick(
         .for_each(|(chunk, motions)| {
             let first = chunk * CHUNK;
             for (i, motion) in (first..).zip(motions) {
-                let per_mass = kick_s * inverse_masses[i];
-                let per_inertia = kick_s * inverse_inertias[i];
+                let per_mass = kick_s * motion.inverse_mass;
+                let per_inertia = kick_s * motion.inverse_inertia;
                 let wrench = &wrenches[i];
                 for (k, fall) in fall.iter().enumerate() {
                     motion.velocity_m_s[k] += per_mass * wrench.force_n[k] + fall;
@@ -88,7 +84,7 @@ pub fn add_particle_damping(
         .for_each(|(chunk, resisting)| {
             for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
                 let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
-                let weight = gravity_m_s2.map(|g| g / particles.inverse_masses[i]);
+                let weight = gravity_m_s2.map(|g| g / motion.inverse_mass);
                 for (k, weight) in weight.iter().enumerate() {
                     let force = wrench.force_n[k] + weight;
                     resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);

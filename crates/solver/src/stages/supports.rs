@@ -70,8 +70,8 @@ pub fn hold(
             let i = held.particle as usize;
             let parted = of_broken(broken, held.particle);
             let motion = &mut particles.motions[i];
-            let mass = 1.0 / particles.inverse_masses[i];
-            let inertia = 1.0 / particles.inverse_inertias[i];
+            let mass = 1.0 / motion.inverse_mass;
+            let inertia = 1.0 / motion.inverse_inertia;
             for (k, prescribed) in prescribed.iter().enumerate() {
                 let (now, inert) = if k < 3 {
                     (&mut motion.velocity_m_s[k], mass)
@@ -124,12 +124,13 @@ pub fn reactions_work_j(
     for SetSupport { holds, held, .. } in supports {
         for held in held {
             let i = held.particle as usize;
-            let after = six(&particles.motions[i]);
+            let motion = &particles.motions[i];
+            let after = six(motion);
             for k in (0..6).filter(|&k| holds[k].is_some()) {
                 let per_inert = if k < 3 {
-                    particles.inverse_masses[i]
+                    motion.inverse_mass
                 } else {
-                    particles.inverse_inertias[i]
+                    motion.inverse_inertia
                 };
                 let now = velocity_at_kick(held.before[k], after[k], steps_s);
                 let jump = |by: f64| 0.5 * by * by / per_inert;

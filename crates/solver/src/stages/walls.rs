@@ -222,8 +222,8 @@ fn meet_at(
         velocity_m_s: triple(&motion.velocity_m_s.into()),
         spin_rad_s: triple(&motion.spin_rad_s.into()),
         radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: particles.inverse_masses[i],
-        inverse_inertia_per_kg_m2: particles.inverse_inertias[i],
+        inverse_mass_per_kg: motion.inverse_mass,
+        inverse_inertia_per_kg_m2: motion.inverse_inertia,
     };
     let mut touch = touch_at_wall(&foot, ball, dt);
     let memory = old.map_or(Memory::default(), |old| old.memory);

@@ -40,13 +40,18 @@ impl Pose {
     }
 }
 
-/// How a particle moves, half a step after its pose (leapfrog).
+/// How a particle moves, half a step after its pose (leapfrog), and how easily that changes. One cache line.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C, align(64))]
 pub struct Motion {
     /// m/s. Length 3.
     pub velocity_m_s: [f64; 3],
+    /// 1/mass, 1/kg.
+    pub inverse_mass: f64,
     /// rad/s. Length 3.
     pub spin_rad_s: [f64; 3],
+    /// 1/moment of inertia, 1/(kg m2).
+    pub inverse_inertia: f64,
 }
 
 /// What acts on a particle.
@@ -75,14 +80,10 @@ impl Wrench {
 pub struct Particles {
     /// Where they are.
     pub poses: Vec<Pose>,
-    /// How they move.
+    /// How they move, and how easily that changes.
     pub motions: Vec<Motion>,
     /// What acts on them in this step.
     pub wrenches: Vec<Wrench>,
-    /// 1/mass, 1/kg.
-    pub inverse_masses: Vec<f64>,
-    /// 1/moment of inertia, 1/(kg m2).
-    pub inverse_inertias: Vec<f64>,
 }
 
 impl Particles {
@@ -99,8 +100,8 @@ impl Particles {
     /// Kinetic energy of particle `i` when it moves so, J.
     pub fn kinetic_j(&self, i: usize, motion: &Motion) -> f64 {
         let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        0.5 * (square(&motion.velocity_m_s) / self.inverse_masses[i]
-            + square(&motion.spin_rad_s) / self.inverse_inertias[i])
+        0.5 * (square(&motion.velocity_m_s) / self.motions[i].inverse_mass
+            + square(&motion.spin_rad_s) / self.motions[i].inverse_inertia)
     }
 
     /// Makes room for so many particles more, and no more than that.
@@ -108,8 +109,6 @@ impl Particles {
         self.poses.reserve_exact(count);
         self.motions.reserve_exact(count);
         self.wrenches.reserve_exact(count);
-        self.inverse_masses.reserve_exact(count);
-        self.inverse_inertias.reserve_exact(count);
     }
 
     /// Adds a sphere at rest.
@@ -119,10 +118,11 @@ impl Particles {
             position_m: [position_m[0], position_m[1], position_m[2], radius_m],
             turned: [0.0, 0.0, 0.0, 1.0],
         });
-        self.motions.push(Motion::default());
+        self.motions.push(Motion {
+            inverse_mass: 1.0 / mass,
+            inverse_inertia: 1.0 / (0.4 * mass * radius_m * radius_m),
+            ..Motion::default()
+        });
         self.wrenches.push(Wrench::default());
-        self.inverse_masses.push(1.0 / mass);
-        self.inverse_inertias
-            .push(1.0 / (0.4 * mass * radius_m * radius_m));
     }
 }

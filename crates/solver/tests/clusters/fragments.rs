@@ -2,7 +2,7 @@
 
 use dem_run::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
 use dem_run::clusters::{Clusters, fragments};
-use dem_run::state::particles::{Motion, Particles, Wrench};
+use dem_run::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -23,10 +23,8 @@ fn particles(spheres: &[Sphere]) -> Particles {
     for (place, velocity_m_s, spin_rad_s, force, radius) in spheres {
         particles.push_sphere(*place, *radius, 1000.0);
         let last = particles.len() - 1;
-        particles.motions[last] = Motion {
-            velocity_m_s: *velocity_m_s,
-            spin_rad_s: *spin_rad_s,
-        };
+        particles.motions[last].velocity_m_s = *velocity_m_s;
+        particles.motions[last].spin_rad_s = *spin_rad_s;
         let mut wrench = Wrench::default();
         wrench.add(&Vector::from(*force), &Vector::zeros());
         particles.wrenches[last] = wrench;

@@ -13,7 +13,7 @@ use crate::bodies::{
 /// Two spheres fly apart fast enough to break their bond, turning and shearing a little.
 fn flying_apart(incremental: bool) -> State {
     let mut state = rod(1, NORMAL, incremental);
-    let m = 1.0 / state.particles.inverse_masses[0];
+    let m = 1.0 / state.particles.motions[0].inverse_mass;
     let k = state.bonds.normal(0);
     // Twice the speed that the bond can hold.
     let force = STRENGTH_PA * area_m2();

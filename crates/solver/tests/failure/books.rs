@@ -24,7 +24,7 @@ enum Besides {
 /// A rod that is shaken so that its bonds break one after another, or is torn.
 fn shaken(incremental: bool, besides: Besides) -> State {
     let mut state = rod(6, NORMAL, incremental);
-    let m = 1.0 / state.particles.inverse_masses[0];
+    let m = 1.0 / state.particles.motions[0].inverse_mass;
     let speed = STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
     for (i, motion) in state.particles.motions.iter_mut().enumerate() {
         let phase = PI * i as f64 / 6.0;
@@ -51,9 +51,11 @@ fn shaken(incremental: bool, besides: Besides) -> State {
         Besides::Support => {
             hold(&mut state, std::iter::once(0), 0.0);
             hold(&mut state, std::iter::once(6), speed);
-            state.particles.motions[0] = Default::default();
-            state.particles.motions[6] = Default::default();
-            state.particles.motions[6].velocity_m_s[0] = speed;
+            for (end, velocity) in [(0, 0.0), (6, speed)] {
+                let motion = &mut state.particles.motions[end];
+                motion.velocity_m_s = [velocity, 0.0, 0.0];
+                motion.spin_rad_s = [0.0; 3];
+            }
         }
         Besides::Damping => damp(&mut state, 0.2),
     }
@@ -116,7 +118,7 @@ fn a_support_at_rest_does_no_work_in_a_break() {
         for incremental in [false, true] {
             let mut state = rod(1, NORMAL, incremental);
             hold(&mut state, std::iter::once(0), 0.0);
-            let m = 1.0 / state.particles.inverse_masses[1];
+            let m = 1.0 / state.particles.motions[1].inverse_mass;
             let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
             state.particles.motions[1].velocity_m_s = [speed, 0.1 * speed, 0.0];
             state.ledger = Ledger::opened(&state);

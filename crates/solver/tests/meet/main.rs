@@ -7,5 +7,6 @@
     reason = "a test stops where it fails, and says what it measured"
 )]
 
+mod apart;
 mod clouds;
 mod walls;

@@ -171,8 +171,8 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
     let of_bond = |at: usize| {
         let ends = state.bonds.ends[at].map(|end| end as usize);
         let ends = reduced(
-            ends.map(|end| p.inverse_masses[end]),
-            ends.map(|end| p.inverse_inertias[end]),
+            ends.map(|end| p.motions[end].inverse_mass),
+            ends.map(|end| p.motions[end].inverse_inertia),
         );
         let d = damping.coefficients(&state.bonds.stiffness(at), &ends);
         [d.normal, d.shear, d.torsion, d.bending]

@@ -63,26 +63,29 @@ fn model(name: &str) -> BondModel {
     }
 }
 
-fn moving(velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> Motion {
-    Motion {
-        velocity_m_s,
-        spin_rad_s,
-    }
+/// Velocity, m/s, and spin, rad/s.
+type Moving = ([f64; 3], [f64; 3]);
+
+fn set_moving(motion: &mut Motion, (velocity_m_s, spin_rad_s): Moving) {
+    motion.velocity_m_s = velocity_m_s;
+    motion.spin_rad_s = spin_rad_s;
 }
 
 /// Circular frequency of a mode that starts with these velocities, from the times at which its velocity changes sign.
-fn measured(mut state: State, motions: [Motion; 2], near: f64) -> f64 {
+fn measured(mut state: State, motions: [Moving; 2], near: f64) -> f64 {
     let along = |state: &State| -> f64 {
         let p = &state.particles;
         let of = |i: usize| {
-            let (now, start) = (&p.motions[i], &motions[i]);
+            let (now, (velocity, spin)) = (&p.motions[i], motions[i]);
             let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            dot(now.velocity_m_s, start.velocity_m_s) / p.inverse_masses[i]
-                + dot(now.spin_rad_s, start.spin_rad_s) / p.inverse_inertias[i]
+            dot(now.velocity_m_s, velocity) / now.inverse_mass
+                + dot(now.spin_rad_s, spin) / now.inverse_inertia
         };
         of(0) + of(1)
     };
-    state.particles.motions = motions.to_vec();
+    for (motion, moving) in state.particles.motions.iter_mut().zip(motions) {
+        set_moving(motion, moving);
+    }
     state.time_step_s = 0.02 / near;
     let (mut before, mut crossings) = (along(&state), Vec::new());
     while crossings.len() < 11 {
@@ -106,8 +109,9 @@ fn two_particles_swing_with_the_frequencies_of_the_reference() {
         let mut particles = Particles::default();
         particles.push_sphere([0.0; 3], pair.Ra, pair.rho);
         particles.push_sphere([pair.L, 0.0, 0.0], pair.Rb, pair.rho);
-        let heavier = particles.inverse_masses[0] / particles.inverse_masses[1];
-        let harder_to_turn = particles.inverse_inertias[0] / particles.inverse_inertias[1];
+        let [a, b] = [0, 1].map(|i| particles.motions[i]);
+        let heavier = a.inverse_mass / b.inverse_mass;
+        let harder_to_turn = a.inverse_inertia / b.inverse_inertia;
         let bonding = Bonding {
             radius_factor: pair.rb / pair.Ra.min(pair.Rb),
             young_modulus_pa: pair.E,
@@ -118,13 +122,13 @@ fn two_particles_swing_with_the_frequencies_of_the_reference() {
         let mut modes = vec![
             (
                 pair.omega_axial,
-                moving([small, 0.0, 0.0], [0.0; 3]),
-                moving([-small / heavier, 0.0, 0.0], [0.0; 3]),
+                ([small, 0.0, 0.0], [0.0; 3]),
+                ([-small / heavier, 0.0, 0.0], [0.0; 3]),
             ),
             (
                 pair.omega_torsion,
-                moving([0.0; 3], [small, 0.0, 0.0]),
-                moving([0.0; 3], [-small / harder_to_turn, 0.0, 0.0]),
+                ([0.0; 3], [small, 0.0, 0.0]),
+                ([0.0; 3], [-small / harder_to_turn, 0.0, 0.0]),
             ),
         ];
         // In the plane of y and in that of z, where a slope has the other sign.
@@ -133,13 +137,13 @@ fn two_particles_swing_with_the_frequencies_of_the_reference() {
                 [bend.ya, bend.yb, bend.theta_za, bend.theta_zb].map(|v| small * v);
             modes.push((
                 bend.omega,
-                moving([0.0, ya, 0.0], [0.0, 0.0, ta]),
-                moving([0.0, yb, 0.0], [0.0, 0.0, tb]),
+                ([0.0, ya, 0.0], [0.0, 0.0, ta]),
+                ([0.0, yb, 0.0], [0.0, 0.0, tb]),
             ));
             modes.push((
                 bend.omega,
-                moving([0.0, 0.0, ya], [0.0, -ta, 0.0]),
-                moving([0.0, 0.0, yb], [0.0, -tb, 0.0]),
+                ([0.0, 0.0, ya], [0.0, -ta, 0.0]),
+                ([0.0, 0.0, yb], [0.0, -tb, 0.0]),
             ));
         }
         assert_eq!(modes.len(), 6);
@@ -185,7 +189,10 @@ fn peak(velocities: &[f64], every_s: f64, near: f64) -> f64 {
 
 /// Velocities of the last particle of the bar after a blow: every so many seconds, all freedoms added that were struck.
 fn rung(mut state: State, steps: usize, every: usize) -> Vec<f64> {
-    state.particles.motions[10] = moving([1e-5, 1e-5, 0.0], [1e-4, 0.0, 0.0]);
+    set_moving(
+        &mut state.particles.motions[10],
+        ([1e-5, 1e-5, 0.0], [1e-4, 0.0, 0.0]),
+    );
     let mut velocities = Vec::new();
     for at in 0..steps {
         step(&mut state);

@@ -38,7 +38,7 @@ fn is_above_that_of_the_reference_by_little() {
 fn of_a_slender_bar_is_that_of_euler_and_bernoulli() {
     let count = 101_u32;
     let (particles, pairs) = spheres(count);
-    let mass_kg = 1.0 / particles.inverse_masses[0];
+    let mass_kg = 1.0 / particles.motions[0].inverse_mass;
     let mut state = body(
         particles,
         &pairs,

@@ -14,7 +14,7 @@ const SPEED_M_S: f64 = 1.0;
 fn chain(count: u32, model: BondModel) -> (State, f64) {
     let (particles, pairs) = spheres(count);
     let state = body(particles, &pairs, &steel(model, ELASTIC), 1e-6);
-    let rate = (state.bonds.normal(0) * state.particles.inverse_masses[0]).sqrt();
+    let rate = (state.bonds.normal(0) * state.particles.motions[0].inverse_mass).sqrt();
     (state, rate)
 }
 
@@ -69,7 +69,7 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
             let (mut state, rate) = chain(700, model);
             // sqrt(E A / (m / L)).
             let area = PI * 0.2 * 0.2;
-            let line_kg_m = 1.0 / state.particles.inverse_masses[0] / SPACING_M;
+            let line_kg_m = 1.0 / state.particles.motions[0].inverse_mass / SPACING_M;
             let speed = (200e9 * area / line_kg_m).sqrt();
             assert!((speed / (SPACING_M * rate) - 1.0).abs() < 1e-12);
             state.time_step_s = 0.1 / rate;

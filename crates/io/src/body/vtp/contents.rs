@@ -7,6 +7,7 @@ use super::{
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
 };
 use crate::body::{Body, Parts};
+use crate::results::stored_frame::{self as frame, StoredFrame};
 use crate::{Diagnostic, Result};
 
 /// What has been read of a body so far.
@@ -19,6 +20,16 @@ pub(super) struct Contents {
     lines_ended: u64,
     /// All but the radii.
     parts: Parts,
+    of_frame: OfFrame,
+}
+
+/// What frames have and bodies have not.
+#[derive(Default)]
+struct OfFrame {
+    time_s: Option<f64>,
+    clusters: Option<Vec<u32>>,
+    densities: Option<Vec<f64>>,
+    broken: Option<Vec<f64>>,
 }
 
 impl Contents {
@@ -69,6 +80,19 @@ impl Contents {
             }
             Role::BondLengths => {
                 line_values(array, values, counts).map(|all| self.parts.bond_lengths = Some(all))
+            }
+            Role::Clusters => {
+                let clusters = self.of_frame.clusters.insert(Vec::new());
+                values.for_each(array.scalar()?, |number| {
+                    clusters.push(particle(number)?);
+                    Ok(())
+                })?;
+                check_count(clusters.len() as u64, counts.points.into(), "values")
+            }
+            Role::Densities => floats(array, values, [0, counts.points, 0])
+                .map(|all| self.of_frame.densities = Some(all)),
+            Role::Broken => {
+                line_values(array, values, counts).map(|all| self.of_frame.broken = Some(all))
             }
             Role::Field(_) | Role::Other => Ok(()),
         }
@@ -148,6 +172,7 @@ impl Contents {
             PARTICLE_DENSITY => about.particle_density_kg_m3 = first.map(float),
             OVERLAP => about.overlap = first.map(float),
             BONDING_RADIUS => about.bonding_radius = first.map(float),
+            frame::TIME => self.of_frame.time_s = first.map(float),
             _ => {}
         }
         Ok(())
@@ -155,19 +180,9 @@ impl Contents {
 
     /// The body, if everything that it needs was there.
     pub(super) fn into_body(self) -> Result<Body> {
-        let counts = self.counts.unwrap_or_default();
-        check_count(
-            self.parts.positions.len() as u64,
-            counts.points.into(),
-            "points",
-        )?;
-        check_count(self.parts.bonds.len() as u64, counts.lines.into(), "lines")?;
-        check_count(self.lines_ended, counts.lines.into(), "offsets of lines")?;
+        self.check_counts()?;
         let Some(radii) = self.radii else {
-            let known = match self.point_data.as_slice() {
-                [] => "there are no point data".to_owned(),
-                names => format!("the point data are '{}'", names.join("', '")),
-            };
+            let known = self.known_point_data();
             return Err(Diagnostic::input(
                 "",
                 format!("the radii of the particles are missing: {known}"),
@@ -178,6 +193,69 @@ impl Contents {
             radii,
             ..self.parts
         })
+    }
+
+    /// The frame, if all that says what its fragments are was there.
+    pub(super) fn into_frame(self) -> Result<StoredFrame> {
+        self.check_counts()?;
+        let missing = |name: &str| {
+            Diagnostic::input(
+                "",
+                format!("this frame tells of no fragments: it has no array '{name}'"),
+                "only frames of runs in which bodies break into fragments have it",
+            )
+        };
+        let OfFrame {
+            time_s,
+            clusters,
+            densities,
+            broken,
+        } = self.of_frame;
+        let parts = self.parts;
+        let particles = parts.positions.len();
+        let beyond = |end: &u32| *end as usize >= particles;
+        if let Some(end) = parts.bonds.as_flattened().iter().find(|end| beyond(end)) {
+            let problem = format!("a bond joins particle {end}, but there are {particles}");
+            return Err(Diagnostic::input("", problem, DAMAGED));
+        }
+        Ok(StoredFrame {
+            time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
+            clusters: clusters.ok_or_else(|| missing(frame::CLUSTER))?,
+            positions: parts.positions,
+            radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
+            densities_kg_m3: densities.ok_or_else(|| missing(frame::DENSITY))?,
+            bonds: parts.bonds,
+            bond_radii: parts
+                .bond_radii
+                .ok_or_else(|| missing(frame::BOND_RADIUS))?,
+            bond_lengths: parts
+                .bond_lengths
+                .ok_or_else(|| missing(frame::BOND_LENGTH))?,
+            broken: broken
+                .ok_or_else(|| missing(frame::BROKEN))?
+                .into_iter()
+                .map(|broken| broken != 0.0)
+                .collect(),
+        })
+    }
+
+    /// What point data there are, for a person.
+    fn known_point_data(&self) -> String {
+        match self.point_data.as_slice() {
+            [] => "there are no point data".to_owned(),
+            names => format!("the point data are '{}'", names.join("', '")),
+        }
+    }
+
+    fn check_counts(&self) -> Result<()> {
+        let counts = self.counts.unwrap_or_default();
+        check_count(
+            self.parts.positions.len() as u64,
+            counts.points.into(),
+            "points",
+        )?;
+        check_count(self.parts.bonds.len() as u64, counts.lines.into(), "lines")?;
+        check_count(self.lines_ended, counts.lines.into(), "offsets of lines")
     }
 }
 

@@ -7,7 +7,16 @@ use super::{
     BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM,
     RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
 };
+use crate::results::stored_frame as frame;
 use crate::{Diagnostic, Result};
+
+/// What a file is read as: it says what its arrays are called.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Layout {
+    #[default]
+    Body,
+    Frame,
+}
 
 /// What the values of an array are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,9 +27,13 @@ pub(super) enum Role {
     Offsets,
     BondRadii,
     BondLengths,
+    /// Of the frames of a run: the fragment of each particle, its density, and which bonds are broken.
+    Clusters,
+    Densities,
+    Broken,
     /// Field data of this name.
     Field(&'static str),
-    /// Nothing that a body knows.
+    /// Nothing that is asked for.
     Other,
 }
 
@@ -44,7 +57,11 @@ pub(super) struct Array {
 
 impl Array {
     /// From an element `DataArray` or `Array` inside the element `section`.
-    pub(super) fn declared(element: &BytesStart<'_>, section: &str) -> Result<Self> {
+    pub(super) fn declared(
+        element: &BytesStart<'_>,
+        section: &str,
+        layout: Layout,
+    ) -> Result<Self> {
         let name = attribute(element, "Name")?.unwrap_or_default();
         let scalar = attribute(element, "type")?.unwrap_or_default();
         let format = match attribute(element, "format")?.as_deref() {
@@ -62,7 +79,10 @@ impl Array {
             }
         };
         Ok(Self {
-            role: role_of(section, &name),
+            role: match layout {
+                Layout::Body => role_of(section, &name),
+                Layout::Frame => role_in_frame(section, &name),
+            },
             name,
             scalar,
             format,
@@ -104,6 +124,22 @@ fn role_of(section: &str, name: &str) -> Role {
             .into_iter()
             .find(|field| *field == name)
             .map_or(Role::Other, Role::Field),
+        _ => Role::Other,
+    }
+}
+
+fn role_in_frame(section: &str, name: &str) -> Role {
+    match (section, name) {
+        ("Points", _) => Role::Positions,
+        ("Lines", "connectivity") => Role::Connectivity,
+        ("Lines", "offsets") => Role::Offsets,
+        ("PointData", frame::RADIUS) => Role::Radii,
+        ("PointData", frame::CLUSTER) => Role::Clusters,
+        ("PointData", frame::DENSITY) => Role::Densities,
+        ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
+        ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
+        ("CellData", frame::BROKEN) => Role::Broken,
+        ("FieldData", frame::TIME) => Role::Field(frame::TIME),
         _ => Role::Other,
     }
 }

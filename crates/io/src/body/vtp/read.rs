@@ -7,8 +7,9 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::contents::Contents;
 use super::decode::{DAMAGED, Values, array_bytes, base64_array, skip, truncated, unreadable};
-use super::header::{Array, Counts, Encoding, Format, Role, attribute, damaged};
+use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged};
 use crate::body::Body;
+use crate::results::stored_frame::StoredFrame;
 use crate::{Diagnostic, Result};
 
 /// Reads a body from a .vtp file, which ends with the input.
@@ -20,14 +21,29 @@ use crate::{Diagnostic, Result};
 /// # Errors
 /// Damaged or cut off, a later version, compressed, wrong counts, or not a body by [`Body::check`].
 pub fn read(input: &mut dyn BufRead) -> Result<Body> {
-    let mut file = File::default();
+    contents(input, Layout::Body)?.into_body()
+}
+
+/// Reads what a frame of a run says of its fragments.
+///
+/// # Errors
+/// Damaged or cut off, compressed, wrong counts, or an array of fragments is missing.
+pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
+    contents(input, Layout::Frame)?.into_frame()
+}
+
+fn contents(input: &mut dyn BufRead, layout: Layout) -> Result<Contents> {
+    let mut file = File {
+        layout,
+        ..File::default()
+    };
     let mut xml = Reader::from_reader(input);
     match read_xml(&mut xml, &mut file)? {
         Appended::None => {}
         Appended::Raw => read_raw(xml.into_inner(), &mut file)?,
         Appended::Base64 => read_base64(xml.into_inner(), &mut file)?,
     }
-    file.contents.into_body()
+    Ok(file.contents)
 }
 
 /// What follows the XML header.
@@ -40,6 +56,7 @@ enum Appended {
 /// What has been read so far.
 #[derive(Default)]
 struct File {
+    layout: Layout,
     encoding: Option<Encoding>,
     contents: Contents,
     /// Arrays whose values are still to come, with their place in the appended data.
@@ -147,7 +164,7 @@ impl File {
             return Ok(None);
         }
         let section = section.map_or("", String::as_str);
-        let array = Array::declared(element, section)?;
+        let array = Array::declared(element, section, self.layout)?;
         encoding.check(&array)?;
         if section == "PointData" {
             self.contents.add_point_data(&array.name);

@@ -76,6 +76,7 @@ impl Scale {
     /// Numbers at round values, at most `intervals` and one more, or two if the axis is `rounded`.
     fn with_ticks(axis: &Axis, low: f64, high: f64, intervals: f64, rounded: bool) -> Self {
         let step = nice_step((high - low) / intervals);
+        let step = if axis.whole { step.max(1.0) } else { step };
         // A little more than a whole step is one, not two.
         let (from, to, first, last);
         if rounded {
@@ -145,6 +146,18 @@ impl Scale {
                 }
             })
             .collect();
+        if decades <= 2.0 {
+            // Few decades: the numbers of their ends alone would say little.
+            for decade in 0..count {
+                for digit in [2, 5] {
+                    let exponent = from + f64::from(decade);
+                    scale.ticks.push(Tick {
+                        share: share(exponent + f64::from(digit).log10()),
+                        label: format!("{digit}×{}", power_of_ten(exponent as i32)),
+                    });
+                }
+            }
+        }
         if decades <= 4.0 {
             scale.fine = (0..count)
                 .flat_map(|decade| {

@@ -1,0 +1,92 @@
+//! `dem-run fragment`: a fragment of a frame as a body.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dem_io::body::files::body_files;
+use dem_io::body::write_body;
+use dem_io::results::folder::{frame_in, frames_in};
+use dem_io::results::{StoredFragment, read_frame};
+use dem_io::safe_write::write_standard_output;
+use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+
+#[derive(Debug, Args)]
+pub(super) struct FragmentArguments {
+    /// The folder of results of a run
+    results: PathBuf,
+    /// Number of the fragment: the array cluster of the frames, the id of fragments.csv
+    #[arg(long, required_unless_present = "largest", conflicts_with = "largest")]
+    id: Option<u32>,
+    /// The heaviest fragment
+    #[arg(long)]
+    largest: bool,
+    /// Number of the frame, from 0; the last one unless given
+    #[arg(long, value_name = "K")]
+    frame: Option<usize>,
+    /// Body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    /// Say nothing unless something is wrong
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Writes the fragment that is asked for and says what it is.
+///
+/// # Errors
+/// No such folder, frame or fragment; the body cannot be written.
+pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
+    let output = &arguments.output;
+    body_files(output)?;
+    let path = frame_path(&arguments.results, arguments.frame)?;
+    let frame = read_frame(&path)?;
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    let fragments = frame.fragments();
+    let id = arguments
+        .id
+        .or(fragments.first().map(|heaviest| heaviest.id));
+    let id = id.ok_or_else(|| within(Diagnostic::input("", "the frame has no particles", "")))?;
+    let mut body = frame.body(id).map_err(within)?;
+    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
+    body.about.source = Some(format!("{}: fragment {id}", path.display()));
+    write_body(&body, output)?;
+    if arguments.quiet || output == Path::new("-") {
+        return Ok(());
+    }
+    let found = fragments.iter().find(|fragment| fragment.id == id);
+    let mass_kg = found.map_or(0.0, |&StoredFragment { mass_kg, .. }| mass_kg);
+    write_standard_output(|out| {
+        writeln!(
+            out,
+            "fragment {id} at {} s -> {}: {} particles, {} bonds, {} kg",
+            significant(frame.time_s, 6),
+            output.display(),
+            body.positions.len(),
+            body.bonds.len(),
+            significant(mass_kg, 4)
+        )
+    })
+}
+
+/// The file of the frame with this number, or of the last one.
+fn frame_path(results: &Path, number: Option<usize>) -> Result<PathBuf> {
+    let place = results.display().to_string();
+    let frames = frames_in(results)?;
+    let Some(&last) = frames.last() else {
+        return Err(Diagnostic::input(
+            place,
+            "there are no frames in this folder",
+            "name the folder of results of a run",
+        ));
+    };
+    let number = number.unwrap_or(last);
+    if frames.binary_search(&number).is_err() {
+        return Err(Diagnostic::input(
+            format!("--frame {number}"),
+            format!("there is no such frame in {place}"),
+            format!("frames {} to {last} are there", frames[0]),
+        ));
+    }
+    Ok(frame_in(results, number))
+}

@@ -1,0 +1,174 @@
+//! What a run tells of the fragments of its bodies: tables, plots, and a line of the summary.
+
+use dem_io::Result;
+use dem_io::results::{Axis, FragmentRow, Line, Plot, ResultsFolder, TreeRow, write_fragment_tree};
+use serde::Serialize;
+
+use crate::clusters::fragments::{mass_fraction_of_largest, size_distribution};
+use crate::clusters::{Cluster, Clusters, Fragment, Split};
+
+/// Names of the plots of fragments.
+pub(super) const COUNT: &str = "fragments";
+pub(super) const SIZES: &str = "fragment_sizes";
+
+/// Fragments that the text of a split names.
+const NAMED: usize = 8;
+
+/// What came of the bodies of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FragmentSummary {
+    /// Fragments at the end; a body that is whole is one.
+    pub count: usize,
+    /// Share of all mass that the heaviest one has.
+    pub mass_fraction_of_largest: f64,
+    /// Fragments that were found in pieces.
+    pub splits: usize,
+}
+
+impl FragmentSummary {
+    /// Of the `fragments` that clusters consist of.
+    pub fn new(clusters: &Clusters, fragments: &[Fragment]) -> Self {
+        let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
+        Self {
+            count: fragments.len(),
+            mass_fraction_of_largest: mass_fraction_of_largest(fragments),
+            splits: ended.count(),
+        }
+    }
+}
+
+/// Fragments as rows of the table of fragments.
+pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
+    let row = |fragment: &Fragment| FragmentRow {
+        id: fragment.id,
+        parent: fragment.parent,
+        particles: fragment.particles,
+        mass_kg: fragment.mass_kg,
+        centre_m: fragment.centre_m,
+        velocity_m_s: fragment.velocity_m_s,
+        angular_velocity_rad_s: fragment.angular_velocity_rad_s,
+        force_n: fragment.force_n,
+        size_m: fragment.size_m,
+        extent_m: fragment.extent_m,
+    };
+    fragments.iter().map(row).collect()
+}
+
+/// Writes which fragment broke off which.
+///
+/// # Errors
+/// Those of the files.
+pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
+    let row = |(id, cluster): (u32, &Cluster)| TreeRow {
+        id,
+        parent: cluster.parent,
+        born_s: cluster.born_s,
+        ended_s: cluster.ended_s,
+        particles: cluster.particles,
+    };
+    let rows = (0..).zip(&clusters.history).map(row);
+    write_fragment_tree(&folder.fragment_tree(), rows)
+}
+
+/// What one of the clusters that are or were broke into, for a person: `cluster 3 -> 7, 8 (1204 + 38 particles)`. The largest stand first, and of many only
+/// some are named.
+pub fn split_text(split: &Split, history: &[Cluster]) -> String {
+    let particles = |id: u32| history[id as usize].particles;
+    let mut children = split.children.clone();
+    // The sort keeps the order of equal ones.
+    children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
+    let (named, others) = children.split_at(children.len().min(NAMED));
+    let ids: Vec<String> = named.iter().map(u32::to_string).collect();
+    let counts: Vec<String> = named.iter().map(|id| particles(*id).to_string()).collect();
+    let mut text = format!(
+        "cluster {} -> {} ({} particles)",
+        split.parent,
+        ids.join(", "),
+        counts.join(" + ")
+    );
+    if !others.is_empty() {
+        let count: u64 = others.iter().map(|id| u64::from(particles(*id))).sum();
+        let s = if count == 1 { "" } else { "s" };
+        text += &format!(" and {} more ({count} particle{s})", others.len());
+    }
+    text
+}
+
+/// Draws the number of fragments over time, if it changes, and their sizes at the end, if there is more than one.
+///
+/// # Errors
+/// Those of the files.
+pub fn write_fragment_plots(
+    folder: &ResultsFolder,
+    clusters: &Clusters,
+    fragments: &[Fragment],
+    end_s: f64,
+) -> Result<()> {
+    let counts = counts_over_time(&clusters.history, end_s);
+    if counts.iter().any(|[_, count]| *count != counts[0][1]) {
+        let mut plot = plot("Fragments", "time (s)", "fragments", counts);
+        plot.y.whole = true;
+        folder.write_plot(COUNT, &plot)?;
+    }
+    if fragments.len() > 1 {
+        let mut plot = plot(
+            "Fragment sizes",
+            "size: diameter of a sphere of equal volume (m)",
+            "cumulative mass fraction",
+            sizes(fragments),
+        );
+        plot.x.log = true;
+        folder.write_plot(SIZES, &plot)?;
+    }
+    Ok(())
+}
+
+/// Time, s, and number of fragments, with a step at every change, of all clusters that are or were.
+pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
+    let born = history.iter().map(|c| (c.born_s, 1.0));
+    let ended = history.iter().filter_map(|c| c.ended_s);
+    let mut changes: Vec<(f64, f64)> = born.chain(ended.map(|time_s| (time_s, -1.0))).collect();
+    changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut count = 0.0;
+    for same in changes.chunk_by(|a, b| a.0 == b.0) {
+        let time_s = same[0].0;
+        if !points.is_empty() {
+            points.push([time_s, count]);
+        }
+        count += same.iter().map(|(_, change)| change).sum::<f64>();
+        points.push([time_s, count]);
+    }
+    points.push([end_s, count]);
+    points
+}
+
+/// Size, m, and share of all mass in fragments of that size and smaller ones, with a step at every size.
+pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
+    let mut share = 0.0;
+    let mut points = Vec::new();
+    for passing in size_distribution(fragments) {
+        points.push([passing.size_m, share]);
+        share = passing.mass_fraction;
+        points.push([passing.size_m, share]);
+    }
+    points
+}
+
+fn plot(title: &str, x: &str, y: &str, points: Vec<[f64; 2]>) -> Plot {
+    let axis = |label: &str| Axis {
+        label: label.to_owned(),
+        ..Axis::default()
+    };
+    Plot {
+        title: title.to_owned(),
+        x: axis(x),
+        y: axis(y),
+        lines: vec![Line {
+            name: title.to_lowercase(),
+            points,
+            dashed: false,
+        }],
+        reference: None,
+    }
+}

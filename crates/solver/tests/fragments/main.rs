@@ -1,0 +1,138 @@
+//! What a run writes about fragments, and fragments taken out of it as bodies.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod bodies;
+mod files;
+mod pictures;
+mod resume;
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use dem_io::results::{Existing, ResultsFolder};
+use dem_io::scene::{BodySource, Scene};
+use dem_io::{Body, Result, scene_from_text};
+use dem_run::clusters::{Clusters, Triggers};
+use dem_run::output::summary::Summary;
+use dem_run::plan::{Plan, plan};
+use dem_run::run::{RunSettings, run};
+use dem_run::snapshot::Snapshot;
+use tempfile::TempDir;
+
+/// Particles of the rod.
+pub(crate) const PARTICLES: usize = 60;
+
+/// A rod that spins until it bursts, and a pair that flies by and holds. Strengths scatter.
+pub(crate) fn bursting() -> Scene {
+    let mut particles = String::new();
+    let mut bonds = String::new();
+    for i in 0..PARTICLES {
+        write!(particles, "[{}e-3, 0, 0, 1e-3],", 2 * i).unwrap();
+        if i > 0 {
+            write!(bonds, "[{}, {i}],", i - 1).unwrap();
+        }
+    }
+    let text = format!(
+        "version = 1
+        [run]
+        end_time = 5e-4
+        safety = 0.2
+        seed = 5
+        [materials.cake]
+        density = 2050
+        [bonds.brittle]
+        young_modulus = 1e9
+        poisson_ratio = 0.3
+        failure = {{ tension = 2e6, weibull_modulus = 4 }}
+        [bodies.rod]
+        material = \"cake\"
+        bonds = \"brittle\"
+        particles = [{particles}]
+        bond_list = [{bonds}]
+        angular_velocity = [0, 0, 2500]
+        [bodies.pair]
+        material = \"cake\"
+        bonds = \"brittle\"
+        particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 2e-3]]
+        bond_list = [[0, 1]]
+        position = [0, 0, 1]
+        velocity = [3, 0, 1]
+        [output]
+        series = 2e-6
+        frames = 1e-4
+        checkpoint = 1e-3
+        "
+    );
+    scene_from_text(&text, "bursting.toml", &[]).unwrap()
+}
+
+/// The bodies that stand in a scene.
+pub(crate) fn bodies_of(scene: &Scene) -> BTreeMap<String, Body> {
+    let body = |source: &BodySource| match source {
+        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
+        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
+    };
+    let bodies = scene.bodies.iter();
+    bodies
+        .map(|(name, entry)| (name.clone(), body(&entry.source)))
+        .collect()
+}
+
+/// A plan whose bodies are searched for pieces in every step in which a bond breaks.
+pub(crate) fn planned(scene: &Scene) -> Plan {
+    let mut plan = plan(scene, bodies_of(scene), 1, false).unwrap();
+    let state = &mut plan.state;
+    state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
+    state.triggers = Triggers::every_step();
+    plan
+}
+
+/// Runs a plan into a folder; when it has reached `stop_at` of its end time, it is interrupted.
+pub(crate) fn run_into(
+    folder: &ResultsFolder,
+    plan: Plan,
+    scene: &Scene,
+    resume: Option<Snapshot>,
+    stop_at: f64,
+) -> Result<Summary> {
+    let interrupted = AtomicBool::new(false);
+    let settings = RunSettings {
+        folder: Some(folder),
+        resume,
+        threads: 1,
+        interrupted: &interrupted,
+    };
+    run(plan, scene, settings, &|share| {
+        if share >= stop_at {
+            interrupted.store(true, Ordering::Relaxed);
+        }
+    })
+}
+
+/// The bursting rod in a folder `out` that vanishes after the test.
+pub(crate) fn burst() -> (TempDir, ResultsFolder, Summary) {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap();
+    let scene = bursting();
+    let summary = run_into(&folder, planned(&scene), &scene, None, 2.0).unwrap();
+    (parent, folder, summary)
+}
+
+/// Rows of a table as texts, checked to be as long as its header, which is given back first.
+pub(crate) fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let words = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<String>>();
+    let mut lines = text.lines();
+    let header = words(lines.next().unwrap());
+    let rows: Vec<Vec<String>> = lines.map(words).collect();
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+    (header, rows)
+}
