@@ -136,8 +136,20 @@ fn a_test_that_goes_on_says_the_same() {
     let first = summary(&bench.good(&scene, &[&once[..], &["parts", "--set", &half]].concat()));
     assert_eq!(first["test"]["broken"], false);
     let parts = summary(&bench.good(&scene, &[&once[..], &["parts", "--resume"]].concat()));
-    assert_eq!(parts["test"], whole["test"]);
-    let said = bench.bad(&scene, &["--out", "parts", "--resume"], 2);
+    // The step fits the end of the run, which was another one at first.
+    for name in [
+        "stiffness",
+        "modulus of the body",
+        "failure force",
+        "failure travel",
+    ] {
+        let off = value(&parts["test"], name) / value(&whole["test"], name) - 1.0;
+        assert!(off.abs() < 2e-3, "{name}: {off}");
+    }
+    for part in ["bonds", "is_within"] {
+        assert_eq!(parts["test"]["crack"][part], whole["test"]["crack"][part]);
+    }
+    let said = bench.bad(&scene, &[&once[..], &["parts", "--resume"]].concat(), 2);
     assert!(said.contains("the body of this test has broken"), "{said}");
 }
 

@@ -512,7 +512,7 @@ fn a_laboratory_test() {
     );
     let (_, of_test) = text.split_once("test.kind").unwrap();
     let wanted = "\
-                       three-point-bending
+three-point-bending
 test.body                       beam
 test.moves                      pin
 test.direction                  [0, 0, -1]
@@ -527,7 +527,7 @@ test.span                       measured on walls and body
 test.width                      measured on walls and body
 test.height                     measured on walls and body
 ";
-    assert_eq!(of_test, wanted);
+    assert_eq!(of_test.trim_start(), wanted);
 
     let file = folder().join("bending-test.toml");
     let options = [

@@ -81,9 +81,10 @@ pub fn support_of(set: &str) -> String {
     format!("test-{set}")
 }
 
-/// A grip: all is held, and it moves along the direction of the test, which is one of the axes.
+/// A grip: moves along the direction of the test, which is one of the axes. Across it the body may become thinner, as if the grip slid on ice: what holds
+/// it there as well makes it break at the grip.
 fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
-    let mut holds = [Some(Hold::Fixed); 6];
+    let mut holds = [None; 6];
     for (hold, along) in holds.iter_mut().zip(test.direction) {
         if along != 0.0 {
             *hold = Some(Hold::Velocity(rate_m_s * along));

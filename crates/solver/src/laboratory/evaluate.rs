@@ -340,8 +340,9 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
 fn first_broken(evidence: &Evidence<'_>) -> Option<FirstBroken> {
     let first = evidence.record.broken.first()?;
     let rows = &evidence.record.rows;
-    let after = rows.partition_point(|row| row.time_s < first.time_s);
-    let nearest = rows.get(after).or(rows.last())?;
+    // The last row before it: the next one may already know of the fall.
+    let before = rows.partition_point(|row| row.time_s <= first.time_s);
+    let nearest = rows.get(before.saturating_sub(1))?;
     Some(FirstBroken {
         time_s: first.time_s,
         force_n: nearest.force_n,

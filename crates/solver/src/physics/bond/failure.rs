@@ -38,6 +38,7 @@ pub struct Stresses {
 
 /// Which criterion a bond failed by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Normal strength, while pulled.
     Tension,
