@@ -16,16 +16,17 @@ const FIELDS: usize = 3 * MONOMIALS;
 const DEPENDENT: f64 = 1e-10;
 /// Ways to move without strain.
 const RIGID: usize = 6;
-/// An eigenvalue below this share of the largest is none: a body in pieces, which has no lowest frequency.
+/// An eigenvalue below this share of the largest is rounding: that of a body without bonds.
 const NOTHING: f64 = 1e-12;
 /// Particles handled by one task.
 const CHUNK: usize = 1024;
 
-/// Lowest frequency of the bodies of a state as one free body, Hz: no supports, walls or contacts. None: nothing vibrates, or it is in pieces.
+/// Lowest frequency of the bodies of a state as one free body, Hz: no supports, walls or contacts. None: nothing vibrates.
 ///
 /// Displacements are polynomials of up to the fourth degree in x, y and z about the centre, and each particle turns by half the curl. The smallest
 /// of their frequencies is never below the true one. It is 0.3 % above that of the first bending mode of a slender beam (22.45 instead of
-/// 22.37 in the formula omega = 22.37 sqrt(EI/(rho A L^4))).
+/// 22.37 in the formula omega = 22.37 sqrt(EI/(rho A L^4))), and more above that of a packing, whose particles follow no polynomial. Pieces that no bond joins
+/// count as if the polynomials held them together.
 ///
 /// The wrenches of the state are overwritten.
 pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {

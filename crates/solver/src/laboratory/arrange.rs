@@ -23,7 +23,7 @@ pub struct Arranged {
 /// The velocity rises evenly during the first period, which leaves the lowest mode at rest. None: the scene has no test.
 ///
 /// # Errors
-/// The body has no lowest frequency: it has no bonds or is in pieces. A support by the name of one of the test's.
+/// The body has no bonds. A support by the name of one of the test's.
 pub fn arrange(
     scene: &Scene,
     bodies: &BTreeMap<String, Body>,
@@ -107,11 +107,8 @@ fn lowest_in_test(
     let free = lowest_frequency_hz(&mut state).ok_or_else(|| {
         Diagnostic::input(
             format!("{}: [test]", scene.source),
-            format!(
-                "the body '{}' has no lowest frequency: it has no bonds, or is in pieces",
-                test.body
-            ),
-            "dem-pack info says how many pieces; take more bonds (--bonding-radius)",
+            format!("the body '{}' has no bonds, so nothing to test", test.body),
+            "make it with bonds: dem-pack --bonding-radius 1.1",
         )
     })?;
     Ok(match test.kind {
