@@ -104,14 +104,14 @@ struct Basis {
 impl Basis {
     /// None: no particles.
     fn of(state: &State) -> Option<Self> {
-        let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for pose in &state.particles.poses {
-            for k in 0..3 {
-                ends[0][k] = ends[0][k].min(pose.position_m[k] - pose.radius_m());
-                ends[1][k] = ends[1][k].max(pose.position_m[k] + pose.radius_m());
-            }
-        }
-        let [low, high] = ends;
+        let poses = &state.particles.poses;
+        let reach = |side: f64| {
+            [0, 1, 2].map(|k| {
+                let ends = poses.iter().map(|p| side * p.position_m[k] + p.radius_m());
+                side * ends.fold(f64::NEG_INFINITY, f64::max)
+            })
+        };
+        let (low, high) = (reach(-1.0), reach(1.0));
         let mut powers = Vec::new();
         for total in 0..=DEGREE {
             for a in (0..=total).rev() {
