@@ -225,6 +225,14 @@ fn crossing_facets_would_be_noticed() {
 #[test]
 fn flat_sided_shapes_have_their_exact_volume() {
     assert_eq!(volume(&facets("bending-sample.stl")), 180.0 * 30.0 * 35.0);
+    assert_eq!(volume(&facets("bar.stl")), 30.0 * 30.0 * 60.0);
+    let disc = facets("disc.stl");
+    let exact = 48.0 * (2.0 * PI / 96.0).sin() * 25.0 * 25.0 * 25.0;
+    assert!(
+        (volume(&disc) - exact).abs() < 1e-4 * area(&disc),
+        "{} {exact}",
+        volume(&disc)
+    );
     // A ring of n sections whose sides are plane has the volume of Pappus' theorem times sin(a)/a, a = 2 pi/n; the polygon
     // in the torus' section has m corners. Coordinates are rounded to 1e-4 mm: the volume to that times the area.
     let section = |m: f64, radius: f64| m / 2.0 * radius * radius * (2.0 * PI / m).sin();

@@ -23,6 +23,7 @@ mod set;
 mod support;
 mod table;
 mod targets;
+mod test;
 mod tree;
 mod wall;
 
@@ -34,6 +35,7 @@ pub use contact::{Contact, ContactLaw, Rolling};
 pub use read::{read_scene, scene_from_text};
 pub use relaxation::Relaxation;
 pub use search::Search;
+pub use test::{Test, TestKind};
 pub use wall::{Wall, WallMotion, WallShape};
 
 /// Version of the scene format.
@@ -72,12 +74,14 @@ pub struct Scene {
     pub search: Search,
     /// `[output]`. None: nothing is written to disk unless the command line names a folder.
     pub output: Option<Output>,
+    /// `[test]`. None: no laboratory test.
+    pub test: Option<Test>,
 }
 
 /// When the run ends, how it steps, what acts everywhere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// `end_time`: simulated time at the end, s.
+    /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
     pub end_time_s: f64,
     /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
     pub rest: Option<f64>,

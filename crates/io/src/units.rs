@@ -47,6 +47,14 @@ pub const LENGTH: Dimension = Dimension {
     example: "2mm",
 };
 
+/// Area, m2.
+pub const AREA: Dimension = Dimension {
+    name: "area",
+    si: "m2",
+    units: &[("mm2", 1e-6), ("cm2", 1e-4), ("m2", 1.0)],
+    example: "9cm2",
+};
+
 /// Density, kg/m3.
 pub const DENSITY: Dimension = Dimension {
     name: "density",

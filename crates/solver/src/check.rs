@@ -3,4 +3,5 @@
 pub mod ledger;
 pub mod limit;
 pub mod linear;
+pub mod lowest_frequency;
 pub mod watchdog;

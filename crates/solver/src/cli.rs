@@ -6,6 +6,7 @@ mod fragment;
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
@@ -17,6 +18,9 @@ use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
+use crate::laboratory::arrange::arrange;
+use crate::laboratory::evaluate::TestResult;
+use crate::laboratory::watch::TestSettings;
 use crate::plan::plan;
 use crate::run::{RunSettings, run as run_plan};
 use crate::snapshot::Snapshot;
@@ -110,6 +114,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         )),
         Some(Command::Check { scene }) => in_pool(scene, |threads| {
             let (scene_data, bodies) = scene.read()?;
+            let arranged = arrange(&scene_data, &bodies, threads, 1.0)?;
+            let scene_data = arranged.map_or(scene_data, |arranged| arranged.scene);
             check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
@@ -303,7 +309,15 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         }
         None => None,
     };
-    let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
+    let given = (scene, bodies);
+    let (scene, test) = match arrange(&given.0, &given.1, threads, 1.0)? {
+        Some(arranged) => {
+            let settings = test_settings(&given, arranged.lowest_frequency_hz);
+            (arranged.scene, Some(settings))
+        }
+        None => (given.0.clone(), None),
+    };
+    let plan = plan(&scene, given.1.clone(), threads, arguments.scene.force_step)?;
     if !arguments.quiet {
         for note in &plan.notes {
             // Nobody to read it is no reason to stop.
@@ -327,12 +341,20 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         progress_bar()
     };
     let summary = interrupt.heeded_by(|interrupted| {
-        let settings = RunSettings {
+        let mut settings = RunSettings {
             folder: folder.as_ref(),
             resume,
             threads,
             interrupted,
+            test,
         };
+        let checked = scene.test.as_ref().is_some_and(|test| test.rate_check);
+        if let (true, Some(test)) = (checked, &mut settings.test) {
+            let force_step = arguments.scene.force_step;
+            test.at_twice_the_rate =
+                at_twice_the_rate(&given, threads, force_step, interrupted, &bar)?;
+        }
+        drop(given);
         run_plan(plan, &scene, settings, &|share| {
             bar.set_position((1000.0 * share) as u64);
         })
@@ -351,6 +373,46 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     }
 }
 
+/// A scene and its bodies as they were read.
+type Given = (Scene, BTreeMap<String, Body>);
+
+/// What a run has to know of the test of a scene.
+fn test_settings((scene, bodies): &Given, lowest_frequency_hz: f64) -> TestSettings {
+    let body = scene.test.as_ref().and_then(|test| bodies.get(&test.body));
+    TestSettings {
+        lowest_frequency_hz,
+        volume_m3: body.and_then(|body| body.about.shape_volume_m3),
+        at_twice_the_rate: None,
+    }
+}
+
+/// What comes of the test of a scene at twice its rate, of which no file is written.
+fn at_twice_the_rate(
+    given: &Given,
+    threads: usize,
+    force_step: bool,
+    interrupted: &AtomicBool,
+    bar: &ProgressBar,
+) -> Result<Option<TestResult>> {
+    let Some(arranged) = arrange(&given.0, &given.1, threads, 2.0)? else {
+        return Ok(None);
+    };
+    let settings = RunSettings {
+        folder: None,
+        resume: None,
+        threads,
+        interrupted,
+        test: Some(test_settings(given, arranged.lowest_frequency_hz)),
+    };
+    let plan = plan(&arranged.scene, given.1.clone(), threads, force_step)?;
+    bar.set_prefix("at twice the rate ");
+    let summary = run_plan(plan, &arranged.scene, settings, &|share| {
+        bar.set_position((1000.0 * share) as u64);
+    })?;
+    bar.set_prefix("");
+    Ok(summary.test)
+}
+
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
 fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
     if let Some(out) = &arguments.out {
@@ -364,7 +426,9 @@ fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
 
 fn progress_bar() -> ProgressBar {
     let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("run [{bar:40}] {percent:>3} %  {eta} left") {
+    if let Ok(style) =
+        ProgressStyle::with_template("run {prefix}[{bar:40}] {percent:>3} %  {eta} left")
+    {
         bar.set_style(style.progress_chars("=> "));
     }
     bar

@@ -7,6 +7,7 @@ pub mod clusters;
 mod disjoint;
 pub mod geometry;
 pub mod interrupt;
+pub mod laboratory;
 pub mod measure;
 pub mod output;
 pub mod physics;

@@ -17,6 +17,7 @@ use crate::check::ledger::balance;
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
+use crate::laboratory::watch::{TestSettings, Watch};
 use crate::measure::{Gauge, gauges, read_gauges};
 use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
@@ -48,6 +49,8 @@ pub struct RunSettings<'a> {
     pub threads: usize,
     /// Set when the run is to stop.
     pub interrupted: &'a AtomicBool,
+    /// What is known of the scene's laboratory test, for which it has been arranged. None: it is not evaluated.
+    pub test: Option<TestSettings>,
 }
 
 /// Files that grow during a run.
@@ -108,6 +111,10 @@ pub fn run(
     tell: &dyn Fn(f64),
 ) -> Result<Summary> {
     let mut gauges = gauges(scene, &plan);
+    let watch = match (&scene.test, settings.test) {
+        (Some(test), Some(of_test)) => Some(Watch::new(scene, test, of_test, &plan)?),
+        _ => None,
+    };
     let Plan {
         mut state,
         bodies,
@@ -175,7 +182,10 @@ pub fn run(
             write_breaks(&state, &bodies, files)?;
             write_splits(&state, files)?;
         }
-        let ends = state.time_s + 0.5 * state.time_step_s >= end_s;
+        let broke = watch
+            .as_ref()
+            .is_some_and(|watch| watch.note(&mut progress.test, &state));
+        let ends = broke || state.time_s + 0.5 * state.time_step_s >= end_s;
         let row_due = ends || due(&state, rhythm.row_s, progress.next_row);
         let frame_due = ends
             || rhythm
@@ -221,7 +231,14 @@ pub fn run(
         }
         if let (true, Some(balance)) = (ends || rests, balanced) {
             progress.rested = !ends;
-            break (if ends { "end time" } else { "rest" }, balance);
+            progress.broke = broke;
+            let why = match (broke, ends, &watch) {
+                (true, ..) => "breakage",
+                (false, true, Some(_)) => "end of the stroke",
+                (false, true, None) => "end time",
+                (false, false, _) => "rest",
+            };
+            break (why, balance);
         }
         move_on(&mut state);
 
@@ -239,6 +256,9 @@ pub fn run(
     };
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
+    let test = watch
+        .map(|watch| watch.finish(&progress.test, &state, progress.broke, settings.folder))
+        .transpose()?;
     let steps_per_s = (state.steps - first_step) as f64 / wall_s;
     let fragments = state
         .clusters
@@ -281,6 +301,7 @@ pub fn run(
             .folder
             .map(|folder| folder.path().display().to_string()),
         resumed_with: changed_step,
+        test,
     };
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.

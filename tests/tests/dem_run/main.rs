@@ -9,6 +9,7 @@ mod check;
 mod corpus;
 mod disk;
 mod interrupted;
+mod laboratory;
 mod random;
 mod results;
 mod resume;

@@ -17,6 +17,7 @@ const EVENTS: &str = "events.csv";
 const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
+const TEST_PAGE: &str = "test.html";
 const CHECKPOINT: &str = "checkpoint.dem";
 const LOCK: &str = ".lock";
 
@@ -135,6 +136,25 @@ impl ResultsFolder {
         self.path.join(PLOTS).join(format!("{name}.svg"))
     }
 
+    /// Writes a picture, which begins with [`plots::BEGIN`], to `plots/NAME.svg`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_picture(&self, name: &str, svg: &str) -> Result<()> {
+        make_folder(&self.path.join(PLOTS))?;
+        write_file(&self.plot(name), |out| out.write_all(svg.as_bytes()))
+    }
+
+    /// Writes the page of a laboratory test to `test.html`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_test_page(&self, html: &str) -> Result<()> {
+        write_file(&self.path.join(TEST_PAGE), |out| {
+            out.write_all(html.as_bytes())
+        })
+    }
+
     /// Makes the folder of the frames, unless it is there.
     ///
     /// # Errors
@@ -175,7 +195,15 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        const OTHERS: [&str; 6] = [INDEX, SERIES, EVENTS, FRAGMENTS, FRAGMENT_TREE, SUMMARY];
+        const OTHERS: [&str; 7] = [
+            INDEX,
+            SERIES,
+            EVENTS,
+            FRAGMENTS,
+            FRAGMENT_TREE,
+            SUMMARY,
+            TEST_PAGE,
+        ];
         self.remove_files("", |name| OTHERS.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         let plots = self.path.join(PLOTS);

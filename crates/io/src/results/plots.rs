@@ -22,8 +22,8 @@ pub const WIDTH: f64 = 640.0;
 /// Height of a plot, px.
 pub const HEIGHT: f64 = 400.0;
 
-/// How every plot begins.
-const BEGIN: &str = "<!-- dem-run plot -->";
+/// How every picture of a run begins: by this it is known as one that may be replaced.
+pub const BEGIN: &str = "<!-- dem-run plot -->";
 
 const INK: &str = "#222222";
 const GRID: &str = "#e4e4e4";

@@ -1,6 +1,7 @@
 //! Every value of a scene in SI, defaults included, for a person.
 
 mod contacts;
+mod test;
 mod walls;
 
 use std::fmt::Write;
@@ -54,6 +55,9 @@ impl Scene {
             Some(output) => lines.output(output),
             None => lines.add("output", "none"),
         }
+        if let Some(test) = &self.test {
+            lines.test(test);
+        }
         lines.aligned()
     }
 }
@@ -81,7 +85,8 @@ impl Lines {
     }
 
     fn run(&mut self, run: &Run) {
-        self.add("run.end_time", value(run.end_time_s, "s"));
+        let end = Some(run.end_time_s).filter(|end| end.is_finite());
+        self.add("run.end_time", optional(end, "s", "that of the test"));
         self.add("run.rest", optional(run.rest, "", "never"));
         self.add("run.time_step", optional(run.time_step_s, "s", "auto"));
         self.add("run.safety", number(run.safety));

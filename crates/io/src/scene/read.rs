@@ -9,13 +9,13 @@ use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
     SCENE_VERSION, Scene, body, bond, clusters, contact, load, material, measure, output,
-    relaxation, run, search, set, support, wall,
+    relaxation, run, search, set, support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "version",
     "run",
     "materials",
@@ -31,6 +31,7 @@ const KEYS: [&str; 15] = [
     "relaxation",
     "search",
     "output",
+    "test",
 ];
 
 /// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;
@@ -88,12 +89,20 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         bodies: &bodies,
         walls: &walls,
     };
+    let supports = each(&root, "supports", |field| support::read(field, &targets))?;
+    let known = test::Known {
+        bodies: &bodies,
+        sets: &sets,
+        walls: &walls,
+        supports: &supports,
+    };
+    let test = root.read("test", |field| test::read(&field, &known))?;
     Ok(Scene {
         source: source.to_owned(),
         run,
         materials,
         bonds,
-        supports: each(&root, "supports", |field| support::read(field, &targets))?,
+        supports,
         loads: each(&root, "loads", |field| load::read(field, &targets))?,
         measures: each(&root, "measures", |field| measure::read(field, &targets))?,
         clusters: root
@@ -106,6 +115,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
             .read("search", |field| search::read(&field))?
             .unwrap_or_default(),
         output: root.read("output", |field| output::read(&field, folder))?,
+        test,
         contacts,
         bodies,
         walls,

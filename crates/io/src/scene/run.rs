@@ -28,12 +28,16 @@ pub(super) const START_OVERLAPS: [(&str, StartOverlap); 2] = [
 const SAFETY: f64 = 0.9;
 
 pub(super) fn read(root: &Table<'_>) -> Result<Run> {
+    let is_test = root.get("test").is_some();
     let Some(field) = root.get("run") else {
         let remedy = "add [run] with end_time = \"1 s\"";
         return Err(root.refuse("the table [run] is missing", remedy));
     };
     let table = field.table(&KEYS)?;
-    let end_time_s = table.need("end_time", "\"1 s\"")?.positive(&TIME)?;
+    let end_time_s = match table.get("end_time") {
+        None if is_test => f64::INFINITY,
+        _ => table.need("end_time", "\"1 s\"")?.positive(&TIME)?,
+    };
     let time_step_s = match table.get("time_step") {
         Some(field) => time_step(&field, end_time_s)?,
         None => None,

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
     At, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
-    Formulation, Hold, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search, StartOverlap, Wall,
-    WallMotion, WallShape,
+    Formulation, Hold, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search, StartOverlap,
+    TestKind, Wall, WallMotion, WallShape,
 };
 use dem_io::units::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, DENSITY, ENERGY, FORCE, LENGTH, MASS, NUMBER, RATE,
-    STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
+    ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, FORCE, LENGTH, MASS, NUMBER,
+    RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
 };
 use dem_io::{read_scene, scene_from_text};
 
@@ -76,6 +76,7 @@ fn the_documentation_lists_every_unit() {
         VISCOUS_DAMPING,
         DENSITY,
         RATE,
+        AREA,
         NUMBER,
     ] {
         let units: Vec<String> = dimension
@@ -491,6 +492,69 @@ output                          none
     let text = std::fs::read_to_string(folder().join("shortest.toml")).unwrap();
     let scene = scene_from_text(&text, "shortest.toml", &[]).unwrap();
     assert_eq!(scene.describe(), wanted);
+}
+
+/// A test says when the run ends, and all it leaves out in words.
+#[test]
+fn a_laboratory_test() {
+    let scene = good("bending-test.toml");
+    assert_eq!(scene.run.end_time_s, f64::INFINITY);
+    let test = scene.test.as_ref().unwrap();
+    assert_eq!(test.kind, TestKind::ThreePointBending);
+    assert_eq!(
+        (test.body.as_str(), test.moves.join(" ")),
+        ("beam", "pin".to_owned())
+    );
+    assert_eq!((test.direction, test.stroke_m), ([0.0, 0.0, -1.0], 0.004));
+    let text = scene.describe();
+    assert!(
+        text.starts_with("run.end_time                    that of the test\n"),
+        "{text}"
+    );
+    let (_, of_test) = text.split_once("test.kind").unwrap();
+    let wanted = "\
+three-point-bending
+test.body                       beam
+test.moves                      pin
+test.direction                  [0, 0, -1]
+test.stroke                     0.004 m
+test.rate                       auto
+test.periods                    20
+test.rate_check                 true
+test.young_modulus              none
+test.poisson_ratio              0.3
+test.strength                   none
+test.span                       measured on walls and body
+test.width                      measured on walls and body
+test.height                     measured on walls and body
+";
+    assert_eq!(of_test.trim_start(), wanted);
+
+    let file = folder().join("bending-test.toml");
+    let options = [
+        "test.rate=2 mm/s",
+        "test.kind=compression",
+        "test.area=9 cm2",
+        "test.young_modulus=12 MPa",
+        "run.end_time=3 s",
+    ];
+    let scene = read_scene(&file, &options.map(str::to_owned)).unwrap();
+    let test = scene.test.as_ref().unwrap();
+    assert_near(test.rate_m_s.unwrap(), 0.002);
+    assert_near(test.area_m2.unwrap(), 0.0009);
+    assert_near(test.young_modulus_pa.unwrap(), 12e6);
+    assert_eq!(scene.run.end_time_s, 3.0);
+    let text = scene.describe();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let words = words.join(" ");
+    for line in [
+        "test.area 0.0009 m2",
+        "test.rate 0.002 m/s",
+        "test.length measured on",
+    ] {
+        assert!(words.contains(line), "{line}: {text}");
+    }
+    assert!(!text.contains("test.span"));
 }
 
 /// The echo names every key of the file that says them all.

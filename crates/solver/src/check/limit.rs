@@ -143,7 +143,7 @@ impl Weights {
 }
 
 /// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
-type Field = Vec<[f64; 6]>;
+pub(super) type Field = Vec<[f64; 6]>;
 
 /// Largest eigenvalue of a sum of the operators over mass, and the iterations needed.
 /// An upper bound by the residual: never too small by more than that is too large.
@@ -276,9 +276,9 @@ fn scaled(field: &[f64; 6], roots: &[f64; 6]) -> [f64; 6] {
     [0, 1, 2, 3, 4, 5].map(|k| field[k] * roots[k])
 }
 
-/// Adds `weight` times the stiffness times a field to `sum`: minus the change of the forces in a small displacement, by a central difference.
+/// Adds `weight` times the stiffness times a field, each scaled by `roots`, to `sum`: minus the change of the forces in a small displacement, by a central difference.
 /// The poses in `displaced` (one for each particle) are overwritten.
-fn add_stiffness_times(
+pub(super) fn add_stiffness_times(
     state: &mut State,
     weight: f64,
     roots: &Field,

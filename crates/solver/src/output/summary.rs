@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::fragments::FragmentSummary;
 use crate::check::ledger::Balance;
+use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 
 /// Energy errors above this share are worth a word.
@@ -19,7 +20,7 @@ pub struct Summary {
     pub scene: String,
     /// Program and version.
     pub program: String,
-    /// Why it ended: "end time" or "rest".
+    /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
     pub ended_by: String,
     /// Simulated, s.
     pub simulated_s: f64,
@@ -69,6 +70,9 @@ pub struct Summary {
     /// The change of the time step, where it went on from a checkpoint with another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resumed_with: Option<String>,
+    /// What came of the scene's laboratory test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub test: Option<TestResult>,
 }
 
 impl Summary {
@@ -87,6 +91,7 @@ impl Summary {
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
+        doubts.extend(self.test.iter().flat_map(TestResult::doubts));
         doubts
     }
 }
@@ -110,6 +115,9 @@ impl fmt::Display for Summary {
         let width = names.max().unwrap_or(0).max(12);
         for measure in &self.measures {
             writeln!(f, "{}", measure_text(measure, width))?;
+        }
+        if let Some(test) = &self.test {
+            write!(f, "{test}")?;
         }
         writeln!(
             f,

@@ -5,7 +5,6 @@ use dem_io::results::Event;
 
 use super::Files;
 use crate::output::fragments::split_text;
-use crate::physics::bond::failure::Cause;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
 use crate::state::State;
@@ -30,12 +29,7 @@ pub(super) fn write_breaks(
             particle_a: Some(ends[0]),
             particle_b: Some(ends[1]),
             position_m: Some(broken.place_m),
-            cause: match broken.cause {
-                Cause::Tension => "tension",
-                Cause::Compression => "compression",
-                Cause::Shear => "shear",
-                Cause::VonMises => "von_mises",
-            },
+            cause: broken.cause.name(),
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
         };

@@ -5,6 +5,7 @@ use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::{Balance, over};
+use crate::laboratory::record::Record;
 use crate::plan::time_step::StepChoice;
 use crate::state::State;
 
@@ -41,6 +42,10 @@ pub struct Progress {
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
     pub(super) rested: bool,
+    /// What has been noted of a laboratory test.
+    pub(super) test: Record,
+    /// Whether that has ended because the body broke.
+    pub(super) broke: bool,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -145,6 +150,12 @@ impl Progress {
             return over(
                 format!("this run has come to rest at {before_s:.6e} s"),
                 "set a smaller run.rest",
+            );
+        }
+        if self.broke {
+            return over(
+                format!("the body of this test has broken at {before_s:.6e} s"),
+                "run its fragments in another scene",
             );
         }
         self.rested = false;

@@ -13,6 +13,7 @@ mod energy;
 mod frequencies;
 mod ledger;
 mod limit;
+mod lowest_frequency;
 mod neighbours;
 mod rigid;
 mod threads;

@@ -12,11 +12,13 @@ use std::path::Path;
 /// Every shape with the stem of its file name.
 pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
     vec![
+        ("bar", Mesh::cuboid([-15.0, -15.0, 0.0], [15.0, 15.0, 60.0])),
         (
             "bending-sample",
             Mesh::cuboid([0.0, 0.0, 0.0], [180.0, 30.0, 35.0]),
         ),
         ("c-shape", round::c_shape()),
+        ("disc", round::disc()),
         ("filter-cake", cake::filter_cake()),
         ("hollow-pair", hollow_pair()),
         ("infinity-knot", round::infinity_knot()),

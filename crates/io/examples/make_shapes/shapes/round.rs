@@ -82,6 +82,29 @@ pub(crate) fn infinity_knot() -> Mesh {
     mesh
 }
 
+/// The disc of the Brazilian test: 50 mm across and 25 mm thick, with its axis along y and 96 sides, around the origin.
+pub(crate) fn disc() -> Mesh {
+    const SIDES: u32 = 96;
+    let mut mesh = Mesh::default();
+    let rings = [-12.5, 12.5].map(|y| -> Vec<u32> {
+        (0..SIDES)
+            .map(|j| {
+                let (sin, cos) = (TAU * f64::from(j) / f64::from(SIDES)).sin_cos();
+                mesh.vertex([25.0 * cos, y, 25.0 * sin])
+            })
+            .collect()
+    });
+    join_rings(&mut mesh, &rings, false);
+    for (ring, y, from, to) in [(&rings[0], -12.5, 0, 1), (&rings[1], 12.5, 1, 0)] {
+        let centre = mesh.vertex([0.0, y, 0.0]);
+        for j in 0..ring.len() {
+            let pair = [ring[j], ring[(j + 1) % ring.len()]];
+            mesh.triangles.push([centre, pair[from], pair[to]]);
+        }
+    }
+    mesh
+}
+
 /// A round biconvex tablet: 10 mm across, a band 2.4 mm high and on each side a dome of 1 mm, which is part of a sphere
 /// of 13 mm radius.
 pub(crate) fn tablet() -> Mesh {

@@ -7,6 +7,7 @@
 
 use super::BondLoad;
 use crate::physics::number::Number;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Strengths of a bond. An infinite strength is not asked for; several may act together.
@@ -36,7 +37,8 @@ pub struct Stresses {
 }
 
 /// Which criterion a bond failed by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Normal strength, while pulled.
     Tension,
@@ -46,6 +48,18 @@ pub enum Cause {
     Shear,
     /// Equivalent stress.
     VonMises,
+}
+
+impl Cause {
+    /// Its name in results: `von_mises`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tension => "tension",
+            Self::Compression => "compression",
+            Self::Shear => "shear",
+            Self::VonMises => "von_mises",
+        }
+    }
 }
 
 /// Stresses in a bond of this radius under this load.

@@ -1,0 +1,118 @@
+//! How fast a test is loaded, and the scene with all that follows from it.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{Factor, Hold, Scene, Support, Test, TestKind, WallMotion};
+use dem_io::{Body, Diagnostic, Result};
+
+use super::theory::ON_PINS;
+use crate::check::lowest_frequency::lowest_frequency_hz;
+use crate::plan::bodies::place_bodies;
+use crate::state::State;
+
+/// A scene whose test has been given its rate and its end, and what that came from.
+#[derive(Debug, Clone)]
+pub struct Arranged {
+    /// The scene, in which walls and sets move.
+    pub scene: Scene,
+    /// Lowest frequency of the body as it stands in the test, Hz.
+    pub lowest_frequency_hz: f64,
+}
+
+/// Gives a scene with a test its rate, times `faster`: walls in `moves` get a velocity, sets a support that moves, the run its end.
+/// The velocity rises evenly during the first period, which leaves the lowest mode at rest. None: the scene has no test.
+///
+/// # Errors
+/// The body has no bonds. A support by the name of one of the test's.
+pub fn arrange(
+    scene: &Scene,
+    bodies: &BTreeMap<String, Body>,
+    threads: usize,
+    faster: f64,
+) -> Result<Option<Arranged>> {
+    let Some(test) = &scene.test else {
+        return Ok(None);
+    };
+    let lowest_frequency_hz = lowest_in_test(scene, test, bodies, threads)?;
+    let period_s = 1.0 / lowest_frequency_hz;
+    let rate = test
+        .rate_m_s
+        .unwrap_or(test.stroke_m / (test.periods * period_s));
+    let rate = faster * rate;
+    let ramp = Factor::Ramp { until_s: period_s };
+    let mut scene = scene.clone();
+    for name in &test.moves {
+        if let Some(wall) = scene.walls.get_mut(name) {
+            wall.motion = WallMotion::Velocity {
+                velocity_m_s: test.direction.map(|c| rate * c),
+                spin_rad_s: [0.0; 3],
+                factor: ramp.clone(),
+            };
+            continue;
+        }
+        let support = Support {
+            of: name.clone(),
+            holds: pulled(test, rate),
+            factor: ramp.clone(),
+        };
+        let key = support_of(name);
+        if scene.supports.insert(key.clone(), support).is_some() {
+            return Err(Diagnostic::input(
+                format!("{}: [supports.{key}]", scene.source),
+                format!("the test holds '{name}' by a support of this name"),
+                "give it another name",
+            ));
+        }
+    }
+    // Half a period is lost while the velocity rises.
+    let end_s = test.stroke_m / rate + 0.5 * period_s;
+    scene.run.end_time_s = scene.run.end_time_s.min(end_s);
+    if let Some(test) = &mut scene.test {
+        test.rate_m_s = Some(rate);
+    }
+    Ok(Some(Arranged {
+        scene,
+        lowest_frequency_hz,
+    }))
+}
+
+/// Name of the support by which a test moves a set.
+pub fn support_of(set: &str) -> String {
+    format!("test-{set}")
+}
+
+/// A grip: moves along the direction of the test, which is one of the axes. Across it the body may become thinner, as if the grip slid on ice: what holds
+/// it there as well makes it break at the grip.
+fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
+    let mut holds = [None; 6];
+    for (hold, along) in holds.iter_mut().zip(test.direction) {
+        if along != 0.0 {
+            *hold = Some(Hold::Velocity(rate_m_s * along));
+        }
+    }
+    holds
+}
+
+/// Lowest frequency of the tested body, Hz: that of the free body, and for bending what is left of it on two supports at its ends.
+fn lowest_in_test(
+    scene: &Scene,
+    test: &Test,
+    bodies: &BTreeMap<String, Body>,
+    threads: usize,
+) -> Result<f64> {
+    let only = bodies.get_key_value(&test.body);
+    let only = only.map(|(name, body)| (name.clone(), body.clone()));
+    let (particles, bonds, _) = place_bodies(scene, only.into_iter().collect())?;
+    let mut state = State::new(particles, bonds, 1.0, threads);
+    let free = lowest_frequency_hz(&mut state).ok_or_else(|| {
+        Diagnostic::input(
+            format!("{}: [test]", scene.source),
+            format!("the body '{}' has no bonds, so nothing to test", test.body),
+            "make it with bonds: dem-pack --bonding-radius 1.1",
+        )
+    })?;
+    Ok(match test.kind {
+        TestKind::FourPointBending | TestKind::ThreePointBending => ON_PINS * free,
+        TestKind::BrazilianDisc | TestKind::Compression | TestKind::Tension => free,
+    })
+}

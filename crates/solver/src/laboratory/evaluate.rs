@@ -1,0 +1,379 @@
+//! From force and way to what a test is for: stiffness, modulus, strength, where the crack is.
+
+use dem_io::scene::{BondKind, Test};
+use serde::{Deserialize, Serialize};
+
+use super::record::{Record, Row};
+use super::setup::{Setup, Specimen};
+use super::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
+use crate::physics::bond::failure::Cause;
+
+/// Shares of the largest force between which the stiffness is the slope of the force.
+const SLOPE: [f64; 2] = [0.1, 0.4];
+/// Fewest rows for a slope.
+const FEWEST_ROWS: usize = 3;
+
+/// A number of a test, and what it should be.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// What it is.
+    pub name: String,
+    /// In `unit`.
+    pub value: f64,
+    /// SI unit; empty for plain numbers.
+    pub unit: String,
+    /// What it should be.
+    pub theory: Option<f64>,
+    /// (value - theory)/|theory|.
+    pub error: Option<f64>,
+}
+
+impl Figure {
+    fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            value,
+            unit: unit.to_owned(),
+            theory,
+            error: theory.map(|theory| (value - theory) / theory.abs()),
+        }
+    }
+}
+
+/// The first bond that broke.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FirstBroken {
+    /// When, s.
+    pub time_s: f64,
+    /// Force at that time, N.
+    pub force_n: f64,
+    /// Travel of what loads at that time, m.
+    pub travel_m: f64,
+    /// Where in the body at the start, m. Length 3.
+    pub place_m: [f64; 3],
+    /// By what.
+    pub cause: Cause,
+}
+
+/// Where the bonds broke, in the body at the start.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Crack {
+    /// Broken bonds.
+    pub bonds: usize,
+    /// From the middle of the span, of a bar's length or of the loaded diameter, on average, m.
+    pub offset_m: f64,
+    /// Standard deviation of that, m.
+    pub spread_m: f64,
+    /// The crack is where it should be if `offset_m` is no larger than this, m: half the distance of the loading pins of a four-point test.
+    pub within_m: f64,
+    /// Whether it is.
+    pub is_within: bool,
+    /// Share of the broken bonds of which each by itself is.
+    pub share_within: f64,
+}
+
+/// What came of a test.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestResult {
+    /// Its kind, as in the scene.
+    pub kind: String,
+    /// Whether the body broke: the force fell below half of its largest.
+    pub broken: bool,
+    /// Lowest frequency of the body in the test, estimated, Hz.
+    pub lowest_frequency_hz: f64,
+    /// Velocity of what loads, m/s.
+    pub rate_m_s: f64,
+    /// Dimensions by which it is evaluated.
+    pub dimensions: Vec<Figure>,
+    /// Results.
+    pub figures: Vec<Figure>,
+    /// What the bonds would need for the body to have the modulus and the strength that the scene names.
+    pub calibration: Vec<Figure>,
+    /// None: no bond broke.
+    pub first_broken: Option<FirstBroken>,
+    /// None: no bond broke.
+    pub crack: Option<Crack>,
+    /// By how much half the rate changes the figures: (slow - fast)/fast. Empty: it was not checked.
+    pub half_the_rate_changes: Vec<Figure>,
+}
+
+impl TestResult {
+    /// The value of a figure.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        let found = self.figures.iter().find(|figure| figure.name == name);
+        found.map(|figure| figure.value)
+    }
+
+    /// Notes by how much its figures differ from those of the same test at twice the rate.
+    pub fn compare(&mut self, fast: &Self) {
+        let compared = |figure: &Figure| {
+            let before = fast.figure(&figure.name)?;
+            let change = (figure.value - before) / before.abs();
+            change
+                .is_finite()
+                .then(|| Figure::new(&figure.name, change, "", None))
+        };
+        self.half_the_rate_changes = self.figures.iter().filter_map(compared).collect();
+    }
+}
+
+/// What a test is evaluated from.
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// The test, with its rate.
+    pub test: &'a Test,
+    /// What stood where.
+    pub setup: &'a Setup,
+    /// What was noted.
+    pub record: &'a Record,
+    /// Place at the start of each broken bond of the record, m.
+    pub places_m: &'a [[f64; 3]],
+    /// Kind of the body's bonds.
+    pub bonds: Option<&'a BondKind>,
+    /// Hz.
+    pub lowest_frequency_hz: f64,
+    /// The force fell below half of its largest.
+    pub broken: bool,
+}
+
+/// Force over a way in the elastic part of a test.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// N/m.
+    pub stiffness_n_m: f64,
+    /// Way at which the fitted line has no force: play until everything touches, m.
+    pub start_m: f64,
+}
+
+/// Largest force, and the slope of the force over a `way` before it, between 10 % and 40 % of it. By least squares. None: too few rows.
+pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
+    let peak = peak(rows)?;
+    let up_to = |share: f64| {
+        rows.iter()
+            .position(|row| row.force_n >= share * peak.force_n)
+    };
+    let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
+    if elastic.len() < FEWEST_ROWS {
+        return None;
+    }
+    let count = elastic.len() as f64;
+    let mean = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>() / count;
+    let (way_m, force_n) = (mean(&|row| way(row)), mean(&|row| row.force_n));
+    let sum = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>();
+    let both = sum(&|row| (way(row) - way_m) * (row.force_n - force_n));
+    let stiffness_n_m = both / sum(&|row| (way(row) - way_m).powi(2));
+    stiffness_n_m.is_finite().then(|| Slope {
+        stiffness_n_m,
+        start_m: way_m - force_n / stiffness_n_m,
+    })
+}
+
+/// The row with the largest force.
+pub fn peak(rows: &[Row]) -> Option<&Row> {
+    rows.iter().max_by(|a, b| a.force_n.total_cmp(&b.force_n))
+}
+
+/// Evaluates a test. Figures that cannot be told from its record are left out.
+pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
+    let Evidence {
+        test,
+        setup,
+        record,
+        ..
+    } = *evidence;
+    let (mut figures, mut dimensions) = (Vec::new(), Vec::new());
+    let rows = &record.rows;
+    let by_travel = slope(rows, |row| row.travel_m);
+    let measured = !setup.moving.is_empty();
+    let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
+    let (stiffness, of_body) = (
+        by_travel.map(|slope| slope.stiffness_n_m),
+        of_body.map(|slope| slope.stiffness_n_m),
+    );
+    let mut add = |name: &str, value: Option<f64>, unit: &str, theory: Option<f64>| {
+        figures.extend(value.map(|value| Figure::new(name, value, unit, theory)));
+    };
+    let mut is = |name: &str, value: f64, unit: &str| {
+        dimensions.push(Figure::new(name, value, unit, None));
+    };
+    let (modulus, strength) = (test.young_modulus_pa, test.strength_pa);
+    let nu = test.poisson_ratio;
+    let largest = peak(rows).map(|row| row.force_n);
+    let failure = largest.filter(|_| evidence.broken);
+    match setup.specimen {
+        Specimen::Beam(beam) => {
+            is("span", beam.span_m, "m");
+            if beam.load_distance_m > 0.0 {
+                is("load distance", beam.load_distance_m, "m");
+            }
+            is("width", beam.width_m, "m");
+            is("height", beam.height_m, "m");
+            let (shape, shear) = (beam.bending_shape_m(), beam.shear_over_bending(nu, KAPPA));
+            let theory = modulus.map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
+            add(STIFFNESS, stiffness, "N/m", theory);
+            add("stiffness of the body", of_body, "N/m", theory);
+            let bending = |k: f64| k / shape;
+            let with_shear = |k: f64| k * (1.0 + shear) / shape;
+            add(EQ_18, stiffness.map(bending), "Pa", modulus);
+            add(
+                "modulus with shear",
+                stiffness.map(with_shear),
+                "Pa",
+                modulus,
+            );
+            add(MODULUS, of_body.map(with_shear), "Pa", modulus);
+            let theory = strength.map(|strength| beam.force_n(strength));
+            add(FAILURE_FORCE, failure, "N", theory);
+            let stress = failure.map(|force| beam.stress_pa(force));
+            add(STRENGTH, stress, "Pa", strength);
+        }
+        Specimen::Disc {
+            diameter_m,
+            thickness_m,
+        } => {
+            is("diameter", diameter_m, "m");
+            is("thickness", thickness_m, "m");
+            add(STIFFNESS, stiffness, "N/m", None);
+            let stress = |force: f64| disc_stress_pa(force, diameter_m, thickness_m);
+            let theory = strength.map(|strength| strength / stress(1.0));
+            add(FAILURE_FORCE, failure, "N", theory);
+            add(STRENGTH, failure.map(stress), "Pa", strength);
+        }
+        Specimen::Bar { length_m, area_m2 } => {
+            is("length", length_m, "m");
+            is("area", area_m2, "m2");
+            is("gauge length", setup.gauge_m, "m");
+            let theory = modulus.map(|modulus| modulus * area_m2 / length_m);
+            add(STIFFNESS, stiffness, "N/m", theory);
+            let theory = modulus.map(|modulus| modulus * area_m2 / setup.gauge_m);
+            // Pressed, the measured places come nearer to each other.
+            let of_body = of_body.map(f64::abs);
+            add("stiffness of the body", of_body, "N/m", theory);
+            let of_gauge = |k: f64| k * setup.gauge_m / area_m2;
+            add(MODULUS, of_body.map(of_gauge), "Pa", modulus);
+            let stress = |force: f64| bar_stress_pa(force, area_m2);
+            let theory = strength.map(|strength| strength * area_m2);
+            add(FAILURE_FORCE, failure, "N", theory);
+            add(STRENGTH, failure.map(stress), "Pa", strength);
+        }
+    }
+    let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
+    let travel = peak(rows).map(|row| row.travel_m - play_m);
+    add(
+        "failure travel",
+        travel.filter(|_| evidence.broken),
+        "m",
+        None,
+    );
+    if !evidence.broken {
+        add("largest force", largest, "N", None);
+    }
+    let mut result = TestResult {
+        kind: test.kind.name().to_owned(),
+        broken: evidence.broken,
+        lowest_frequency_hz: evidence.lowest_frequency_hz,
+        rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
+        dimensions,
+        figures,
+        calibration: Vec::new(),
+        first_broken: first_broken(evidence),
+        crack: crack(evidence),
+        half_the_rate_changes: Vec::new(),
+    };
+    result.calibration = calibration(&result, evidence);
+    result
+}
+
+/// Names of figures that are looked up.
+const STIFFNESS: &str = "stiffness";
+const EQ_18: &str = "modulus without shear";
+/// Modulus of the body by its own deflection or elongation, shear counted.
+pub const MODULUS: &str = "modulus of the body";
+/// Largest force before the body broke.
+pub const FAILURE_FORCE: &str = "failure force";
+/// Stress at that force by the formula of the test.
+pub const STRENGTH: &str = "strength";
+
+/// What the bonds would need. Stresses and strains are proportional to modulus and strength of the bonds: one run says the factor.
+fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
+    let mut found = Vec::new();
+    let Some(bonds) = evidence.bonds else {
+        return found;
+    };
+    let test = evidence.test;
+    if let Some(modulus) = result.figure(MODULUS) {
+        let factor = modulus / bonds.young_modulus_pa;
+        found.push(Figure::new(
+            "modulus over that of the bonds",
+            factor,
+            "",
+            None,
+        ));
+        if let Some(wanted) = test.young_modulus_pa {
+            let name = "modulus of bonds for that wanted";
+            found.push(Figure::new(name, wanted / factor, "Pa", None));
+        }
+    }
+    // As the thesis does it, with all that gives way at the pins in it.
+    if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
+        let name = "the same by eq. 18";
+        let value = wanted / modulus * bonds.young_modulus_pa;
+        found.push(Figure::new(name, value, "Pa", None));
+    }
+    let of_bonds = bonds.failure.von_mises_pa.or(bonds.failure.tension_pa);
+    if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
+        let factor = strength / of_bonds;
+        found.push(Figure::new(
+            "strength over that of the bonds",
+            factor,
+            "",
+            None,
+        ));
+        if let Some(wanted) = test.strength_pa {
+            let name = "strength of bonds for that wanted";
+            found.push(Figure::new(name, wanted / factor, "Pa", None));
+        }
+    }
+    found
+}
+
+fn first_broken(evidence: &Evidence<'_>) -> Option<FirstBroken> {
+    let first = evidence.record.broken.first()?;
+    let rows = &evidence.record.rows;
+    // The last row before it: the next one may already know of the fall.
+    let before = rows.partition_point(|row| row.time_s <= first.time_s);
+    let nearest = rows.get(before.saturating_sub(1))?;
+    Some(FirstBroken {
+        time_s: first.time_s,
+        force_n: nearest.force_n,
+        travel_m: nearest.travel_m,
+        place_m: *evidence.places_m.first()?,
+        cause: first.cause,
+    })
+}
+
+fn crack(evidence: &Evidence<'_>) -> Option<Crack> {
+    let setup = evidence.setup;
+    let offset = |place: &[f64; 3]| -> f64 {
+        (0..3)
+            .map(|k| (place[k] - setup.middle_m[k]) * setup.along[k])
+            .sum()
+    };
+    let offsets: Vec<f64> = evidence.places_m.iter().map(offset).collect();
+    let count = offsets.len() as f64;
+    if offsets.is_empty() {
+        return None;
+    }
+    let mean = offsets.iter().sum::<f64>() / count;
+    let variance = offsets.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+    let within_m = setup.crack_within_m;
+    let within = offsets.iter().filter(|x| x.abs() <= within_m).count();
+    Some(Crack {
+        bonds: offsets.len(),
+        offset_m: mean,
+        spread_m: variance.sqrt(),
+        within_m,
+        is_within: mean.abs() <= within_m,
+        share_within: within as f64 / count,
+    })
+}

@@ -1,0 +1,210 @@
+//! What a test shows: its curve, the picture of the crack, and a page with both and all its numbers.
+
+use std::fmt::Write;
+
+use dem_io::Result;
+use dem_io::results::{Axis, Line, Plot, ResultsFolder, svg};
+use dem_io::scene::Test;
+use dem_io::units::significant;
+
+use super::crack::{CrackPicture, crack_svg};
+use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, slope};
+use super::record::{Record, Row};
+
+/// What the files of a test are made of.
+#[derive(Debug, Clone, Copy)]
+pub struct TestFiles<'a> {
+    /// The scene's file.
+    pub scene: &'a str,
+    /// The test.
+    pub test: &'a Test,
+    /// What was noted.
+    pub record: &'a Record,
+    /// What came of it.
+    pub result: &'a TestResult,
+    /// The crack.
+    pub picture: CrackPicture<'a>,
+}
+
+/// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `test.html`.
+///
+/// # Errors
+/// Those of the files.
+pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
+    let curve = curve(files.record, files.result);
+    let crack = crack_svg(&files.picture);
+    folder.write_plot("force-displacement", &curve)?;
+    folder.write_picture("crack", &crack)?;
+    folder.write_test_page(&page(files, &svg(&curve), &crack))
+}
+
+/// Force over displacement, with the theory's line where the scene names a modulus.
+pub fn curve(record: &Record, result: &TestResult) -> Plot {
+    let rows = &record.rows;
+    let by_travel = slope(rows, |row| row.travel_m);
+    let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
+    let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
+        rows.iter().map(|row| [way(row), row.force_n]).collect()
+    };
+    let mut lines = vec![Line {
+        name: "travel of what loads".to_owned(),
+        points: points(&|row| row.travel_m - play_m),
+        dashed: false,
+    }];
+    let of_body = slope(rows, |row| row.deflection_m);
+    if let (Some(of_body), true) = (of_body, named(result, "stiffness of the body").is_some()) {
+        let sign = of_body.stiffness_n_m.signum();
+        let way = |row: &Row| sign * (row.deflection_m - of_body.start_m);
+        // After it has broken the body has no deflection.
+        let until = peak(rows).map_or(f64::INFINITY, |row| row.time_s);
+        let whole = rows.iter().filter(|row| row.time_s <= until);
+        lines.push(Line {
+            name: "deflection of the body".to_owned(),
+            points: whole.map(|row| [way(row), row.force_n]).collect(),
+            dashed: false,
+        });
+    }
+    let theory = ["stiffness of the body", "stiffness"]
+        .iter()
+        .find_map(|name| named(result, name)?.theory);
+    if let (Some(stiffness), Some(peak)) = (theory, peak(rows)) {
+        lines.push(Line {
+            name: "theory".to_owned(),
+            points: vec![[0.0, 0.0], [peak.force_n / stiffness, peak.force_n]],
+            dashed: true,
+        });
+    }
+    let failure = named(result, FAILURE_FORCE).and_then(|figure| figure.theory);
+    Plot {
+        title: result.kind.replace('-', " "),
+        x: Axis {
+            label: "displacement (m)".to_owned(),
+            ..Axis::default()
+        },
+        y: Axis {
+            label: "force (N)".to_owned(),
+            ..Axis::default()
+        },
+        lines,
+        reference: failure.map(|force| (force, "failure force wanted".to_owned())),
+    }
+}
+
+fn named<'a>(result: &'a TestResult, name: &str) -> Option<&'a Figure> {
+    result.figures.iter().find(|figure| figure.name == name)
+}
+
+/// A value with a unit that suits it.
+pub fn shown(value: f64, unit: &str) -> String {
+    let size = value.abs();
+    let (factor, unit) = match unit {
+        "m" if size < 1.0 => (1e3, "mm"),
+        "m2" if size < 1.0 => (1e6, "mm2"),
+        "m/s" if size < 1.0 => (1e3, "mm/s"),
+        "Pa" if size >= 1e9 => (1e-9, "GPa"),
+        "Pa" if size >= 1e5 => (1e-6, "MPa"),
+        "Pa" if size >= 1e3 => (1e-3, "kPa"),
+        "N" if size >= 1e4 => (1e-3, "kN"),
+        "N/m" if size >= 1e4 => (1e-3, "kN/m"),
+        unit => (1.0, unit),
+    };
+    format!("{} {unit}", significant(factor * value, 4))
+        .trim_end()
+        .to_owned()
+}
+
+/// A share as a percentage with its sign.
+pub fn percent(share: f64) -> String {
+    format!("{:+.1} %", 100.0 * share)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+/// Everything on one page that needs no other file.
+fn page(files: &TestFiles<'_>, curve: &str, crack: &str) -> String {
+    let mut out = String::new();
+    // Writing to a text cannot fail.
+    let _ = write_page(&mut out, files, curve, crack);
+    out
+}
+
+const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;max-width:700px;margin:2em auto;padding:0 1em}\
+table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .9em .25em 0;text-align:left;border-bottom:1px solid #e4e4e4}\
+td.n,th.n{text-align:right}svg{max-width:100%;height:auto}";
+
+fn write_page(
+    out: &mut String,
+    files: &TestFiles<'_>,
+    curve: &str,
+    crack: &str,
+) -> std::fmt::Result {
+    let result = files.result;
+    let title = result.kind.replace('-', " ");
+    writeln!(
+        out,
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>"
+    )?;
+    writeln!(out, "<h1>{title}</h1>\n<p>{}</p>", escaped(files.scene))?;
+    write_table(out, "Results", "error", &result.figures)?;
+    writeln!(out, "<ul>")?;
+    for (name, text) in result.sentences() {
+        writeln!(out, "<li>{}: {}</li>", escaped(&name), escaped(&text))?;
+    }
+    writeln!(out, "</ul>\n{curve}\n{crack}")?;
+    write_table(out, "Calibration", "error", &result.calibration)?;
+    write_table(out, "Dimensions", "error", &result.dimensions)?;
+    if !result.half_the_rate_changes.is_empty() {
+        writeln!(
+            out,
+            "<h2>Rate</h2>\n<p>The same test at half the rate, against twice the rate, changes</p>\n<table>"
+        )?;
+        for figure in &result.half_the_rate_changes {
+            writeln!(
+                out,
+                "<tr><td>{}</td><td class=\"n\">{}</td></tr>",
+                escaped(&figure.name),
+                percent(figure.value)
+            )?;
+        }
+        writeln!(out, "</table>")?;
+    }
+    writeln!(out, "</body>\n</html>")
+}
+
+fn write_table(out: &mut String, title: &str, error: &str, figures: &[Figure]) -> std::fmt::Result {
+    if figures.is_empty() {
+        return Ok(());
+    }
+    let with_theory = figures.iter().any(|figure| figure.theory.is_some());
+    writeln!(out, "<h2>{title}</h2>\n<table>")?;
+    if with_theory {
+        writeln!(
+            out,
+            "<tr><th></th><th class=\"n\">measured</th><th class=\"n\">theory</th><th class=\"n\">{error}</th></tr>"
+        )?;
+    }
+    for figure in figures {
+        write!(
+            out,
+            "<tr><td>{}</td><td class=\"n\">{}</td>",
+            escaped(&figure.name),
+            shown(figure.value, &figure.unit)
+        )?;
+        if with_theory {
+            let theory = figure.theory.map(|value| shown(value, &figure.unit));
+            let error = figure.error.map(percent);
+            write!(
+                out,
+                "<td class=\"n\">{}</td><td class=\"n\">{}</td>",
+                theory.unwrap_or_default(),
+                error.unwrap_or_default()
+            )?;
+        }
+        writeln!(out, "</tr>")?;
+    }
+    writeln!(out, "</table>")
+}

@@ -1,0 +1,330 @@
+//! What stands where in a test: the dimensions that its formulas need, and the particles whose way is measured.
+
+use dem_io::scene::{Scene, Test, TestKind, Wall, WallShape};
+use dem_io::{Diagnostic, Result};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::theory::Beam;
+use crate::state::State;
+
+/// Half the size of the part of a body whose way is measured, over its height.
+const SPOT: f64 = 0.125;
+/// Measured length of a bar over its length.
+const GAUGE: f64 = 0.5;
+/// A disc has split in two if the crack is no further from the loaded diameter than this share of it, on average.
+const NEAR_DIAMETER: f64 = 0.1;
+
+/// What is tested.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Specimen {
+    /// Bent by one or two pins.
+    Beam(Beam),
+    /// Pressed across its diameter.
+    Disc {
+        /// m
+        diameter_m: f64,
+        /// m
+        thickness_m: f64,
+    },
+    /// Pressed or pulled along its length.
+    Bar {
+        /// m
+        length_m: f64,
+        /// m2
+        area_m2: f64,
+    },
+}
+
+/// A test as it stands at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// What is tested.
+    pub specimen: Specimen,
+    /// Unit vector in which the load moves. Length 3.
+    pub direction: [f64; 3],
+    /// Unit vector along which the place of the crack is told: along a beam or bar, across the loaded diameter of a disc. Length 3.
+    pub along: [f64; 3],
+    /// Middle of the body, and of the span of a beam, m. Length 3.
+    pub middle_m: [f64; 3],
+    /// The crack is where it should be if it is no further from the middle than this on average, m.
+    pub crack_within_m: f64,
+    /// Particles whose displacement, less that of `resting`, is the body's deflection or elongation. Empty: not measured.
+    pub moving: Vec<u32>,
+    /// The others.
+    pub resting: Vec<u32>,
+    /// Their distance along a bar, m; 0 elsewhere.
+    pub gauge_m: f64,
+    /// Radius of the particles, on average, m.
+    pub mean_radius_m: f64,
+}
+
+/// Looks at walls and body. `particles`: those of the tested body, in a state before the first step. `volume_m3`: of the body's shape, if known.
+///
+/// # Errors
+/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is nowhere between them.
+pub fn setup(
+    scene: &Scene,
+    test: &Test,
+    state: &State,
+    particles: &[u32],
+    volume_m3: Option<f64>,
+) -> Result<Setup> {
+    let extent = |axis: &Vector3<f64>| extent(state, particles, axis);
+    let direction = Vector3::from(test.direction);
+    let radii = particles
+        .iter()
+        .map(|&i| state.particles.poses[i as usize].radius_m());
+    let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
+    let found = match test.kind {
+        TestKind::FourPointBending | TestKind::ThreePointBending => beam(scene, test, extent)
+            .map_err(|(problem, remedy)| {
+                Diagnostic::input(format!("{}: [test]", scene.source), problem, remedy)
+            })?,
+        TestKind::BrazilianDisc => disc(test, direction, extent),
+        TestKind::Compression | TestKind::Tension => bar(test, direction, volume_m3, extent),
+    };
+    let mut setup = Setup {
+        mean_radius_m,
+        ..found
+    };
+    choose_measured(&mut setup, state, particles);
+    Ok(setup)
+}
+
+/// Smallest and largest place of the body along an axis, m.
+fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
+    particles
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &i| {
+            let pose = &state.particles.poses[i as usize];
+            let (at, radius) = (pose.place().dot(axis), pose.radius_m());
+            [low.min(at - radius), high.max(at + radius)]
+        })
+}
+
+fn size([low, high]: [f64; 2]) -> f64 {
+    high - low
+}
+
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
+}
+
+/// A unit vector or its opposite, whichever points along its axis rather than against it.
+fn forwards(along: Vector3<f64>) -> Vector3<f64> {
+    if along[along.iamax()] < 0.0 {
+        -along
+    } else {
+        along
+    }
+}
+
+type Refusal = (String, &'static str);
+
+/// A beam between pins.
+fn beam(
+    scene: &Scene,
+    test: &Test,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+) -> std::result::Result<Setup, Refusal> {
+    let (loads, supports): (Vec<_>, Vec<_>) = scene
+        .walls
+        .iter()
+        .partition(|(name, _)| test.moves.contains(name));
+    let wanted = if test.kind == TestKind::FourPointBending {
+        2
+    } else {
+        1
+    };
+    if loads.len() != wanted || supports.len() != 2 {
+        return Err((
+            format!(
+                "a {} test has {wanted} moving and 2 fixed pins, but here are {} and {}",
+                test.kind.name(),
+                loads.len(),
+                supports.len()
+            ),
+            "add or remove walls, and name those that load in moves",
+        ));
+    }
+    let pins = |walls: &[(&String, &Wall)]| {
+        walls
+            .iter()
+            .map(|(name, wall)| pin(name, wall))
+            .collect::<std::result::Result<Vec<_>, _>>()
+    };
+    let (loads, supports) = (pins(&loads)?, pins(&supports)?);
+    let direction = Vector3::from(test.direction);
+    let across = loads[0].1;
+    let along = across.cross(&direction);
+    if along.norm() < 0.999
+        || [&loads, &supports]
+            .into_iter()
+            .flatten()
+            .any(|(_, axis)| axis.dot(&across).abs() < 0.999)
+    {
+        let remedy = "turn them: all have one axis, and direction is square to it";
+        return Err((
+            "the pins stand askew to each other or to direction".to_owned(),
+            remedy,
+        ));
+    }
+    let along = forwards(along.normalize());
+    let place = |pins: &[(Vector3<f64>, Vector3<f64>)]| -> Vec<f64> {
+        let mut places: Vec<f64> = pins.iter().map(|(place, _)| place.dot(&along)).collect();
+        places.sort_by(f64::total_cmp);
+        places
+    };
+    let (loaded, held) = (place(&loads), place(&supports));
+    let beam = Beam {
+        span_m: test.span_m.unwrap_or(held[1] - held[0]),
+        load_distance_m: match loaded[..] {
+            [left, right] => test.load_distance_m.unwrap_or(right - left),
+            _ => 0.0,
+        },
+        width_m: test.width_m.unwrap_or_else(|| size(extent(&across))),
+        height_m: test.height_m.unwrap_or_else(|| size(extent(&direction))),
+    };
+    let [low, high] = extent(&along);
+    if !(low < held[1] && high > held[0]) || beam.span_m <= beam.load_distance_m {
+        let remedy =
+            "the supports are further apart than the loading pins, and the body lies on them";
+        return Err((
+            "the body or the loading pins are not between the supports".to_owned(),
+            remedy,
+        ));
+    }
+    let centre = middle([held[0], held[1]]) * along
+        + middle(extent(&across)) * across
+        + middle(extent(&direction)) * direction;
+    // A crack of three-point bending starts under the pin: it may stray by half the height.
+    let crack_within_m = if loaded.len() == 2 {
+        0.5 * beam.load_distance_m
+    } else {
+        0.5 * beam.height_m
+    };
+    Ok(Setup {
+        specimen: Specimen::Beam(beam),
+        direction: test.direction,
+        along: along.into(),
+        middle_m: centre.into(),
+        crack_within_m,
+        moving: Vec::new(),
+        resting: Vec::new(),
+        gauge_m: 0.0,
+        mean_radius_m: 0.0,
+    })
+}
+
+/// Middle of a pin and unit vector along it.
+fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f64>), Refusal> {
+    let WallShape::Cylinder { from_m, to_m, .. } = &wall.shape else {
+        let problem = format!("the wall '{name}' is no cylinder, which pins are");
+        return Err((
+            problem,
+            "write cylinder = { from, to, radius }, or remove the wall",
+        ));
+    };
+    let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, wall.tilt_rad, 0.0));
+    let turned = tilted * UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
+    let (from, to) = (Vector3::from(*from_m), Vector3::from(*to_m));
+    let pivot = Vector3::from(wall.pivot_m);
+    let centre = pivot + turned * (0.5 * (from + to) - pivot);
+    Ok((centre, (turned * (to - from)).normalize()))
+}
+
+/// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.
+fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Setup {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let square = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
+    let axis = square
+        .min_by(|a, b| size(extent(a)).total_cmp(&size(extent(b))))
+        .map_or(Vector3::y(), |axis| {
+            (axis - direction * axis.dot(&direction)).normalize()
+        });
+    let along = forwards(axis.cross(&direction));
+    let diameter_m = test.height_m.unwrap_or_else(|| size(extent(&direction)));
+    let centre = middle(extent(&along)) * along
+        + middle(extent(&axis)) * axis
+        + middle(extent(&direction)) * direction;
+    Setup {
+        specimen: Specimen::Disc {
+            diameter_m,
+            thickness_m: test.width_m.unwrap_or_else(|| size(extent(&axis))),
+        },
+        direction: test.direction,
+        along: along.into(),
+        middle_m: centre.into(),
+        crack_within_m: NEAR_DIAMETER * diameter_m,
+        moving: Vec::new(),
+        resting: Vec::new(),
+        gauge_m: 0.0,
+        mean_radius_m: 0.0,
+    }
+}
+
+/// A bar along the load.
+fn bar(
+    test: &Test,
+    direction: Vector3<f64>,
+    volume_m3: Option<f64>,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+) -> Setup {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let of_body_m = size(extent(&direction));
+    let length_m = test.length_m.unwrap_or(of_body_m);
+    let others = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
+    let sides = || others.map(|axis| size(extent(axis))).product();
+    let area_m2 = test
+        .area_m2
+        .or(volume_m3.map(|volume| volume / of_body_m))
+        .unwrap_or_else(sides);
+    let centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
+    Setup {
+        specimen: Specimen::Bar { length_m, area_m2 },
+        direction: test.direction,
+        along: test.direction,
+        middle_m: centre.into(),
+        crack_within_m: 0.5 * GAUGE * length_m,
+        moving: Vec::new(),
+        resting: Vec::new(),
+        gauge_m: 0.0,
+        mean_radius_m: 0.0,
+    }
+}
+
+/// Chooses the particles whose way is measured: of a beam those at its middle height where it is loaded and where it is supported, of a bar two
+/// slices at the ends of its middle half.
+fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
+    let middle = Vector3::from(setup.middle_m);
+    let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
+    let offset = |i: u32| state.particles.poses[i as usize].place() - middle;
+    let pick = |is_in: &dyn Fn(f64, f64) -> bool| -> Vec<u32> {
+        let all = particles.iter().copied();
+        all.filter(|&i| is_in(offset(i).dot(&along), offset(i).dot(&direction)))
+            .collect()
+    };
+    match setup.specimen {
+        Specimen::Beam(beam) => {
+            let spot = (SPOT * beam.height_m).max(2.0 * setup.mean_radius_m);
+            let at = |place: f64| pick(&|x, z| (x.abs() - place).abs() < spot && z.abs() < spot);
+            setup.moving = at(0.5 * beam.load_distance_m);
+            setup.resting = at(0.5 * beam.span_m);
+        }
+        Specimen::Bar { length_m, .. } => {
+            let half = 0.5 * GAUGE * length_m;
+            let spot = (0.05 * length_m).max(2.0 * setup.mean_radius_m);
+            setup.moving = pick(&|x, _| (x - half).abs() < spot);
+            setup.resting = pick(&|x, _| (x + half).abs() < spot);
+            let mean = |of: &[u32]| {
+                of.iter().map(|&i| offset(i).dot(&along)).sum::<f64>() / of.len() as f64
+            };
+            setup.gauge_m = mean(&setup.moving) - mean(&setup.resting);
+        }
+        Specimen::Disc { .. } => {}
+    }
+    if setup.moving.is_empty() || setup.resting.is_empty() {
+        setup.moving.clear();
+        setup.resting.clear();
+    }
+}

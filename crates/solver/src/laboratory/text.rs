@@ -1,0 +1,118 @@
+//! A test in words.
+
+use std::fmt;
+
+use dem_io::units::significant;
+
+use super::evaluate::{Figure, TestResult};
+use super::page::{percent, shown};
+
+/// A change by half the rate above this is worth a word.
+const MUCH: f64 = 0.02;
+
+impl TestResult {
+    /// What speaks against the test. Empty: nothing.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        if self.crack.as_ref().is_some_and(|crack| !crack.is_within) {
+            doubts.push("the crack is not where the test wants it".to_owned());
+        }
+        for figure in &self.half_the_rate_changes {
+            if figure.value.abs() > MUCH {
+                doubts.push(format!(
+                    "half the rate changes {} by {}: take more periods (test.periods)",
+                    figure.name,
+                    percent(figure.value)
+                ));
+            }
+        }
+        doubts
+    }
+
+    /// What is no number in a table: how fast, whether it broke, where it began, where the crack is, what the rate changes. Each with a name.
+    pub fn sentences(&self) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        let mut say = |name: &str, text: String| found.push((name.to_owned(), text));
+        say(
+            "rate",
+            format!(
+                "{}; lowest frequency about {} Hz",
+                shown(self.rate_m_s, "m/s"),
+                significant(self.lowest_frequency_hz, 3)
+            ),
+        );
+        if !self.broken {
+            say("broken", "no: the stroke was done first".to_owned());
+        }
+        if let Some(first) = &self.first_broken {
+            let place = first.place_m.map(|x| significant(1e3 * x, 4)).join(", ");
+            say(
+                "first bond",
+                format!(
+                    "at {}, {} of travel, by {} at [{place}] mm",
+                    shown(first.force_n, "N"),
+                    shown(first.travel_m, "m"),
+                    first.cause.name().replace('_', " "),
+                ),
+            );
+        }
+        if let Some(crack) = &self.crack {
+            let is = if crack.is_within {
+                "within"
+            } else {
+                "not within"
+            };
+            say(
+                "crack",
+                format!(
+                    "{} bonds {} from the middle, +- {}; {is} {}, where {:.0} % of them are",
+                    crack.bonds,
+                    shown(crack.offset_m, "m"),
+                    shown(crack.spread_m, "m"),
+                    shown(crack.within_m, "m"),
+                    100.0 * crack.share_within
+                ),
+            );
+        }
+        if !self.half_the_rate_changes.is_empty() {
+            let changes = self.half_the_rate_changes.iter();
+            let listed: Vec<String> = changes
+                .map(|figure| format!("{} by {}", figure.name, percent(figure.value)))
+                .collect();
+            say("half the rate", format!("changes {}", listed.join(", ")));
+        }
+        found
+    }
+}
+
+impl fmt::Display for TestResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "test         {}", self.kind)?;
+        let tables = [&self.dimensions, &self.figures, &self.calibration];
+        let names = tables.into_iter().flatten().map(|figure| figure.name.len());
+        let width = names.max().unwrap_or_default();
+        for figure in tables.into_iter().flatten() {
+            writeln!(f, "  {}", line(figure, width))?;
+        }
+        for (name, text) in self.sentences() {
+            writeln!(f, "  {name:width$} {text}")?;
+        }
+        Ok(())
+    }
+}
+
+fn line(figure: &Figure, width: usize) -> String {
+    let mut text = format!(
+        "{:width$} {}",
+        figure.name,
+        shown(figure.value, &figure.unit)
+    );
+    if let (Some(theory), Some(error)) = (figure.theory, figure.error) {
+        text += &format!(
+            "   theory {}   error {}",
+            shown(theory, &figure.unit),
+            percent(error)
+        );
+    }
+    text
+}

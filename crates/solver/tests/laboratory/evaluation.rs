@@ -1,0 +1,249 @@
+//! What is made of a record that is known.
+
+use dem_io::scene::{BondKind, Test, TestKind};
+use dem_run::laboratory::evaluate::{Evidence, TestResult, evaluate};
+use dem_run::laboratory::record::{BrokenBond, Record, Row};
+use dem_run::laboratory::setup::{Setup, Specimen};
+use dem_run::laboratory::theory::{Beam, KAPPA};
+use dem_run::physics::bond::failure::Cause;
+
+const BEAM: Beam = Beam {
+    span_m: 0.18,
+    load_distance_m: 0.08,
+    width_m: 0.03,
+    height_m: 0.035,
+};
+const MODULUS: f64 = 12.05e6;
+const STRENGTH: f64 = 0.21e6;
+/// Play before the pins touch, m.
+const PLAY: f64 = 0.0002;
+/// What gives way at the pins, m/N.
+const SOFT: f64 = 4e-6;
+
+pub(crate) fn test(kind: TestKind) -> Test {
+    Test {
+        kind,
+        body: "bar".to_owned(),
+        moves: vec!["pin".to_owned()],
+        direction: [0.0, 0.0, -1.0],
+        stroke_m: 0.005,
+        rate_m_s: Some(0.01),
+        periods: 20.0,
+        rate_check: false,
+        young_modulus_pa: Some(MODULUS),
+        poisson_ratio: 0.3,
+        strength_pa: Some(STRENGTH),
+        span_m: None,
+        load_distance_m: None,
+        width_m: None,
+        height_m: None,
+        length_m: None,
+        area_m2: None,
+    }
+}
+
+pub(crate) fn setup(specimen: Specimen) -> Setup {
+    Setup {
+        specimen,
+        direction: [0.0, 0.0, -1.0],
+        along: [1.0, 0.0, 0.0],
+        middle_m: [0.09, 0.015, 0.0175],
+        crack_within_m: 0.04,
+        moving: vec![0],
+        resting: vec![1],
+        gauge_m: 0.05,
+        mean_radius_m: 0.001,
+    }
+}
+
+/// Force in proportion to the deflection of the body up to `largest`, then a fall to a tenth; the load travels further by what gives way at it.
+pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
+    let rows = (0..=1100).map(|i| {
+        let share = f64::from(i) / 1000.0;
+        let force_n = if share <= 1.0 {
+            share * largest
+        } else {
+            0.1 * largest
+        };
+        let deflection_m = share * largest / stiffness;
+        Row {
+            time_s: share,
+            travel_m: PLAY + deflection_m + SOFT * share * largest,
+            force_n,
+            deflection_m,
+        }
+    });
+    let broken = [(0.8, 7), (1.0, 3)];
+    let broken = broken.map(|(time_s, bond)| BrokenBond {
+        time_s,
+        bond,
+        cause: Cause::VonMises,
+    });
+    let mut record = Record::default();
+    record.rows = rows.collect();
+    record.broken = broken.to_vec();
+    record
+}
+
+pub(crate) const PLACES: [[f64; 3]; 2] = [[0.1, 0.01, 0.002], [0.15, 0.02, 0.01]];
+
+pub(crate) fn evaluated(test: &Test, setup: &Setup, record: &Record, broken: bool) -> TestResult {
+    let bonds = dem_io::scene_from_text(SCENE, "scene.toml", &[])
+        .unwrap()
+        .bonds;
+    let bonds: &BondKind = &bonds["clay"];
+    evaluate(&Evidence {
+        test,
+        setup,
+        record,
+        places_m: &PLACES,
+        bonds: Some(bonds),
+        lowest_frequency_hz: 40.0,
+        broken,
+    })
+}
+
+const SCENE: &str = r#"version = 1
+[run]
+end_time = 1
+[materials.clay]
+density = 2000
+[bonds.clay]
+young_modulus = "15 MPa"
+poisson_ratio = 0.3
+failure = { von_mises = "0.185 MPa" }
+[bodies.bar]
+particles = [[0, 0, 0, 1]]
+material = "clay"
+"#;
+
+#[track_caller]
+fn assert_near(got: Option<f64>, wanted: f64) {
+    let got = got.unwrap();
+    assert!(
+        (got / wanted - 1.0).abs() < 1e-9,
+        "{got:e} is not {wanted:e}"
+    );
+}
+
+#[test]
+fn a_beam_by_its_force_and_way() {
+    let test = test(TestKind::FourPointBending);
+    // A body a tenth stiffer and stronger than wanted.
+    let stiffness = 1.1 * BEAM.stiffness_n_m(MODULUS, 0.3, KAPPA);
+    let force = 1.1 * BEAM.force_n(STRENGTH);
+    let record = record(stiffness, force);
+    let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
+    let by_travel = 1.0 / (1.0 / stiffness + SOFT);
+    assert_near(result.figure("stiffness"), by_travel);
+    assert_near(result.figure("stiffness of the body"), stiffness);
+    assert_near(result.figure("modulus of the body"), 1.1 * MODULUS);
+    let shear = BEAM.shear_over_bending(0.3, KAPPA);
+    let without = by_travel / stiffness * 1.1 * MODULUS / (1.0 + shear);
+    assert_near(result.figure("modulus without shear"), without);
+    assert_near(result.figure("modulus with shear"), without * (1.0 + shear));
+    assert_near(result.figure("failure force"), force);
+    assert_near(result.figure("strength"), 1.1 * STRENGTH);
+    assert_near(result.figure("failure travel"), force / by_travel);
+    for name in [
+        "stiffness of the body",
+        "modulus of the body",
+        "failure force",
+        "strength",
+    ] {
+        let figure = result.figures.iter().find(|f| f.name == name).unwrap();
+        assert!((figure.error.unwrap() - 0.1).abs() < 1e-9, "{figure:?}");
+    }
+    let calibrated = |name: &str| {
+        let found = result.calibration.iter().find(|figure| figure.name == name);
+        found.map(|figure| figure.value)
+    };
+    assert_near(
+        calibrated("modulus of bonds for that wanted"),
+        15e6 * MODULUS / (1.1 * MODULUS),
+    );
+    assert_near(
+        calibrated("strength of bonds for that wanted"),
+        0.185e6 / 1.1,
+    );
+
+    let first = result.first_broken.clone().unwrap();
+    assert_near(Some(first.force_n), 0.8 * force);
+    assert_eq!(first.place_m, PLACES[0]);
+    let crack = result.crack.clone().unwrap();
+    assert_near(Some(crack.offset_m), 0.035);
+    assert_near(Some(crack.spread_m), 0.025);
+    assert!(crack.is_within);
+    assert_near(Some(crack.share_within), 0.5);
+    assert!(result.doubts().is_empty());
+}
+
+#[test]
+fn a_body_that_holds_has_no_strength() {
+    let test = test(TestKind::FourPointBending);
+    let record = record(2e4, 50.0);
+    let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, false);
+    for name in ["failure force", "strength", "failure travel"] {
+        assert_eq!(result.figure(name), None, "{name}");
+    }
+    assert_near(result.figure("largest force"), 50.0);
+    assert!(result.to_string().contains("the stroke was done first"));
+}
+
+#[test]
+fn an_empty_record_has_no_figures() {
+    let test = test(TestKind::Compression);
+    let bar = Specimen::Bar {
+        length_m: 0.1,
+        area_m2: 0.001,
+    };
+    let empty = Record::default();
+    let result = evaluated(&test, &setup(bar), &empty, false);
+    assert!(result.figures.is_empty(), "{:?}", result.figures);
+}
+
+#[test]
+fn bars_and_discs() {
+    let (length_m, area_m2) = (0.1, 0.0009);
+    let bar = Specimen::Bar { length_m, area_m2 };
+    let record = record(3e5, 200.0);
+    for kind in [TestKind::Compression, TestKind::Tension] {
+        let result = evaluated(&test(kind), &setup(bar), &record, true);
+        assert_near(result.figure("strength"), 200.0 / 0.0009);
+        // By the elongation of the middle, which is 50 mm long.
+        assert_near(result.figure("modulus of the body"), 3e5 * 0.05 / 0.0009);
+        assert_near(result.figure("stiffness"), 1.0 / (1.0 / 3e5 + SOFT));
+    }
+    let disc = Specimen::Disc {
+        diameter_m: 0.05,
+        thickness_m: 0.02,
+    };
+    let result = evaluated(&test(TestKind::BrazilianDisc), &setup(disc), &record, true);
+    assert_near(
+        result.figure("strength"),
+        400.0 / (std::f64::consts::PI * 0.001),
+    );
+}
+
+#[test]
+fn a_crack_elsewhere_and_a_rate_that_matters_are_doubts() {
+    let test = test(TestKind::FourPointBending);
+    let mut setup = setup(Specimen::Beam(BEAM));
+    setup.crack_within_m = 0.03;
+    let mut slow = evaluated(&test, &setup, &record(2e4, 50.0), true);
+    let fast = evaluated(&test, &setup, &record(2e4, 40.0), true);
+    slow.compare(&fast);
+    let change = slow
+        .half_the_rate_changes
+        .iter()
+        .find(|f| f.name == "failure force");
+    assert_near(change.map(|figure| figure.value), 0.25);
+    let doubts = slow.doubts().join("; ");
+    assert!(doubts.contains("the crack is not where"), "{doubts}");
+    assert!(
+        doubts.contains("half the rate changes failure force by +25.0 %"),
+        "{doubts}"
+    );
+    // Its slope has not changed.
+    assert!(!doubts.contains("stiffness"), "{doubts}");
+}

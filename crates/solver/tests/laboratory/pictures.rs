@@ -1,0 +1,85 @@
+//! The curve and the crack as pictures.
+
+use dem_io::results::svg;
+use dem_io::scene::TestKind;
+use dem_run::laboratory::crack::{CrackPicture, crack_svg};
+use dem_run::laboratory::page::curve;
+use dem_run::laboratory::setup::Specimen;
+use dem_run::laboratory::theory::Beam;
+
+use crate::evaluation::{PLACES, evaluated, record, setup, test};
+
+const BEAM: Beam = Beam {
+    span_m: 0.17,
+    load_distance_m: 0.08,
+    width_m: 0.03,
+    height_m: 0.035,
+};
+
+#[test]
+fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
+    let record = record(2e4, 50.0);
+    let test = test(TestKind::FourPointBending);
+    let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
+    let plot = curve(&record, &result);
+    let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["travel of what loads", "deflection of the body", "theory"]
+    );
+    // The body's line goes through the origin and ends where it broke.
+    let of_body = &plot.lines[1].points;
+    assert!(of_body[0].iter().all(|x| x.abs() < 1e-9));
+    let end = of_body.last().unwrap();
+    assert!((end[0] - 50.0 / 2e4).abs() < 1e-9 && (end[1] - 50.0).abs() < 1e-9);
+    let theory = &plot.lines[2].points;
+    let stiffness = BEAM.stiffness_n_m(12.05e6, 0.3, 5.0 / 6.0);
+    assert!((theory[1][1] / theory[1][0] / stiffness - 1.0).abs() < 1e-9);
+    let (wanted, _) = plot.reference.clone().unwrap();
+    assert!((wanted / BEAM.force_n(0.21e6) - 1.0).abs() < 1e-12);
+    assert!(svg(&plot).contains("displacement (mm)"));
+}
+
+#[test]
+fn the_crack_is_drawn_where_the_bonds_were() {
+    let setup = setup(Specimen::Beam(BEAM));
+    // Two particles at opposite corners: the picture reaches from 0 to 180 mm and from 0 to 35 mm.
+    let spheres = [[0.001, 0.015, 0.001, 0.001], [0.179, 0.015, 0.034, 0.001]];
+    let broken = [(PLACES[0], 0.8), (PLACES[1], 1.0)];
+    let text = crack_svg(&CrackPicture {
+        setup: &setup,
+        spheres: &spheres,
+        broken: &broken,
+        crack: None,
+    });
+    assert!(text.starts_with("<!-- dem-run plot -->\n<svg "));
+    assert!(text.trim_end().ends_with("</svg>"));
+    let dots: Vec<[f64; 2]> = text
+        .split_once("<g id=\"broken\">")
+        .unwrap()
+        .1
+        .split_once("</g>")
+        .unwrap()
+        .0
+        .lines()
+        .filter_map(|line| {
+            let number = |key: &str| -> Option<f64> {
+                let (_, rest) = line.split_once(key)?;
+                rest.split('"').next()?.parse().ok()
+            };
+            Some([number("cx=\"")?, number("cy=\"")?])
+        })
+        .collect();
+    let scale = (640.0 - 48.0) / 0.18;
+    for (dot, (place, _)) in dots.iter().zip(&broken) {
+        assert!((dot[0] - (24.0 + scale * place[0])).abs() < 0.06, "{dot:?}");
+        assert!(
+            (dot[1] - (44.0 + scale * (0.035 - place[2]))).abs() < 0.06,
+            "{dot:?}"
+        );
+    }
+    assert_eq!(dots.len(), 2);
+    // Early and late.
+    assert!(text.contains("fill=\"#440154\"/>\n") && text.contains("fill=\"#fde725\"/>\n"));
+    assert!(text.contains("2 broken bonds"));
+}

@@ -1,0 +1,238 @@
+//! Laboratory tests from end to end.
+
+use std::f64::consts::PI;
+use std::fs;
+
+use serde_json::Value;
+
+use crate::{Bench, root, scene_of_data};
+
+/// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The bonds are rods of 4 mm by which it has a closed form.
+fn bar() -> String {
+    let particles: Vec<String> = (0..11)
+        .map(|i| format!("[0, 0, {}, 0.002]", 0.004 * f64::from(i)))
+        .collect();
+    let bonds: Vec<String> = (0..10).map(|i| format!("[{i}, {}]", i + 1)).collect();
+    format!(
+        r#"version = 1
+[run]
+[materials.clay]
+density = 2000
+[bonds.clay]
+young_modulus = "15 MPa"
+poisson_ratio = 0.3
+failure = {{ tension = "0.2 MPa" }}
+[bodies.bar]
+particles = [{}]
+bond_list = [{}]
+material = "clay"
+bonds = "clay"
+[sets.foot]
+particles = [0]
+[sets.head]
+particles = [10]
+[supports.foot]
+of = "foot"
+fixed = true
+[test]
+kind = "tension"
+moves = ["head"]
+direction = [0, 0, 1]
+stroke = "1 mm"
+length = "40 mm"
+area = {}
+young_modulus = "15 MPa"
+strength = "0.2 MPa"
+"#,
+        particles.join(", "),
+        bonds.join(", "),
+        PI * 4e-6,
+    )
+}
+
+fn figure<'a>(test: &'a Value, name: &str) -> &'a Value {
+    [
+        "figures",
+        "calibration",
+        "dimensions",
+        "half_the_rate_changes",
+    ]
+    .iter()
+    .flat_map(|part| test[part].as_array().unwrap())
+    .find(|figure| figure["name"] == name)
+    .unwrap_or_else(|| panic!("no {name} in {test}"))
+}
+
+fn value(test: &Value, name: &str) -> f64 {
+    figure(test, name)["value"].as_f64().unwrap()
+}
+
+fn summary(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn a_bar_that_is_pulled_has_the_modulus_and_the_strength_of_its_bonds() {
+    let bench = Bench::new();
+    let scene = bench.write("bar.toml", bar());
+    let said = summary(&bench.good(&scene, &["--json", "--out", "out"]));
+    assert_eq!(said["ended_by"], "breakage");
+    let test = &said["test"];
+    assert_eq!(test["broken"], true);
+    for (name, wanted, tolerance) in [
+        ("modulus of the body", 15e6, 2e-3),
+        ("stiffness", 15e6 * PI * 4e-6 / 0.04, 2e-3),
+        ("failure force", 0.2e6 * PI * 4e-6, 5e-3),
+        ("strength", 0.2e6, 5e-3),
+        ("failure travel", 0.2 / 15.0 * 0.04, 1e-2),
+        ("strength over that of the bonds", 1.0, 5e-3),
+    ] {
+        let off = value(test, name) / wanted - 1.0;
+        assert!(off.abs() < tolerance, "{name}: {off}");
+    }
+    assert_eq!(test["first_broken"]["cause"], "tension");
+    let changes = test["half_the_rate_changes"].as_array().unwrap();
+    assert!(changes.len() >= 4, "{changes:?}");
+    assert!(
+        value_of_change(changes, "failure force").abs() < 0.01,
+        "{changes:?}"
+    );
+    // The test is also on the page.
+    let page = fs::read_to_string(bench.path("out/test.html")).unwrap();
+    for part in [
+        "<h1>tension</h1>",
+        "<td>failure force</td>",
+        "<svg ",
+        "half the rate",
+        "</html>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert_eq!(page.matches("<svg ").count(), 2);
+    assert!(!page.contains("src="), "the page needs other files");
+    for name in ["force-displacement.svg", "crack.svg"] {
+        assert!(bench.path("out/plots").join(name).is_file(), "{name}");
+    }
+    // All of it can be replaced.
+    bench.good(
+        &scene,
+        &["--out", "out", "--force", "--set", "test.rate_check=false"],
+    );
+}
+
+fn value_of_change(changes: &[Value], name: &str) -> f64 {
+    let found = changes.iter().find(|change| change["name"] == name);
+    found.unwrap()["value"].as_f64().unwrap()
+}
+
+#[test]
+fn a_test_that_goes_on_says_the_same() {
+    let bench = Bench::new();
+    let scene = bench.write("bar.toml", bar());
+    let once = ["--set", "test.rate_check=false", "--json", "--out"];
+    let whole = summary(&bench.good(&scene, &[&once[..], &["whole"]].concat()));
+    let end_s = whole["simulated_s"].as_f64().unwrap();
+    let half = format!("run.end_time={}", 0.7 * end_s);
+    let first = summary(&bench.good(&scene, &[&once[..], &["parts", "--set", &half]].concat()));
+    assert_eq!(first["test"]["broken"], false);
+    let parts = summary(&bench.good(&scene, &[&once[..], &["parts", "--resume"]].concat()));
+    // The step fits the end of the run, which was another one at first.
+    for name in [
+        "stiffness",
+        "modulus of the body",
+        "failure force",
+        "failure travel",
+    ] {
+        let off = value(&parts["test"], name) / value(&whole["test"], name) - 1.0;
+        assert!(off.abs() < 2e-3, "{name}: {off}");
+    }
+    for part in ["bonds", "is_within"] {
+        assert_eq!(parts["test"]["crack"][part], whole["test"]["crack"][part]);
+    }
+    let said = bench.bad(&scene, &[&once[..], &["parts", "--resume"]].concat(), 2);
+    assert!(said.contains("the body of this test has broken"), "{said}");
+}
+
+#[test]
+fn a_sample_is_bent_by_four_pins() {
+    let bench = Bench::new();
+    let packed = dem_tests::program("dem-pack")
+        .current_dir(bench.path(""))
+        .arg(root().join("data/shapes/bending-sample.stl"))
+        .args(["--diameter", "5mm..7mm", "--overlap", "0.296"])
+        .args(["--bonding-radius", "1.0", "--quiet", "-o", "sample.vtp"])
+        .status();
+    assert!(packed.unwrap().success());
+    let scene = scene_of_data("four-point-bending.toml");
+    let mut options = vec!["--body", "sample=sample.vtp", "--json", "--out", "out"];
+    for set in [
+        "test.periods=8",
+        "test.rate_check=false",
+        "measures.left={ of = \"support-left\", quantity = \"force_z\", at = \"smallest\" }",
+        "measures.right={ of = \"support-right\", quantity = \"force_z\", at = \"smallest\" }",
+    ] {
+        options.extend(["--set", set]);
+    }
+    let said = summary(&bench.good(&scene, &options));
+    assert_eq!(said["ended_by"], "breakage");
+    let test = &said["test"];
+    for (name, wanted) in [
+        ("span", 0.17),
+        ("load distance", 0.08),
+        ("width", 0.03),
+        ("height", 0.035),
+    ] {
+        let off = value(test, name) / wanted - 1.0;
+        // The spheres do not quite touch the surface everywhere.
+        assert!(off.abs() < 2e-3, "{name}: {off}");
+    }
+    // What the pins press with, the supports carry, but for inertia.
+    let force = value(test, "failure force");
+    let carried: f64 = said["measures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| -m["value"].as_f64().unwrap())
+        .sum();
+    assert!((carried / force - 1.0).abs() < 0.05, "{carried} {force}");
+    // The body by itself is stiffer than with what gives way at the pins.
+    assert!(value(test, "stiffness of the body") > value(test, "stiffness"));
+    let figure = figure(test, "failure force");
+    let off = force / figure["theory"].as_f64().unwrap() - 1.0;
+    assert!((figure["error"].as_f64().unwrap() - off).abs() < 1e-12);
+    assert!(said["energy_error"].as_f64().unwrap() < 0.02);
+    let crack = &test["crack"];
+    assert!(crack["bonds"].as_u64().unwrap() > 50);
+    assert_eq!(crack["bonds"], said["broken_bonds"]);
+}
+
+#[test]
+fn what_a_test_cannot_be_made_of() {
+    let bench = Bench::new();
+    let text = bar();
+    let loose = text.replace("bond_list = ", "# ");
+    let scene = bench.write("loose.toml", loose);
+    let said = bench.bad(&scene, &[], 2);
+    assert!(
+        said.contains("[test]: the body 'bar' has no bonds"),
+        "{said}"
+    );
+
+    let bent = text
+        .replace("kind = \"tension\"", "kind = \"three-point-bending\"")
+        .replace("moves = [\"head\"]", "moves = [\"plate\"]")
+        .replace("length = \"40 mm\"", "rate_check = false")
+        .replace("area = ", "periods = 9 # ")
+        .replace(
+            "[test]",
+            "[materials.steel]\nyoung_modulus = 1e9\n[contacts]\nclay-steel = { law = \"linear\", normal_stiffness = 1e4, restitution = 0.5 }\nclay-clay = { law = \"linear\", normal_stiffness = 1e4, restitution = 0.5 }\n[walls.plate]\nplane = { point = [0, 0, 1], normal = [0, 0, -1] }\nmaterial = \"steel\"\n[test]",
+        );
+    let scene = bench.write("bent.toml", bent);
+    let said = bench.bad(&scene, &[], 2);
+    assert!(
+        said.contains(
+            "a three-point-bending test has 1 moving and 2 fixed pins, but here are 1 and 0"
+        ),
+        "{said}"
+    );
+}
