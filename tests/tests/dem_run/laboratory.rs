@@ -186,7 +186,7 @@ fn a_sample_is_bent_by_four_pins() {
         // The spheres do not quite touch the surface everywhere.
         assert!(off.abs() < 2e-3, "{name}: {off}");
     }
-    // What the pins press with, the supports carry, but for inertia.
+    // What the pins press with, the supports carry, but for inertia and the damping of particles.
     let force = value(test, "failure force");
     let carried: f64 = said["measures"]
         .as_array()

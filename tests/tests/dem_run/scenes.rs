@@ -104,6 +104,51 @@ fn every_scene_of_data_is_planned_or_asks_for_its_body() {
 }
 
 #[test]
+fn materials_of_data_fit_into_a_scene() {
+    let bench = Bench::new();
+    bench.write("row.vtp", super::vtp_bytes(&super::row(5)));
+    for number in [1, 2] {
+        let path = root().join(format!("data/materials/filter-cake-table-{number}.toml"));
+        let material = std::fs::read_to_string(path).unwrap();
+        let text = format!(
+            "version = 1\nrun.end_time = \"1 us\"\n{material}\n[bodies.cake]\nfile = \"row.vtp\"\nmaterial = \"cake\"\nbonds = \"cake\"\n\
+             [walls.plate]\nplane = {{ point = [0, 0, \"-1 m\"], normal = [0, 0, 1] }}\nmaterial = \"steel\"\n"
+        );
+        let scene = bench.write("scene.toml", text);
+        let said = bench.good(&scene, &[]);
+        assert!(said.contains("verdict"), "{said}");
+    }
+}
+
+/// The bodies that scenes of `data` run with are those that their page tells how to make.
+#[test]
+fn bodies_of_data_are_as_said() {
+    let bench = Bench::new();
+    let page = std::fs::read_to_string(root().join("data/bodies/README.md")).unwrap();
+    let commands: Vec<&str> = page
+        .lines()
+        .filter(|line| line.starts_with("dem-pack "))
+        .collect();
+    assert_eq!(commands.len(), 2);
+    for command in commands {
+        let mut words: Vec<&str> = command.split(' ').skip(1).collect();
+        let kept = words.pop().unwrap();
+        let made = bench.path("made.vtp");
+        let done = dem_tests::program("dem-pack")
+            .current_dir(root())
+            .args(&words)
+            .arg(&made)
+            .arg("--quiet")
+            .status();
+        assert!(done.unwrap().success(), "{command}");
+        assert!(
+            std::fs::read(&made).unwrap() == std::fs::read(root().join(kept)).unwrap(),
+            "{kept} is not what its command makes"
+        );
+    }
+}
+
+#[test]
 fn quiet_means_quiet() {
     let bench = Bench::new();
     let scene = scene_of_data("spinning-bar.toml");

@@ -107,6 +107,7 @@ pub(crate) fn run_into(
     let settings = RunSettings {
         folder: Some(folder),
         resume,
+        test: None,
         threads: 1,
         interrupted: &interrupted,
     };

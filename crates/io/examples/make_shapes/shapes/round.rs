@@ -86,7 +86,7 @@ pub(crate) fn infinity_knot() -> Mesh {
 pub(crate) fn disc() -> Mesh {
     const SIDES: u32 = 96;
     let mut mesh = Mesh::default();
-    let rings = [-12.5, 12.5].map(|y| -> Vec<u32> {
+    let rings = [12.5, -12.5].map(|y| -> Vec<u32> {
         (0..SIDES)
             .map(|j| {
                 let (sin, cos) = (TAU * f64::from(j) / f64::from(SIDES)).sin_cos();
@@ -95,7 +95,7 @@ pub(crate) fn disc() -> Mesh {
             .collect()
     });
     join_rings(&mut mesh, &rings, false);
-    for (ring, y, from, to) in [(&rings[0], -12.5, 0, 1), (&rings[1], 12.5, 1, 0)] {
+    for (ring, y, from, to) in [(&rings[0], 12.5, 1, 0), (&rings[1], -12.5, 0, 1)] {
         let centre = mesh.vertex([0.0, y, 0.0]);
         for j in 0..ring.len() {
             let pair = [ring[j], ring[(j + 1) % ring.len()]];
