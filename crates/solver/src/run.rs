@@ -175,7 +175,7 @@ pub fn run(
     let mut saved = clock;
     let (ended_by, last) = loop {
         act(&mut state);
-        if let Some(problem) = went_through(&state, &bodies) {
+        if let Some(problem) = went_through(&state, scene, &bodies) {
             return Err(with_checkpoint(problem, files.as_ref()));
         }
         if let Some(files) = &mut files {

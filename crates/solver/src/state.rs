@@ -61,7 +61,7 @@ pub struct State {
     pub time_step_s: f64,
     /// The step before, s; 0 at the start.
     pub previous_time_step_s: f64,
-    /// Largest speed of a particle in the step before, m/s.
+    /// Largest speed of a particle in the step before, and where there are contacts that of a wall on top, m/s.
     pub fastest_m_s: f64,
     /// Bonds that broke in the last kick.
     pub broken: Vec<Break>,

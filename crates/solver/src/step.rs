@@ -115,7 +115,8 @@ pub fn move_on(state: &mut State) {
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
     if let Some(contacts) = &mut state.contacts {
         let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
-        contacts.room_m -= (state.fastest_m_s + of_walls_m_s) * state.time_step_s;
+        state.fastest_m_s += of_walls_m_s;
+        contacts.room_m -= state.fastest_m_s * state.time_step_s;
     }
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;

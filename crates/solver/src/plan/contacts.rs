@@ -167,6 +167,7 @@ pub(super) fn place_contacts(
     contacts.divide(p.len(), state.shares.len().max(1));
     // What overlaps now is no fruit of a break: it relaxes whenever it is let in at all.
     list_contacts(&mut contacts, &clusters.of_particle, p);
+    refuse_same_place(scene, &contacts, bodies, state)?;
     if scene.run.start_overlap == dem_io::scene::StartOverlap::Refuse {
         refuse_overlaps(scene, &contacts, bodies, state)?;
     }
@@ -223,6 +224,36 @@ fn need_pairs(
     Ok(())
 }
 
+/// Refuses two particles at one place: no force between them has a direction.
+fn refuse_same_place(
+    scene: &Scene,
+    contacts: &Contacts,
+    bodies: &[PlacedBody],
+    state: &State,
+) -> Result<()> {
+    let poses = &state.particles.poses;
+    let is_same = |pair: &&[u32; 2]| {
+        let [a, b] = pair.map(|i| &poses[i as usize]);
+        (b.place() - a.place()).norm() <= ROUNDING * a.radius_m().min(b.radius_m())
+    };
+    let Some(pair) = contacts.pairs.iter().find(is_same) else {
+        return Ok(());
+    };
+    let [a, b] = pair.map(|i| called(bodies, i));
+    Err(Diagnostic::input(
+        &scene.source,
+        format!("{a} and {b} stand at the same place"),
+        "move one of the bodies",
+    ))
+}
+
+fn called(bodies: &[PlacedBody], particle: u32) -> String {
+    match particle_of_file(bodies, particle) {
+        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
+        None => format!("particle {particle}"),
+    }
+}
+
 /// Refuses particles of different clusters that overlap: names the deepest pair.
 fn refuse_overlaps(
     scene: &Scene,
@@ -243,10 +274,7 @@ fn refuse_overlaps(
     let Some((overlap, pair)) = overlapping.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Ok(());
     };
-    let [a, b] = pair.map(|i| match particle_of_file(bodies, i) {
-        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
-        None => format!("particle {i}"),
-    });
+    let [a, b] = pair.map(|i| called(bodies, i));
     let more = match overlapping.len() {
         1 => String::new(),
         count => format!(", the deepest of {count} such pairs"),

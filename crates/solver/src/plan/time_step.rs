@@ -1,6 +1,6 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use beside it.
 
-use dem_io::scene::Scene;
+use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 
 use nalgebra::Vector3;
@@ -147,8 +147,9 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
         return 0.0;
     }
     let of_particles = state.particles.motions.iter().map(|m| m.velocity_m_s);
-    let of_walls = state.walls.iter().map(wall_velocity);
-    let start_m_s = Bounds::of(of_particles.chain(of_walls)).diagonal_m();
+    let of_walls = state.walls.iter().map(|wall| wall_speed(wall, state));
+    let start_m_s =
+        Bounds::of(of_particles.chain([[0.0; 3]])).diagonal_m() + of_walls.fold(0.0, f64::max);
     let gravity = Vector3::from(scene.run.gravity_m_s2);
     let g = gravity.norm();
     if g == 0.0 {
@@ -159,18 +160,55 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
     start_m_s.hypot(by_time.min(by_height))
 }
 
-/// Largest velocity of a wall, m/s, turning left out.
-fn wall_velocity(wall: &Wall) -> [f64; 3] {
-    use dem_io::scene::WallMotion;
+/// Largest speed of a wall where particles are, m/s.
+fn wall_speed(wall: &Wall, state: &State) -> f64 {
+    let pivot = Vector3::from(wall.frame.position_m);
+    let poses = state.particles.poses.iter();
+    let far_m = poses
+        .map(|pose| (pose.place() - pivot).norm())
+        .fold(0.0, f64::max);
+    let speed = |along: &[f64; 3], about: &[f64; 3]| {
+        Vector3::from(*along).norm() + Vector3::from(*about).norm() * far_m
+    };
     match &wall.motion {
-        WallMotion::Velocity { velocity_m_s, .. } => *velocity_m_s,
+        WallMotion::Fixed => 0.0,
+        WallMotion::Velocity {
+            velocity_m_s,
+            spin_rad_s,
+            factor,
+        } => {
+            let largest = match factor {
+                Factor::One | Factor::Ramp { .. } => 1.0,
+                Factor::Table(points) => points.iter().map(|p| p[1].abs()).fold(0.0, f64::max),
+            };
+            largest * speed(velocity_m_s, spin_rad_s)
+        }
+        WallMotion::Displacement {
+            displacement_m,
+            turn_rad,
+            factor,
+        } => {
+            let steepest_1_s = match factor {
+                Factor::One => 0.0,
+                Factor::Ramp { until_s } => 1.0 / until_s,
+                Factor::Table(points) => points
+                    .windows(2)
+                    .map(|w| ((w[1][1] - w[0][1]) / (w[1][0] - w[0][0])).abs())
+                    .fold(0.0, f64::max),
+            };
+            steepest_1_s * speed(displacement_m, turn_rad)
+        }
         WallMotion::Servo {
-            direction,
             largest_velocity_m_s,
             ..
-        } => direction.map(|d| d * largest_velocity_m_s),
-        WallMotion::Fixed | WallMotion::Displacement { .. } => [0.0; 3],
+        } => *largest_velocity_m_s,
     }
+}
+
+/// Largest step with which an impact at this speed, m/s, is followed well enough, s; infinite where nothing can touch.
+pub fn impact_step_s(state: &State, speed_m_s: f64) -> f64 {
+    let [k, c, _] = at_impact(state, speed_m_s);
+    SHARE_OF_IMPACT * safe_step(k, c)
 }
 
 /// How far anything can fall along `down` before it meets a wall or another particle, at most, m.

@@ -13,8 +13,8 @@ use crate::state::State;
 use crate::state::contacts::Memory;
 use crate::state::walls::{Wall, WallTouch};
 
-/// A wall so many times larger or smaller than all bodies together makes one ask for its unit.
-const OTHER_UNIT: f64 = 300.0;
+/// A wall whose size over that of all bodies together is outside this makes one ask for its unit.
+const OTHER_UNIT: [f64; 2] = [1.0 / 50.0, 300.0];
 
 /// The walls of a scene, in the order of their names. What is odd about them but harmless goes to `notes`.
 ///
@@ -54,7 +54,8 @@ pub(super) fn place_walls(
             ..Wall::standing(shape, frame(entry))
         };
         let touches = starting_touches(&wall, state);
-        if scene.run.start_overlap == StartOverlap::Refuse {
+        let is_through = touches.iter().any(|(_, touch)| touch.distance_m < 0.0);
+        if is_through || scene.run.start_overlap == StartOverlap::Refuse {
             refuse_touches(&place, name, &wall, &touches, bodies, state)?;
         }
         wall.touching = touches
@@ -163,7 +164,7 @@ fn question_size(
     };
     let size_m = shape.bounds().diagonal_m();
     let ratio = size_m / extent_m;
-    if (1.0 / OTHER_UNIT..OTHER_UNIT).contains(&ratio) {
+    if (OTHER_UNIT[0]..OTHER_UNIT[1]).contains(&ratio) {
         return;
     }
     let (times, than) = if ratio > 1.0 {
@@ -225,6 +226,7 @@ fn refuse_touches(
         (Shape::Plane(_), true) => {
             "turn the plane's normal to the side of the bodies, or move the bodies"
         }
+        (_, true) => "move the body or the wall: its centre is inside",
         _ => {
             "move the body or the wall; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press"
         }

@@ -9,7 +9,7 @@ use super::progress::Progress;
 use crate::check::limit::limit;
 use crate::check::linear::largest_contact_rate_1_s2;
 use crate::plan::bodies::{PlacedBody, particle_of_file};
-use crate::plan::time_step::{FARTHEST, smallest_radius_m};
+use crate::plan::time_step::{FARTHEST, impact_step_s, smallest_radius_m};
 use crate::stages::bonds::largest_strain;
 use crate::state::State;
 
@@ -22,6 +22,8 @@ const MORE_STRAIN: f64 = 0.02;
 const CONTACTS_EVERY: u64 = 8;
 /// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
 const STIFFER: f64 = 1.2;
+/// The step is looked at again when something is faster by this factor than the impacts that it allows for.
+const FASTER: f64 = 1.2;
 
 /// What the step of a run has to keep to.
 #[derive(Debug, Clone, Copy)]
@@ -70,6 +72,14 @@ impl Limits {
         if look {
             progress.limit_s = progress.limit_s.min(limit(state).step_s);
             self.take(state, progress.limit_s, "limit", files.as_deref_mut())?;
+        }
+        if state.contacts.is_some() && state.fastest_m_s > FASTER * progress.impact_speed_m_s {
+            // Loads, supports or bonds have made something faster than was foreseen.
+            progress.impact_speed_m_s = state.fastest_m_s;
+            let step_s = impact_step_s(state, state.fastest_m_s);
+            if let Some(safety) = self.safety {
+                self.take(state, step_s / safety, "speed", files.as_deref_mut())?;
+            }
         }
         let farthest_m = FARTHEST * self.smallest_radius_m;
         if state.contacts.is_some() && state.fastest_m_s * state.time_step_s > farthest_m {
@@ -138,16 +148,20 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
 }
 
 /// A particle that has gone through a wall, as a reason to stop.
-pub(super) fn went_through(state: &State, bodies: &[PlacedBody]) -> Option<Diagnostic> {
+pub(super) fn went_through(
+    state: &State,
+    scene: &Scene,
+    bodies: &[PlacedBody],
+) -> Option<Diagnostic> {
     let (n, particle) = (state.walls.iter().enumerate())
         .find_map(|(n, wall)| wall.crossed.map(|particle| (n, particle)))?;
     Some(Diagnostic::unstable(
         "",
         format!(
-            "at {:.6e} s the centre of {} has gone through wall {} of the scene (in the order of their names)",
+            "at {:.6e} s the centre of {} has gone through the wall '{}'",
             state.time_s,
             called(bodies, particle),
-            n + 1,
+            scene.walls.keys().nth(n).map_or("", String::as_str),
         ),
         "make its contact stiffer, push less hard, or take a smaller run.time_step",
     ))

@@ -38,6 +38,8 @@ pub struct Progress {
     pub(super) limit_strain: f64,
     /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
     pub(super) contact_rate_1_s2: f64,
+    /// Speed of the impacts that the step allows for, m/s.
+    pub(super) impact_speed_m_s: f64,
     /// Since when the kinetic energy has been small against the elastic, s.
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
@@ -118,6 +120,7 @@ impl Progress {
             rhythm,
             limit_s: choice.foreseen_s,
             contact_rate_1_s2: choice.contact_rate_1_s2,
+            impact_speed_m_s: choice.impact_speed_m_s,
             ..Self::default()
         }
     }

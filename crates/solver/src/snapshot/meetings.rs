@@ -15,7 +15,7 @@ pub(super) struct Meetings {
     /// Cluster of each particle, all clusters, bonds broken since the last search.
     clusters: Option<(Vec<u32>, Vec<Cluster>, Vec<u32>)>,
     fastest_m_s: f64,
-    /// Pairs that remember something, in order, and what.
+    /// All listed pairs, in order, and what they remember: one that has come to touch in the last step remembers nothing yet, but it was listed.
     contacts: Vec<([u32; 2], Memory)>,
     /// Energy lost by sliding and rolling, booked at each particle, J.
     lost_j: Vec<[f64; 2]>,
@@ -51,9 +51,7 @@ impl Meetings {
                 )
             }),
             fastest_m_s: state.fastest_m_s,
-            contacts: remembered
-                .filter(|(_, memory)| *memory != Memory::default())
-                .collect(),
+            contacts: remembered.collect(),
             lost_j: (state.contacts.as_ref()).map_or(Vec::new(), |c| c.lost_j.clone()),
             walls: (state.walls.iter())
                 .map(|wall| WallState {

@@ -148,3 +148,31 @@ fn a_particle_that_is_pushed_through_a_wall_is_caught() {
     }
     assert_eq!(state.walls[0].crossed, Some(0));
 }
+
+#[test]
+fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
+    let head = "version = 1\nrun.end_time = 0.2\n\
+         materials.glass = { density = 2500, young_modulus = \"50 MPa\" }\n\
+         contacts.glass-glass = { restitution = 0.5 }\n\
+         bodies.ball = { particles = [[0.05, 0, 0.02, 5e-3]], material = \"glass\" }\n\
+         [walls.paddle]\nbox = { min = [-0.1, -0.1, -0.01], max = [0.1, 0.1, 0] }\nmaterial = \"glass\"\n";
+    let step_of = |motion: &str| {
+        let Plan { state, step, .. } = planned(&format!("{head}{motion}\n"));
+        (state.time_step_s, step.impact_speed_m_s)
+    };
+    for (motion, least_m_s) in [
+        ("angular_velocity = [0, -10, 0]", 0.5),
+        ("displacement = [0, 0, 0.05]\nramp = 0.1", 0.5),
+        (
+            "turn = { axis = [0, 1, 0], angle = \"-45 deg\" }\nramp = 0.1",
+            0.39,
+        ),
+    ] {
+        let (step_s, speed_m_s) = step_of(motion);
+        assert!(
+            speed_m_s >= least_m_s && speed_m_s < 2.0 * least_m_s,
+            "{motion}: {speed_m_s} m/s"
+        );
+        assert!(step_s < 1e-4, "{motion}: {step_s} s");
+    }
+}
