@@ -6,7 +6,6 @@ mod fragment;
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
@@ -18,8 +17,7 @@ use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
-use crate::laboratory::arrange::arrange;
-use crate::laboratory::evaluate::TestResult;
+use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::plan::plan;
 use crate::run::{RunSettings, run as run_plan};
@@ -114,8 +112,10 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         )),
         Some(Command::Check { scene }) => in_pool(scene, |threads| {
             let (scene_data, bodies) = scene.read()?;
-            let arranged = arrange(&scene_data, &bodies, threads, 1.0)?;
-            let scene_data = arranged.map_or(scene_data, |arranged| arranged.scene);
+            let scene_data = match lowest_in_test_hz(&scene_data, &bodies, threads)? {
+                Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
+                None => scene_data,
+            };
             check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
@@ -309,17 +309,24 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         }
         None => None,
     };
-    let given = (scene, bodies);
-    let (scene, test) = match arrange(&given.0, &given.1, threads, 1.0)? {
-        Some(arranged) => {
-            let settings = test_settings(&given, arranged.lowest_frequency_hz);
-            (arranged.scene, Some(settings))
+    let test = lowest_in_test_hz(&scene, &bodies, threads)?
+        .map(|lowest_hz| test_settings(&scene, &bodies, lowest_hz));
+    let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
+    let twice = match &test {
+        Some(test) if checked => {
+            let scene = arrange(&scene, test.lowest_frequency_hz, 2.0)?;
+            Some((scene, bodies.clone(), test.clone()))
         }
-        None => (given.0.clone(), None),
+        _ => None,
     };
-    let plan = plan(&scene, given.1.clone(), threads, arguments.scene.force_step)?;
+    let scene = match &test {
+        Some(test) => arrange(&scene, test.lowest_frequency_hz, 1.0)?,
+        None => scene,
+    };
+    let force_step = arguments.scene.force_step;
+    let prepared = plan(&scene, bodies, threads, force_step)?;
     if !arguments.quiet {
-        for note in &plan.notes {
+        for note in &prepared.notes {
             // Nobody to read it is no reason to stop.
             let _ = writeln!(std::io::stderr(), "note: {note}");
         }
@@ -340,6 +347,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     } else {
         progress_bar()
     };
+    let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
     let summary = interrupt.heeded_by(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
@@ -348,16 +356,20 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             interrupted,
             test,
         };
-        let checked = scene.test.as_ref().is_some_and(|test| test.rate_check);
-        if let (true, Some(test)) = (checked, &mut settings.test) {
-            let force_step = arguments.scene.force_step;
-            test.at_twice_the_rate =
-                at_twice_the_rate(&given, threads, force_step, interrupted, &bar)?;
+        if let (Some((scene, bodies, test)), Some(own)) = (twice, &mut settings.test) {
+            bar.set_prefix("at twice the rate ");
+            let plan = plan(&scene, bodies, threads, force_step)?;
+            let settings = RunSettings {
+                folder: None,
+                resume: None,
+                threads,
+                interrupted,
+                test: Some(test),
+            };
+            own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
+            bar.set_prefix("");
         }
-        drop(given);
-        run_plan(plan, &scene, settings, &|share| {
-            bar.set_position((1000.0 * share) as u64);
-        })
+        run_plan(prepared, &scene, settings, &progress)
     });
     bar.finish_and_clear();
     let summary = summary?;
@@ -373,44 +385,18 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     }
 }
 
-/// A scene and its bodies as they were read.
-type Given = (Scene, BTreeMap<String, Body>);
-
 /// What a run has to know of the test of a scene.
-fn test_settings((scene, bodies): &Given, lowest_frequency_hz: f64) -> TestSettings {
+fn test_settings(
+    scene: &Scene,
+    bodies: &BTreeMap<String, Body>,
+    lowest_frequency_hz: f64,
+) -> TestSettings {
     let body = scene.test.as_ref().and_then(|test| bodies.get(&test.body));
     TestSettings {
         lowest_frequency_hz,
         volume_m3: body.and_then(|body| body.about.shape_volume_m3),
         at_twice_the_rate: None,
     }
-}
-
-/// What comes of the test of a scene at twice its rate, of which no file is written.
-fn at_twice_the_rate(
-    given: &Given,
-    threads: usize,
-    force_step: bool,
-    interrupted: &AtomicBool,
-    bar: &ProgressBar,
-) -> Result<Option<TestResult>> {
-    let Some(arranged) = arrange(&given.0, &given.1, threads, 2.0)? else {
-        return Ok(None);
-    };
-    let settings = RunSettings {
-        folder: None,
-        resume: None,
-        threads,
-        interrupted,
-        test: Some(test_settings(given, arranged.lowest_frequency_hz)),
-    };
-    let plan = plan(&arranged.scene, given.1.clone(), threads, force_step)?;
-    bar.set_prefix("at twice the rate ");
-    let summary = run_plan(plan, &arranged.scene, settings, &|share| {
-        bar.set_position((1000.0 * share) as u64);
-    })?;
-    bar.set_prefix("");
-    Ok(summary.test)
 }
 
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.

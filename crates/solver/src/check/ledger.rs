@@ -146,6 +146,11 @@ impl Ledger {
         self.floor_j
     }
 
+    /// Mass of all particles, kg.
+    pub fn mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+
     /// What a run could have in energy at most: that of the start, what loads, supports, walls and gravity gave, J.
     pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();

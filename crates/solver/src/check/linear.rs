@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::touch::{Ball, Foot, Touch, torques, touch, touch_at_wall};
+use crate::physics::contact::touch::{Foot, Touch, torques, touch, touch_at_wall};
 use crate::physics::contact::{Linearised, NormalLaw, linearised};
 use crate::physics::number::Triple;
 use crate::state::State;
@@ -33,7 +33,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
             if overlap_m > 0.0 {
                 let [a, b] = pair.map(|end| end as usize);
                 let apart = p.poses[b].place() - p.poses[a].place();
-                let mut touch = touch(triple(&apart), [a, b].map(|i| ball(p, i)), 0.0);
+                let mut touch = touch(apart.into(), [a, b].map(|i| p.ball_at_rest(i)), 0.0);
                 touch.overlap_m = overlap_m;
                 let kind = &contacts.kinds[contacts.kind(pair)];
                 found.push(LinearContact {
@@ -61,7 +61,7 @@ fn at_wall(
     let i = there.particle as usize;
     let overlap_m = there.memory.slid[3];
     let touch = wall_touch(particles, i, &Vector3::from(there.normal), overlap_m);
-    let kind = &wall.kinds[usize::from(wall.kind_of[usize::from(materials[i])])];
+    let kind = wall.kind(materials[i]);
     LinearContact {
         ends: [None, Some(there.particle)],
         touch,
@@ -72,23 +72,13 @@ fn at_wall(
 /// A particle at rest against a wall at rest.
 fn wall_touch(particles: &Particles, i: usize, normal: &Vector3<f64>, overlap_m: f64) -> Touch {
     let foot = Foot {
-        normal: triple(normal),
-        normal_before: triple(normal),
+        normal: (*normal).into(),
+        normal_before: (*normal).into(),
         distance_m: particles.poses[i].radius_m() - overlap_m,
         velocity_m_s: Triple(0.0, 0.0, 0.0),
         spin_rad_s: Triple(0.0, 0.0, 0.0),
     };
-    touch_at_wall(&foot, ball(particles, i), 0.0)
-}
-
-fn ball(particles: &Particles, i: usize) -> Ball {
-    Ball {
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
-        radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: particles.motions[i].inverse_mass,
-        inverse_inertia_per_kg_m2: particles.motions[i].inverse_inertia,
-    }
+    touch_at_wall(&foot, particles.ball_at_rest(i), 0.0)
 }
 
 fn answer(kind: &ContactKind, touch: &Touch) -> Linearised {
@@ -136,7 +126,7 @@ pub fn linear_wrenches(
         let [a, b] = contact.ends.map(moving);
         let spins = [a, b].map(|m| Vector3::from(m.spin_rad_s));
         let velocities = [a, b].map(|m| Vector3::from(m.velocity_m_s));
-        let n = vector(touch.normal);
+        let n = Vector3::from(touch.normal);
         let [lever_a, lever_b] = touch.levers_m;
         let relative =
             velocities[1] - velocities[0] - (lever_a * spins[0] + lever_b * spins[1]).cross(&n);
@@ -144,10 +134,10 @@ pub fn linear_wrenches(
         let force = -along * closing - across * (relative - closing);
         let turning = spins[1] - spins[0];
         let moment = -rolling * (turning - turning.dot(&n) * n);
-        let on_ends = torques(touch, triple(&force), triple(&moment));
+        let on_ends = torques(touch, force.into(), moment.into());
         for ((end, torque), side) in contact.ends.into_iter().zip(on_ends).zip([-1.0, 1.0]) {
             if let Some(i) = end {
-                wrenches[i as usize].add(&(side * force), &vector(torque));
+                wrenches[i as usize].add(&(side * force), &torque.into());
             }
         }
     }
@@ -181,9 +171,8 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
-            let material = usize::from(contacts.materials[i]);
-            let kind = &wall.kinds[usize::from(wall.kind_of[material])];
-            let overlap_m = touch.memory.slid[3].max(0.0);
+            let kind = wall.kind(contacts.materials[i]);
+            let overlap_m = touch.memory.slid[3];
             kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.motions[i].inverse_mass
         })
     });
@@ -206,7 +195,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
             wall_touch(p, i, &n, overlap_m)
         } else {
             let apart = Triple(2.0 * p.poses[i].radius_m() - overlap_m, 0.0, 0.0);
-            touch(apart, [ball(p, i); 2], 0.0)
+            touch(apart, [p.ball_at_rest(i); 2], 0.0)
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
         let per_mass = ends * p.motions[i].inverse_mass;
@@ -271,12 +260,4 @@ fn overlap_at_impact_m(
         }
         Law::Linear(law) => speed_m_s * (mass_kg / law.normal_n_m).sqrt(),
     }
-}
-
-fn triple(v: &Vector3<f64>) -> Triple<f64> {
-    Triple(v.x, v.y, v.z)
-}
-
-fn vector(t: Triple<f64>) -> Vector3<f64> {
-    Vector3::new(t.0, t.1, t.2)
 }

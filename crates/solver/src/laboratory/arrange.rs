@@ -10,37 +10,22 @@ use crate::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;
 use crate::state::State;
 
-/// A scene whose test has been given its rate and its end, and what that came from.
-#[derive(Debug, Clone)]
-pub struct Arranged {
-    /// The scene, in which walls and sets move.
-    pub scene: Scene,
-    /// Lowest frequency of the body as it stands in the test, Hz.
-    pub lowest_frequency_hz: f64,
-}
-
-/// Gives a scene with a test its rate, times `faster`: walls in `moves` get a velocity, sets a support that moves, the run its end.
-/// The velocity rises evenly during the first period, which leaves the lowest mode at rest. None: the scene has no test.
+/// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets a support that moves, the run its end. A scene without a test stays
+/// as it is. The velocity rises evenly during the first period of `lowest_frequency_hz`, the body's in the test, which leaves the lowest mode at rest.
 ///
 /// # Errors
-/// The body has no bonds. A support by the name of one of the test's.
-pub fn arrange(
-    scene: &Scene,
-    bodies: &BTreeMap<String, Body>,
-    threads: usize,
-    faster: f64,
-) -> Result<Option<Arranged>> {
-    let Some(test) = &scene.test else {
-        return Ok(None);
+/// A support by the name of one of the test's.
+pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<Scene> {
+    let mut scene = scene.clone();
+    let Some(test) = scene.test.clone() else {
+        return Ok(scene);
     };
-    let lowest_frequency_hz = lowest_in_test(scene, test, bodies, threads)?;
     let period_s = 1.0 / lowest_frequency_hz;
     let rate = test
         .rate_m_s
         .unwrap_or(test.stroke_m / (test.periods * period_s));
     let rate = faster * rate;
     let ramp = Factor::Ramp { until_s: period_s };
-    let mut scene = scene.clone();
     for name in &test.moves {
         if let Some(wall) = scene.walls.get_mut(name) {
             wall.motion = WallMotion::Velocity {
@@ -52,7 +37,7 @@ pub fn arrange(
         }
         let support = Support {
             of: name.clone(),
-            holds: pulled(test, rate),
+            holds: pulled(&test, rate),
             factor: ramp.clone(),
         };
         let key = support_of(name);
@@ -70,10 +55,7 @@ pub fn arrange(
     if let Some(test) = &mut scene.test {
         test.rate_m_s = Some(rate);
     }
-    Ok(Some(Arranged {
-        scene,
-        lowest_frequency_hz,
-    }))
+    Ok(scene)
 }
 
 /// Name of the support by which a test moves a set.
@@ -93,13 +75,19 @@ fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     holds
 }
 
-/// Lowest frequency of the tested body, Hz: that of the free body, and for bending what is left of it on two supports at its ends.
-fn lowest_in_test(
+/// Lowest frequency of the body that a scene tests, Hz: that of the free body, and for bending what is left of it on two supports at its ends. None: the
+/// scene has no test.
+///
+/// # Errors
+/// The body has no bonds.
+pub fn lowest_in_test_hz(
     scene: &Scene,
-    test: &Test,
     bodies: &BTreeMap<String, Body>,
     threads: usize,
-) -> Result<f64> {
+) -> Result<Option<f64>> {
+    let Some(test) = &scene.test else {
+        return Ok(None);
+    };
     let only = bodies.get_key_value(&test.body);
     let only = only.map(|(name, body)| (name.clone(), body.clone()));
     let (particles, bonds, _) = place_bodies(scene, only.into_iter().collect())?;
@@ -111,8 +99,8 @@ fn lowest_in_test(
             "make it with bonds: dem-pack --bonding-radius 1.1",
         )
     })?;
-    Ok(match test.kind {
+    Ok(Some(match test.kind {
         TestKind::FourPointBending | TestKind::ThreePointBending => ON_PINS * free,
         TestKind::BrazilianDisc | TestKind::Compression | TestKind::Tension => free,
-    })
+    }))
 }

@@ -76,10 +76,7 @@ impl FrameOrder {
             let clusters = state.clusters.as_ref();
             clusters.map_or(0, |clusters| clusters.of_particle[particle(i)])
         };
-        let density = |i: usize| {
-            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius(i).powi(3);
-            1.0 / (p.motions[particle(i)].inverse_mass * volume)
-        };
+        let density = |i: usize| p.density_kg_m3(particle(i));
         let bond = |i: usize| self.bonds[i] as usize;
         // Dear to compute, and seven arrays follow from them.
         let loads: Vec<BondLoad> = (0..self.bonds.len())

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use nalgebra::Vector3;
+
 /// What a formula needs of its numbers. Every operation rounds as that of `f64` does, so several at once give the same bits as one by one.
 pub trait Number:
     Copy
@@ -121,6 +123,18 @@ impl<T: Number> Triple<T> {
     #[inline(always)]
     pub fn square(self) -> T {
         self.dot(self)
+    }
+}
+
+impl From<Vector3<f64>> for Triple<f64> {
+    fn from(vector: Vector3<f64>) -> Self {
+        Self(vector.x, vector.y, vector.z)
+    }
+}
+
+impl From<Triple<f64>> for Vector3<f64> {
+    fn from(Triple(x, y, z): Triple<f64>) -> Self {
+        Self::new(x, y, z)
     }
 }
 

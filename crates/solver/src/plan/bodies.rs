@@ -45,12 +45,13 @@ pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u3
     })
 }
 
-/// The body of a particle of the state, and the particle's number in that body's file.
-pub fn particle_of_file(bodies: &[PlacedBody], particle: u32) -> Option<(&PlacedBody, u32)> {
-    (bodies.iter()).find_map(|body| {
+/// A particle of the state as its body's file knows it, for a person.
+pub fn called(bodies: &[PlacedBody], particle: u32) -> String {
+    let found = bodies.iter().find_map(|body| {
         let number = body.particles.iter().position(|&i| i == particle)?;
-        Some((body, number as u32))
-    })
+        Some(format!("particle {number} of the body '{}'", body.name))
+    });
+    found.unwrap_or_else(|| format!("particle {particle}"))
 }
 
 /// Particles and bonds of all bodies of a scene, where they start.

@@ -3,7 +3,7 @@
 use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene};
 use dem_io::{Diagnostic, Result};
 
-use super::bodies::{PlacedBody, particle_of_file};
+use super::bodies::{PlacedBody, called};
 use crate::clusters::Clusters;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
@@ -145,7 +145,6 @@ pub(super) fn place_contacts(
     };
     need_pairs(scene, kinds, bodies, clusters, state)?;
     let p = &state.particles;
-    let largest_m = p.poses.iter().map(|q| q.radius_m()).fold(0.0, f64::max);
     let mut materials = vec![0_u8; p.len()];
     for body in bodies {
         let material = kinds.material(&scene.bodies[&body.name].material);
@@ -157,7 +156,7 @@ pub(super) fn place_contacts(
         kinds: kinds.kinds.clone(),
         kind_of: kinds.of_pair.clone(),
         materials,
-        skin_m: scene.search.skin.unwrap_or(SKIN[0]) * largest_m,
+        skin_m: scene.search.skin.unwrap_or(SKIN[0]) * p.largest_radius_m(),
         least_overlap: scene.relaxation.min_overlap,
         relaxes: true,
         resistance: vec![Wrench::default(); p.len()],
@@ -179,8 +178,7 @@ pub(super) fn place_contacts(
 
 /// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may move in some steps, both.
 pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
-    let (step_s, p) = (state.time_step_s, &state.particles);
-    let largest_m = p.poses.iter().map(|q| q.radius_m()).fold(0.0, f64::max);
+    let (step_s, largest_m) = (state.time_step_s, state.particles.largest_radius_m());
     if let (Some(contacts), None) = (&mut state.contacts, scene.search.skin) {
         let moved_m = 2.0 * STEPS_PER_LIST * speed_m_s * step_s;
         contacts.skin_m = moved_m.clamp(SKIN[0] * largest_m, SKIN[1] * largest_m);
@@ -245,13 +243,6 @@ fn refuse_same_place(
         format!("{a} and {b} stand at the same place"),
         "move one of the bodies",
     ))
-}
-
-fn called(bodies: &[PlacedBody], particle: u32) -> String {
-    match particle_of_file(bodies, particle) {
-        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
-        None => format!("particle {particle}"),
-    }
 }
 
 /// Refuses particles of different clusters that overlap: names the deepest pair.

@@ -75,7 +75,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             given
         }
         None => {
-            let across = FARTHEST * smallest_radius_m(state) / impact_speed_m_s;
+            let across = FARTHEST * state.particles.smallest_radius_m() / impact_speed_m_s;
             let largest = (run.safety * foreseen_s)
                 .min(SHARE_OF_IMPACT * safe_step(k, c))
                 .min(run.end_time_s / 100.0)
@@ -114,9 +114,7 @@ fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
     let p = &state.particles;
     (0..p.len())
         .map(|i| {
-            let radius = p.poses[i].radius_m();
-            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
-            let density = 1.0 / (p.motions[i].inverse_mass * volume);
+            let (radius, density) = (p.poses[i].radius_m(), p.density_kg_m3(i));
             std::f64::consts::PI * radius * density.sqrt() * smallest
         })
         .fold(f64::INFINITY, f64::min)
@@ -132,12 +130,6 @@ fn thesis_s(state: &State) -> f64 {
             0.17 / (bonds.normal(at) * a.max(b)).sqrt()
         })
         .fold(f64::INFINITY, f64::min)
-}
-
-/// Radius of the smallest particle, m; infinite without particles.
-pub fn smallest_radius_m(state: &State) -> f64 {
-    let radii = state.particles.poses.iter().map(|pose| pose.radius_m());
-    radii.fold(f64::INFINITY, f64::min)
 }
 
 /// A speed that no impact will exceed until bonds or loads drive something faster, m/s: of particles and walls against each other at the start, and

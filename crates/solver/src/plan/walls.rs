@@ -5,7 +5,7 @@ use dem_io::surface::read_open_surface;
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 
-use super::bodies::{PlacedBody, particle_of_file};
+use super::bodies::{PlacedBody, called};
 use super::contacts::{Kinds, ROUNDING};
 use crate::geometry::{Bounds, Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
@@ -28,13 +28,7 @@ pub(super) fn place_walls(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Wall>> {
     let places = state.particles.poses.iter().map(|pose| pose.place().into());
-    let extent_m = Bounds::of(places).diagonal_m()
-        + state
-            .particles
-            .poses
-            .iter()
-            .map(|pose| 2.0 * pose.radius_m())
-            .fold(0.0, f64::max);
+    let extent_m = Bounds::of(places).diagonal_m() + 2.0 * state.particles.largest_radius_m();
     let mut walls = Vec::new();
     for (name, entry) in &scene.walls {
         let place = format!("{}: [walls.{name}]", scene.source);
@@ -213,10 +207,7 @@ fn refuse_touches(
         return Ok(());
     };
     let (i, touch) = deepest;
-    let who = match particle_of_file(bodies, *i) {
-        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
-        None => format!("particle {i}"),
-    };
+    let who = called(bodies, *i);
     let more = match touches.len() {
         1 => String::new(),
         count => format!(", the deepest of {count} places"),

@@ -9,8 +9,8 @@ use super::progress::Progress;
 use crate::check::ledger::kinetic_energy;
 use crate::check::limit::limit;
 use crate::check::linear::largest_contact_rate_1_s2;
-use crate::plan::bodies::{PlacedBody, particle_of_file};
-use crate::plan::time_step::{FARTHEST, impact_step_s, smallest_radius_m};
+use crate::plan::bodies::{PlacedBody, called};
+use crate::plan::time_step::{FARTHEST, impact_step_s};
 use crate::stages::bonds::largest_strain;
 use crate::state::State;
 
@@ -30,8 +30,6 @@ const FASTER: f64 = 1.2;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     smallest_radius_m: f64,
-    /// Of all particles, kg.
-    mass_kg: f64,
     /// None: the scene names a step, which is kept.
     safety: Option<f64>,
     end_s: f64,
@@ -40,10 +38,7 @@ pub(super) struct Limits {
 impl Limits {
     pub(super) fn of(scene: &Scene, state: &State) -> Self {
         Self {
-            smallest_radius_m: smallest_radius_m(state),
-            mass_kg: (state.particles.motions.iter())
-                .map(|motion| 1.0 / motion.inverse_mass)
-                .sum(),
+            smallest_radius_m: state.particles.smallest_radius_m(),
             safety: scene.run.time_step_s.is_none().then_some(scene.run.safety),
             end_s: scene.run.end_time_s,
         }
@@ -68,7 +63,9 @@ impl Limits {
                 look = true;
             }
         }
-        if state.contacts.is_some() && state.steps.is_multiple_of(CONTACTS_EVERY) {
+        let touches = state.contacts.is_some();
+        let look_at_contacts = touches && state.steps.is_multiple_of(CONTACTS_EVERY);
+        if look_at_contacts {
             let rate = largest_contact_rate_1_s2(state);
             if rate > STIFFER * progress.contact_rate_1_s2 {
                 progress.contact_rate_1_s2 = rate;
@@ -77,53 +74,50 @@ impl Limits {
         }
         if look {
             progress.limit_s = progress.limit_s.min(limit(state).step_s);
-            self.take(state, progress.limit_s, "limit", files.as_deref_mut())?;
+            if let Some(safety) = self.safety {
+                let largest_s = safety * progress.limit_s;
+                self.take(state, largest_s, "limit", files.as_deref_mut())?;
+            }
         }
-        if state.contacts.is_some() && state.steps.is_multiple_of(CONTACTS_EVERY) {
+        if let (true, Some(_)) = (look_at_contacts, self.safety) {
             // Loads or supports may have made bodies faster than was foreseen. Not the fastest particle: a bond that breaks lets a few snap back.
             let p = &state.particles;
             let kinetic_j = kinetic_energy(p, |i| p.motions[i]);
-            let speed_m_s = (2.0 * kinetic_j / self.mass_kg).sqrt();
+            let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
-                let step_s = impact_step_s(state, speed_m_s);
-                if let Some(safety) = self.safety {
-                    self.take(state, step_s / safety, "speed", files.as_deref_mut())?;
-                }
+                let largest_s = impact_step_s(state, speed_m_s);
+                self.take(state, largest_s, "speed", files.as_deref_mut())?;
             }
         }
         let farthest_m = FARTHEST * self.smallest_radius_m;
-        if state.contacts.is_some() && state.fastest_m_s * state.time_step_s > farthest_m {
-            if self.safety.is_none() {
+        if touches && state.fastest_m_s * state.time_step_s > farthest_m {
+            let Some(safety) = self.safety else {
                 return too_fast(state, bodies);
-            }
-            let step_s = farthest_m / state.fastest_m_s;
-            self.take(state, step_s, "speed", files)?;
+            };
+            let largest_s = safety * farthest_m / state.fastest_m_s;
+            self.take(state, largest_s, "speed", files)?;
         }
         Ok(())
     }
 
-    /// Takes a smaller step below a new limit, unless the scene names the step, and notes it.
+    /// Takes a step that is no larger than this, if the present one is, and notes it.
     fn take(
         &self,
         state: &mut State,
-        limit_s: f64,
+        largest_s: f64,
         cause: &str,
         files: Option<&mut Files<'_>>,
     ) -> Result<()> {
-        let Some(safety) = self.safety else {
-            return Ok(());
-        };
-        let largest = safety * limit_s;
-        if state.time_step_s <= largest {
+        if state.time_step_s <= largest_s {
             return Ok(());
         }
         // So that the end time is met.
         let left_s = self.end_s - state.time_s;
         let step_s = if left_s > 0.0 {
-            left_s / (left_s / largest).ceil()
+            left_s / (left_s / largest_s).ceil()
         } else {
-            largest
+            largest_s
         };
         let detail = change(state.time_step_s, step_s);
         state.time_step_s = step_s;
@@ -176,11 +170,4 @@ pub(super) fn went_through(
         ),
         "make its contact stiffer, push less hard, or take a smaller run.time_step",
     ))
-}
-
-fn called(bodies: &[PlacedBody], particle: u32) -> String {
-    match particle_of_file(bodies, particle) {
-        Some((body, number)) => format!("particle {number} of the body '{}'", body.name),
-        None => format!("particle {particle}"),
-    }
 }

@@ -107,16 +107,9 @@ fn stored_j(
 ) -> f64 {
     let ends = contacts.pairs[at].map(|end| end as usize);
     let memory = &contacts.memories[at];
-    let still = |i: usize| Ball {
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
-        radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: particles.motions[i].inverse_mass,
-        inverse_inertia_per_kg_m2: particles.motions[i].inverse_inertia,
-    };
     let [a, b] = ends.map(|i| particles.poses[i].place());
-    let apart = b - a;
-    let mut touch = touch(Triple(apart.x, apart.y, apart.z), ends.map(still), 0.0);
+    let balls = ends.map(|i| particles.ball_at_rest(i));
+    let mut touch = touch((b - a).into(), balls, 0.0);
     touch.overlap_m = memory.slid[3];
     let grip = law.grip(&touch, touch.overlap_m);
     let stiffness = match rolling {

@@ -152,7 +152,7 @@ fn meet(
     let first = wall.touching.partition_point(|old| old.particle < particle);
     let before = &wall.touching[first..];
     let before = &before[..before.partition_point(|old| old.particle == particle)];
-    let kind = &wall.kinds[usize::from(wall.kind_of[usize::from(materials[i])])];
+    let kind = wall.kind(materials[i]);
     for touch in &touches {
         let there = wall.frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
@@ -209,21 +209,16 @@ fn meet_at(
     let belt = Vector3::from(wall.surface_velocity_m_s);
     let belt = belt - normal * belt.dot(&normal);
     let foot = Foot {
-        normal: triple(&normal),
-        normal_before: old.map_or(triple(&normal), |old| {
-            let [x, y, z] = old.normal;
-            Triple(x, y, z)
-        }),
+        normal: normal.into(),
+        normal_before: old.map_or(normal, |old| old.normal.into()).into(),
         distance_m: there.distance_m,
-        velocity_m_s: triple(&(velocity + spin.cross(&arm) + belt)),
-        spin_rad_s: triple(&spin),
+        velocity_m_s: (velocity + spin.cross(&arm) + belt).into(),
+        spin_rad_s: spin.into(),
     };
     let ball = Ball {
-        velocity_m_s: triple(&motion.velocity_m_s.into()),
-        spin_rad_s: triple(&motion.spin_rad_s.into()),
-        radius_m: particles.poses[i].radius_m(),
-        inverse_mass_per_kg: motion.inverse_mass,
-        inverse_inertia_per_kg_m2: motion.inverse_inertia,
+        velocity_m_s: Vector3::from(motion.velocity_m_s).into(),
+        spin_rad_s: Vector3::from(motion.spin_rad_s).into(),
+        ..particles.ball_at_rest(i)
     };
     let mut touch = touch_at_wall(&foot, ball, dt);
     let memory = old.map_or(Memory::default(), |old| old.memory);
@@ -261,17 +256,14 @@ fn meet_at(
         },
         point,
         belt,
-        forces: [vector(force_on_b), vector(damping_n)],
-        torques: [vector(torque), vector(damping_torque)],
-        moments: [vector(moment_on_b), vector(damping.rolling_n_m)],
+        forces: [force_on_b.into(), damping_n.into()],
+        torques: [torque.into(), damping_torque.into()],
+        moments: [moment_on_b.into(), damping.rolling_n_m.into()],
         elastic_j: energy.normal + energy.tangential + energy.rolling,
         lost_j: lost.sliding + lost.rolling,
         crossed: touch.overlap_m > ball.radius_m
             || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
-        stiffness_n_m: match &kind.law {
-            Law::HertzMindlin(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
-            Law::Linear(law) => law.grip(&touch, touch.overlap_m).normal_n_m[1],
-        },
+        stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.radius_m),
     }
 }
 
@@ -295,14 +287,6 @@ fn with_law(
         Rolling::Constant(rolling) => response(law, rolling, touch, history, dt),
         Rolling::Spring(rolling) => response(law, rolling, touch, history, dt),
     }
-}
-
-fn triple(v: &Vector3<f64>) -> Triple<f64> {
-    Triple(v.x, v.y, v.z)
-}
-
-fn vector(t: Triple<f64>) -> Vector3<f64> {
-    Vector3::new(t.0, t.1, t.2)
 }
 
 /// Decides how the walls move in the step of `dt`, s, that begins at `time_s`.

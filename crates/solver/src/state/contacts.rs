@@ -6,6 +6,7 @@ use super::particles::Wrench;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+use crate::physics::number::Number;
 use serde::{Deserialize, Serialize};
 
 /// Normal law of a pair of materials.
@@ -29,11 +30,12 @@ pub enum Rolling {
 }
 
 impl ContactKind {
-    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m.
+    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m; 0 where there is no overlap.
     pub fn normal_n_m(&self, overlap_m: f64, radius_m: f64) -> f64 {
+        let overlap_m = overlap_m.max(0.0);
         match &self.law {
-            Law::HertzMindlin(law) => 2.0 * law.young_modulus_pa * (radius_m * overlap_m).sqrt(),
-            Law::Linear(law) => law.normal_n_m,
+            Law::HertzMindlin(law) => law.normal_n_m((radius_m * overlap_m).sqrt()),
+            Law::Linear(law) => overlap_m.if_positive(law.normal_n_m),
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use crate::physics::contact::touch::Ball;
+use crate::physics::number::Triple;
+
 /// Where a particle is and how it is turned. One cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
@@ -102,6 +105,34 @@ impl Particles {
         let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         0.5 * (square(&motion.velocity_m_s) / self.motions[i].inverse_mass
             + square(&motion.spin_rad_s) / self.motions[i].inverse_inertia)
+    }
+
+    /// Radius of the smallest sphere, m; infinite where there is none.
+    pub fn smallest_radius_m(&self) -> f64 {
+        let radii = self.poses.iter().map(Pose::radius_m);
+        radii.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Radius of the largest sphere, m; 0 where there is none.
+    pub fn largest_radius_m(&self) -> f64 {
+        self.poses.iter().map(Pose::radius_m).fold(0.0, f64::max)
+    }
+
+    /// Density of particle `i`, kg/m3.
+    pub fn density_kg_m3(&self, i: usize) -> f64 {
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * self.poses[i].radius_m().powi(3);
+        1.0 / (self.motions[i].inverse_mass * volume)
+    }
+
+    /// Particle `i` as contacts see it, at rest.
+    pub fn ball_at_rest(&self, i: usize) -> Ball {
+        Ball {
+            velocity_m_s: Triple(0.0, 0.0, 0.0),
+            spin_rad_s: Triple(0.0, 0.0, 0.0),
+            radius_m: self.poses[i].radius_m(),
+            inverse_mass_per_kg: self.motions[i].inverse_mass,
+            inverse_inertia_per_kg_m2: self.motions[i].inverse_inertia,
+        }
     }
 
     /// Makes room for so many particles more, and no more than that.

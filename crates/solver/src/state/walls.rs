@@ -71,6 +71,11 @@ impl Wall {
             pending_j: 0.0,
         }
     }
+
+    /// How it meets a material of this number, which it is known to meet.
+    pub fn kind(&self, material: u8) -> &ContactKind {
+        &self.kinds[usize::from(self.kind_of[usize::from(material)])]
+    }
 }
 
 /// A particle that touches a wall, and what is remembered of it.

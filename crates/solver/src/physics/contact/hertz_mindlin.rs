@@ -45,6 +45,14 @@ impl HertzMindlin {
     }
 }
 
+impl<T: Number> HertzMindlin<T> {
+    /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the root of R* times the overlap.
+    #[inline(always)]
+    pub fn normal_n_m(&self, contact_radius_m: T) -> T {
+        self.young_modulus_pa.times(2.0) * contact_radius_m
+    }
+}
+
 /// 2 sqrt(5/6), times the damping ratio.
 const TSUJI: f64 = 1.825_741_858_350_553_8;
 
@@ -54,11 +62,8 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
         let overlap = touch.overlap_m.if_positive(touch.overlap_m);
         let contact_radius = (touch.radius_m * overlap).root();
         let contact_radius_before = (touch.radius_m * overlap_before_m).root();
-        let (e, g) = (
-            self.young_modulus_pa.times(2.0),
-            self.shear_modulus_pa.times(8.0),
-        );
-        let (normal, tangential) = (e * contact_radius, g * contact_radius);
+        let g = self.shear_modulus_pa.times(8.0);
+        let (normal, tangential) = (self.normal_n_m(contact_radius), g * contact_radius);
         let elastic = (normal * overlap).times(2.0 / 3.0);
         let ratio = self.manner.damping_ratio.times(TSUJI);
         let tangential_ratio = self.manner.tangential_damping_ratio.times(TSUJI);
@@ -66,11 +71,13 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
         Grip {
             elastic_n: elastic,
             energy_j: (elastic * overlap).times(0.4),
-            normal_n_m: [e * contact_radius_before, normal],
+            normal_n_m: [self.normal_n_m(contact_radius_before), normal],
             tangential_n_m: [g * contact_radius_before, tangential],
             softer: overlap.if_positive(contact_radius_before / contact_radius),
             normal_damping_n_s_m: ratio * critical,
-            tangential_damping_n_s_m: tangential_ratio * (g / e).root() * critical,
+            tangential_damping_n_s_m: tangential_ratio
+                * (g / self.young_modulus_pa.times(2.0)).root()
+                * critical,
         }
     }
 
