@@ -112,14 +112,9 @@ impl State {
         state
     }
 
-    /// The lists of damping forces: of bonds, on particles, of contacts; each with one for each particle, or empty.
-    pub fn resistances(&self) -> [&[Wrench]; 3] {
-        let of_contacts = self.contacts.as_ref().map(|c| &c.resistance[..]);
-        [
-            &self.bond_resistance,
-            &self.particle_resistance,
-            of_contacts.unwrap_or_default(),
-        ]
+    /// The lists of damping forces that are booked apart: of bonds and on particles; each with one for each particle, or empty.
+    pub fn resistances(&self) -> [&[Wrench]; 2] {
+        [&self.bond_resistance, &self.particle_resistance]
     }
 
     /// Length of the kick of this step: half of the step before and half of the step to come, s.

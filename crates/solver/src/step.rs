@@ -89,12 +89,7 @@ pub fn act(state: &mut State) {
     crate::check::ledger::before_kick(state);
     state.clock.book(Stage::Rest);
     let p = &mut state.particles;
-    let of_contacts = state.contacts.as_ref().map(|c| &c.resistance[..]);
-    let resistance = [
-        &state.bond_resistance[..],
-        &state.particle_resistance,
-        of_contacts.unwrap_or_default(),
-    ];
+    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
     kick(p, resistance, state.gravity_m_s2, kick_s);
     state.clock.book(Stage::Motion);
     hold(

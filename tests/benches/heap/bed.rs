@@ -64,7 +64,6 @@ fn contacts(state: &State, threads: usize) -> Contacts {
         skin_m: SKIN_M,
         room_m: 0.5 * SKIN_M,
         least_overlap: 1e-3,
-        resistance: vec![Wrench::default(); poses.len()],
         lost_j: vec![[0.0; 2]; poses.len()],
         ..Contacts::default()
     };

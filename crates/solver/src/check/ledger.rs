@@ -4,7 +4,7 @@
 //! as the step: its error falls with the square of the time step.
 
 use crate::physics::bond::total::BondEnergy;
-use crate::stages::contacts::{elastic_energy_j, friction_j};
+use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
@@ -48,7 +48,6 @@ struct Work {
     supports: f64,
     bond_damping: f64,
     particle_damping: f64,
-    contact_damping: f64,
 }
 
 /// The ledger at a moment.
@@ -178,7 +177,6 @@ impl Work {
         self.supports += factor * other.supports;
         self.bond_damping += factor * other.bond_damping;
         self.particle_damping += factor * other.particle_damping;
-        self.contact_damping += factor * other.contact_damping;
     }
 }
 
@@ -187,26 +185,20 @@ fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
     push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
 }
 
-/// Powers of loads and damping, W; of walls for the step just made (0) or the one to come (1).
-fn powers(state: &State, step: usize) -> Work {
+/// Powers of loads and damping, W.
+fn powers(state: &State) -> Work {
     let motions = &state.particles.motions;
-    let [bonds, particles, contacts] = state.resistances();
-    let of_walls = state.walls.iter();
-    let of_walls: f64 = of_walls
-        .map(|wall| wall_power_w(wall, &wall.damping, step))
-        .sum();
     Work {
         loads: loads_power_w(&state.loads, state.time_s, motions),
         supports: 0.0,
-        bond_damping: -power_w(bonds, motions),
-        particle_damping: -power_w(particles, motions),
-        contact_damping: of_walls - power_w(contacts, motions),
+        bond_damping: -power_w(&state.bond_resistance, motions),
+        particle_damping: -power_w(&state.particle_resistance, motions),
     }
 }
 
 /// Books the work of the half step that ends with the kick to come.
 pub fn before_kick(state: &mut State) {
-    let powers = powers(state, 0);
+    let powers = powers(state);
     state.ledger.settle();
     let half_s = 0.5 * state.previous_time_step_s;
     state.ledger.work.add(&powers, half_s);
@@ -218,7 +210,7 @@ pub fn before_kick(state: &mut State) {
 
 /// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
 pub fn after_kick(state: &mut State) {
-    let pending = powers(state, 1);
+    let pending = powers(state);
     let half_s = 0.5 * state.time_step_s;
     for wall in &mut state.walls {
         wall.pending_j = half_s * wall_power_w(wall, &wall.push, 1);
@@ -294,13 +286,14 @@ pub fn balance(state: &mut State) -> Balance {
     let kinetic = kinetic_energy(p, |i| motions[i]);
     let elastic = elastic_energy(state);
     let wall_work = walls_work_j(&state.walls);
-    let (mut contact_elastic, mut friction) = match &state.contacts {
-        Some(contacts) => (elastic_energy_j(contacts, p), friction_j(contacts)),
-        None => (0.0, 0.0),
+    let (mut contact_elastic, [mut friction, mut contact_damping]) = match &state.contacts {
+        Some(contacts) => (elastic_energy_j(contacts, p), lost_j(contacts)),
+        None => (0.0, [0.0; 2]),
     };
     for wall in &state.walls {
         contact_elastic += wall.elastic_j;
         friction += wall.friction_j;
+        contact_damping += wall.damping_j;
     }
     let (present, scales) = momenta(p, state.ledger.about_m);
     let g = state.gravity_m_s2;
@@ -308,11 +301,8 @@ pub fn balance(state: &mut State) -> Balance {
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
-    let gone = work.bond_damping
-        + work.particle_damping
-        + work.contact_damping
-        + friction
-        + ledger.released_j;
+    let gone =
+        work.bond_damping + work.particle_damping + contact_damping + friction + ledger.released_j;
     let stored = elastic.total() + contact_elastic;
     let given = work.loads + work.supports + wall_work;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
@@ -348,7 +338,7 @@ pub fn balance(state: &mut State) -> Balance {
         bond_damping_j: work.bond_damping,
         particle_damping_j: work.particle_damping,
         contact_elastic_j: contact_elastic,
-        contact_damping_j: work.contact_damping,
+        contact_damping_j: contact_damping,
         friction_j: friction,
         released_j: ledger.released_j,
         energy_error_j: error,
@@ -385,8 +375,8 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,
         );
-        let [bonds, particles, contacts] = resistances;
-        for wrenches in [&p.wrenches, bonds, particles, contacts] {
+        let [bonds, particles] = resistances;
+        for wrenches in [&p.wrenches, bonds, particles] {
             if let Some(wrench) = wrenches.get(i) {
                 for k in 0..3 {
                     motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];

@@ -29,7 +29,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
     let p = &state.particles;
     if let Some(contacts) = &state.contacts {
         for (&pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
-            let overlap_m = memory.slid[3];
+            let overlap_m = memory.overlap_m();
             if overlap_m > 0.0 {
                 let [a, b] = pair.map(|end| end as usize);
                 let apart = p.poses[b].place() - p.poses[a].place();
@@ -45,7 +45,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
         }
         for wall in &state.walls {
             let touching = wall.touching.iter();
-            let touching = touching.filter(|touch| touch.memory.slid[3] > 0.0);
+            let touching = touching.filter(|touch| touch.memory.overlap_m() > 0.0);
             found.extend(touching.map(|touch| at_wall(wall, touch, &contacts.materials, p)));
         }
     }
@@ -59,7 +59,7 @@ fn at_wall(
     particles: &Particles,
 ) -> LinearContact {
     let i = there.particle as usize;
-    let overlap_m = there.memory.slid[3];
+    let overlap_m = there.memory.overlap_m();
     let touch = wall_touch(particles, i, &Vector3::from(there.normal), overlap_m);
     let kind = wall.kind(materials[i]);
     LinearContact {
@@ -152,7 +152,7 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
     };
     let p = &state.particles;
     let of_pair = |at: usize| {
-        let overlap_m = contacts.memories[at].slid[3];
+        let overlap_m = contacts.memories[at].overlap_m();
         if overlap_m <= 0.0 {
             return 0.0;
         }
@@ -172,7 +172,7 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
             let kind = wall.kind(contacts.materials[i]);
-            let overlap_m = touch.memory.slid[3];
+            let overlap_m = touch.memory.overlap_m();
             kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.motions[i].inverse_mass
         })
     });

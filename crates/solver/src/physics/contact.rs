@@ -111,6 +111,15 @@ pub struct DampingPower<T = f64> {
 }
 
 impl<T: Number> Damping<T> {
+    /// All of it together.
+    #[inline(always)]
+    pub fn total(&self) -> Damped<T> {
+        Damped {
+            force_n: self.normal_n + self.tangential_n,
+            moment_n_m: self.rolling_n_m,
+        }
+    }
+
     /// Power lost at this [relative velocity](touch::relative_velocity), m/s, and spin of b against a, rad/s, where the forces act.
     ///
     /// Over a step: half of it with the forces at its beginning, half with those at its end, both with the velocity halfway.
@@ -121,6 +130,27 @@ impl<T: Number> Damping<T> {
             tangential: -self.tangential_n.dot(velocity_m_s),
             rolling: -self.rolling_n_m.dot(spin_rad_s),
         }
+    }
+}
+
+/// All that damping does to b: what is remembered of it until the next step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damped<T = f64> {
+    /// Force, N.
+    pub force_n: Triple<T>,
+    /// Moment against rolling, N m.
+    pub moment_n_m: Triple<T>,
+}
+
+impl<T: Number> Damped<T> {
+    /// Energy that damping took in a step of `dt`, s, that began with `before` and ends so, J: the mean of the two forces times the motion between, as springs'
+    /// losses are booked.
+    #[inline(always)]
+    pub fn lost_j(&self, before: &Self, touch: &Touch<T>, dt: f64) -> T {
+        let force = before.force_n + self.force_n;
+        let moment = before.moment_n_m + self.moment_n_m;
+        let power = force.dot(touch.velocity_m_s) + moment.dot(touch.spin_rad_s);
+        power.times(-0.5 * dt)
     }
 }
 

@@ -12,7 +12,6 @@ use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
 use crate::state::contacts::{ContactKind, Contacts, Law, Rolling};
-use crate::state::particles::Wrench;
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.
 const SKIN: [f64; 2] = [0.1, 0.5];
@@ -159,7 +158,6 @@ pub(super) fn place_contacts(
         skin_m: scene.search.skin.unwrap_or(SKIN[0]) * p.largest_radius_m(),
         least_overlap: scene.relaxation.min_overlap,
         relaxes: true,
-        resistance: vec![Wrench::default(); p.len()],
         lost_j: vec![[0.0; 2]; p.len()],
         ..Contacts::default()
     };

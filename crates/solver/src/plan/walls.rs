@@ -235,8 +235,7 @@ fn refuse_touches(
 /// A touch whose overlap is where the law begins.
 fn relaxing(particle: u32, touch: &Touch, state: &State) -> WallTouch {
     let radius_m = state.particles.poses[particle as usize].radius_m();
-    let mut memory = Memory::default();
-    memory.rolled[3] = radius_m - touch.distance_m;
+    let memory = Memory::parted_at(radius_m - touch.distance_m);
     WallTouch {
         particle,
         feature: touch.feature,

@@ -17,7 +17,7 @@ pub(super) struct Meetings {
     fastest_m_s: f64,
     /// All listed pairs, in order, and what they remember: one that has come to touch in the last step remembers nothing yet, but it was listed.
     contacts: Vec<([u32; 2], Memory)>,
-    /// Energy lost by sliding and rolling, booked at each particle, J.
+    /// Energy that friction and damping took, booked at each particle, J.
     lost_j: Vec<[f64; 2]>,
     walls: Vec<WallState>,
 }
@@ -31,6 +31,7 @@ struct WallState {
     push: Push,
     stiffness_n_m: f64,
     friction_j: f64,
+    damping_j: f64,
     work_j: f64,
     pending_j: f64,
 }
@@ -62,6 +63,7 @@ impl Meetings {
                     push: wall.push,
                     stiffness_n_m: wall.stiffness_n_m,
                     friction_j: wall.friction_j,
+                    damping_j: wall.damping_j,
                     work_j: wall.work_j,
                     pending_j: wall.pending_j,
                 })
@@ -100,6 +102,7 @@ impl Meetings {
             wall.push = saved.push;
             wall.stiffness_n_m = saved.stiffness_n_m;
             wall.friction_j = saved.friction_j;
+            wall.damping_j = saved.damping_j;
             wall.work_j = saved.work_j;
             wall.pending_j = saved.pending_j;
         }

@@ -10,11 +10,11 @@ use crate::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
 use crate::physics::contact::touch::{Ball, torques, touch};
-use crate::physics::contact::{History, NormalLaw, Response, response};
+use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
-use crate::stages::blocks::{fetch_soon, rows};
+use crate::stages::blocks::{fetch_soon, rows, vectors};
 use crate::stages::lanes::{FOUR, LaneWork, Lanes, with_lanes};
-use crate::stages::motion::ordered_sum;
+use crate::stages::motion::{ordered_sum, ordered_sums};
 use crate::stages::neighbours::near_pairs;
 use crate::state::contacts::{ContactShare, Contacts, Law, Memory, Rolling};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
@@ -24,12 +24,11 @@ const AHEAD: usize = 32;
 /// Contacts that are looked at before those of them that touch are computed: what the look fetches stays in the cache until then.
 const TOGETHER: usize = 128;
 
-/// Adds the elastic and frictional forces of contacts to the wrenches, sets their resistance to the damping forces, books what friction took, and
-/// takes down what each contact remembers: after a step of `dt`, s, in which the particles moved as their motions say.
+/// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes down what each contact remembers: after a step of `dt`, s, in
+/// which the particles moved as their motions say.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
     let mut shares = std::mem::take(&mut contacts.shares);
     let mut memories = std::mem::take(&mut contacts.memories);
-    let mut resistance = std::mem::take(&mut contacts.resistance);
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
     for share in &mut shares {
         // Their owners take down what comes next while others still need what was.
@@ -47,13 +46,11 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     let books = Books {
         memories: &mut memories,
         wrenches: &mut p.wrenches,
-        resistance: &mut resistance,
         lost_j: &mut lost_j,
     };
     for_each(&mut shares, books, &scene);
     contacts.shares = shares;
     contacts.memories = memories;
-    contacts.resistance = resistance;
     contacts.lost_j = lost_j;
 }
 
@@ -110,7 +107,7 @@ fn stored_j(
     let [a, b] = ends.map(|i| particles.poses[i].place());
     let balls = ends.map(|i| particles.ball_at_rest(i));
     let mut touch = touch((b - a).into(), balls, 0.0);
-    touch.overlap_m = memory.slid[3];
+    touch.overlap_m = memory.overlap_m();
     let grip = law.grip(&touch, touch.overlap_m);
     let stiffness = match rolling {
         Rolling::Free => 0.0,
@@ -123,11 +120,9 @@ fn stored_j(
         + 0.5 * stiffness * square(memory.rolled)
 }
 
-/// Energy that friction took so far, J.
-pub fn friction_j(contacts: &Contacts) -> f64 {
-    ordered_sum(contacts.lost_j.len(), |i| {
-        contacts.lost_j[i][0] + contacts.lost_j[i][1]
-    })
+/// Energy that friction and that damping took so far, J.
+pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
+    ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i])
 }
 
 /// What all shares look at.
@@ -142,7 +137,6 @@ struct Scene<'a> {
 struct Books<'a> {
     memories: &'a mut [Memory],
     wrenches: &'a mut [Wrench],
-    resistance: &'a mut [Wrench],
     lost_j: &'a mut [[f64; 2]],
 }
 
@@ -150,19 +144,16 @@ impl<'a> Books<'a> {
     fn split(self, contacts: usize, particles: usize) -> [Self; 2] {
         let (memories, other_memories) = self.memories.split_at_mut(contacts);
         let (wrenches, other_wrenches) = self.wrenches.split_at_mut(particles);
-        let (resistance, other_resistance) = self.resistance.split_at_mut(particles);
         let (lost_j, other_lost_j) = self.lost_j.split_at_mut(particles);
         [
             Self {
                 memories,
                 wrenches,
-                resistance,
                 lost_j,
             },
             Self {
                 memories: other_memories,
                 wrenches: other_wrenches,
-                resistance: other_resistance,
                 lost_j: other_lost_j,
             },
         ]
@@ -202,7 +193,6 @@ struct ShareWork<'a> {
 impl LaneWork for ShareWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
-        self.books.resistance.fill(Wrench::default());
         // A particle meets its contacts kind by kind, whoever's they are: with several kinds there is no way but to look at all first.
         let own = self.share.own.clone();
         let together = match self.scene.contacts.kinds.len() {
@@ -213,7 +203,7 @@ impl LaneWork for ShareWork<'_> {
         let mut first = own.start;
         loop {
             let end = (first + together).min(own.end);
-            find_own(self.share, first..end, &mut self.books, self.scene);
+            find_own::<T>(proof, self.share, first..end, &mut self.books, self.scene);
             for kind in 0..self.scene.contacts.kinds.len() {
                 self.with_kind::<T>(proof, kind);
             }
@@ -258,54 +248,52 @@ fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
     }
 }
 
-/// Lists those of some of its own contacts that touch; those that do not forget.
+/// Lists those of some of its own contacts that touch, or did in the step before: they have an end to book. `some` begin at a whole number of fours.
 #[inline(always)]
-fn find_own(
+fn find_own<T: Lanes>(
+    proof: T::Proof,
     share: &mut ContactShare,
     some: Range<usize>,
     books: &mut Books<'_>,
     scene: &Scene<'_>,
 ) {
     let (poses, motions) = (scene.poses, scene.motions);
-    let pairs = &scene.contacts.pairs[some.start..];
-    let memories = &mut books.memories[some.start - share.own.start..];
+    let pairs = &scene.contacts.pairs[..share.own.end];
     let (of_first_kind, of_others) = share.touching.split_at_mut(1);
     let list = &mut of_first_kind[0][1];
-    list.resize(some.len(), 0);
+    list.resize(some.len() + FOUR, 0);
     let touching = &mut list[..];
     let mut count = 0;
-    for n in 0..some.len() {
-        if let Some(&[_, soon]) = pairs.get(n + AHEAD) {
+    let of_fours = (some.start - share.own.start) / FOUR..;
+    for (first, touched) in some.clone().step_by(FOUR).zip(&mut share.touched[of_fours]) {
+        for &[_, soon] in pairs
+            .get(first + AHEAD..first + AHEAD + FOUR)
+            .unwrap_or_default()
+        {
             fetch_soon(&poses[soon as usize]);
-            fetch_soon(&motions[soon as usize]);
         }
-        if let Some(memory) = memories.get(n + AHEAD) {
-            fetch_soon(memory);
-        }
-        let [a, b] = pairs[n].map(|end| &poses[end as usize]);
+        let four = &pairs[first..(first + FOUR).min(some.end)];
+        let now = overlapping::<T>(proof, four, poses);
         // Whether they touch cannot be foretold, so there is no branch on it.
-        let touches = overlap(a, b);
-        touching[count] = (some.start + n) as u32;
-        count += usize::from(touches);
-        let memory = &mut memories[n];
-        let if_apart = u64::from(touches).wrapping_sub(1);
-        if remembered_bits(memory) & if_apart != 0 {
-            *memory = Memory::default();
+        let listed = usize::from(now | *touched);
+        *touched = now;
+        for lane in 0..FOUR {
+            touching[count] = (first + lane) as u32;
+            count += listed >> lane & 1;
         }
     }
     list.truncate(count);
     for &at in &*list {
-        let b = pairs[at as usize - some.start][1] as usize;
+        let b = pairs[at as usize][1] as usize;
+        fetch_soon(&motions[b]);
+        fetch_soon(&books.memories[at as usize - share.own.start]);
         if let Some(wrench) = books.wrenches.get(b.wrapping_sub(share.particles.start)) {
-            fetch_soon(wrench);
-        }
-        if let Some(wrench) = books.resistance.get(b.wrapping_sub(share.particles.start)) {
             fetch_soon(wrench);
         }
     }
     if !of_others.is_empty() {
         list.retain(|&at| {
-            let kind = scene.contacts.kind(pairs[at as usize - some.start]);
+            let kind = scene.contacts.kind(pairs[at as usize]);
             if kind > 0 {
                 of_others[kind - 1][1].push(at);
             }
@@ -314,10 +302,22 @@ fn find_own(
     }
 }
 
-/// Not 0 if a contact remembers anything: springs are only there while its law or its origin holds an overlap.
+/// For each of up to four pairs a bit, from the lowest on: whether the two overlap.
 #[inline(always)]
-fn remembered_bits(memory: &Memory) -> u64 {
-    memory.slid[3].to_bits() | memory.rolled[3].to_bits()
+fn overlapping<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose]) -> u8 {
+    let mut bits = 0;
+    for first in (0..pairs.len()).step_by(T::COUNT) {
+        let row = |lane: usize, end: usize| {
+            let pair = pairs[(first + lane).min(pairs.len() - 1)];
+            poses[pair[end] as usize].position_m
+        };
+        let [ax, ay, az, radius_a] = T::columns(proof, |lane| row(lane, 0));
+        let [bx, by, bz, radius_b] = T::columns(proof, |lane| row(lane, 1));
+        let reach = radius_a + radius_b;
+        let apart = Triple(bx - ax, by - ay, bz - az);
+        bits |= (reach * reach).above(apart.square()) << first;
+    }
+    bits & ((1 << pairs.len()) - 1)
 }
 
 impl ShareWork<'_> {
@@ -390,23 +390,21 @@ impl ShareWork<'_> {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
             let pair = |lane: usize| pairs[share.border[number(lane)] as usize];
             let memory = |lane: usize| &share.border_memories[number(lane)];
-            let met = scene.meet::<T>(proof, law, rolling, pair, memory);
+            let met = scene.meet::<T, _>(proof, law, rolling, pair, memory);
             for lane in 0..some.len() {
                 let b = pair(lane)[1] as usize - particles.start;
-                met.held.add_to_b(lane, &mut books.wrenches[b]);
-                met.damped.add_to_b(lane, &mut books.resistance[b]);
+                met.forces.add_to_b(lane, &mut books.wrenches[b]);
             }
         }
         let memories = &mut books.memories[..];
         let wrenches = &mut books.wrenches[..];
-        let resistance = &mut books.resistance[..];
         let lost_j = &mut books.lost_j[..];
         for some in touching.chunks(T::COUNT) {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
             let numbers = [number(0), number(1), number(2), number(3)];
             let [p, q, r, s] = numbers;
             let ends = [pairs[p], pairs[q], pairs[r], pairs[s]];
-            let met = scene.meet::<T>(
+            let met = scene.meet::<T, _>(
                 proof,
                 law,
                 rolling,
@@ -416,21 +414,23 @@ impl ShareWork<'_> {
             for lane in 0..T::COUNT {
                 if lane < some.len() {
                     let a = ends[lane][0] as usize - particles.start;
-                    lost_j[a][0] += met.sliding_j[lane];
-                    lost_j[a][1] += met.rolling_j[lane];
+                    lost_j[a][0] += met.friction_j[lane];
+                    lost_j[a][1] += met.damping_j[lane];
                     let memory = &mut memories[numbers[lane] - own.start];
                     memory.slid = met.slid[lane];
-                    memory.rolled = met.rolled[lane];
+                    memory.damped = met.damped[lane];
+                    if let Some([rolled, rolling_damped]) = &met.rolled {
+                        memory.rolled = rolled[lane];
+                        memory.rolling_damped = rolling_damped[lane];
+                    }
                 }
             }
             for lane in 0..T::COUNT {
                 if lane < some.len() {
                     let [a, b] = ends[lane].map(|end| (end as usize).wrapping_sub(particles.start));
-                    met.held.add_to_a(lane, &mut wrenches[a]);
-                    met.damped.add_to_a(lane, &mut resistance[a]);
+                    met.forces.add_to_a(lane, &mut wrenches[a]);
                     if b < wrenches.len() {
-                        met.held.add_to_b(lane, &mut wrenches[b]);
-                        met.damped.add_to_b(lane, &mut resistance[b]);
+                        met.forces.add_to_b(lane, &mut wrenches[b]);
                     }
                 }
             }
@@ -441,12 +441,12 @@ impl ShareWork<'_> {
 /// What becomes of contacts, row by row.
 struct Met {
     slid: [[f64; 4]; FOUR],
-    rolled: [[f64; 4]; FOUR],
-    sliding_j: [f64; FOUR],
-    rolling_j: [f64; FOUR],
-    /// Forces but for damping.
-    held: Forces,
-    damped: Forces,
+    damped: [[f64; 4]; FOUR],
+    /// Spring and damping of rolling. None: there is no rolling friction.
+    rolled: Option<[[[f64; 4]; FOUR]; 2]>,
+    friction_j: [f64; FOUR],
+    damping_j: [f64; FOUR],
+    forces: Forces,
 }
 
 /// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
@@ -484,26 +484,39 @@ impl Forces {
 impl Scene<'_> {
     /// What contacts do to their particles, one for each lane.
     #[inline(always)]
-    fn meet<'a, T: Lanes>(
+    fn meet<'a, T: Lanes, R: RollingFriction<T>>(
         &self,
         proof: T::Proof,
         law: &impl NormalLaw<T>,
-        rolling: &impl RollingFriction<T>,
+        rolling: &R,
         pair: impl Fn(usize) -> [u32; 2],
         memory: impl Fn(usize) -> &'a Memory,
     ) -> Met {
         let (place_a, a) = self.ball::<T>(proof, |lane| pair(lane)[0] as usize);
         let (place_b, b) = self.ball::<T>(proof, |lane| pair(lane)[1] as usize);
         let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| memory(lane).slid);
-        let [rx, ry, rz, origin_m] = T::columns(proof, |lane| memory(lane).rolled);
+        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| memory(lane).damped);
+        let none = Triple(overlap_m.zero(), overlap_m.zero(), overlap_m.zero());
+        let (rolling_rad, moment_n_m) = if R::REMEMBERS {
+            (
+                vectors(proof, |lane| memory(lane).rolled),
+                vectors(proof, |lane| memory(lane).rolling_damped),
+            )
+        } else {
+            (none, none)
+        };
         let mut touch = touch(place_b - place_a, [a, b], self.dt);
         let least_m = touch.radius_m.times(self.contacts.least_overlap);
         let relaxed = relaxed(touch.overlap_m, origin_m, least_m);
         touch.overlap_m = relaxed.overlap_m;
         let history = History {
             tangential_m: Triple(sx, sy, sz),
-            rolling_rad: Triple(rx, ry, rz),
+            rolling_rad,
             overlap_m,
+        };
+        let damped_before = Damped {
+            force_n: Triple(dx, dy, dz),
+            moment_n_m,
         };
         let Response {
             history,
@@ -513,20 +526,16 @@ impl Scene<'_> {
             damping,
             ..
         } = response(law, rolling, &touch, &history, self.dt);
-
-        let damping_on_b = damping.normal_n + damping.tangential_n;
-        let damped = torques(&touch, damping_on_b, damping.rolling_n_m);
-        let held_on_b = force_on_b - damping_on_b;
-        let held = torques(&touch, held_on_b, moment_on_b - damping.rolling_n_m);
+        let damped = damping.total();
         let Triple(sx, sy, sz) = history.tangential_m;
-        let Triple(rx, ry, rz) = history.rolling_rad;
+        let Triple(dx, dy, dz) = damped.force_n;
         Met {
             slid: T::rows([sx, sy, sz, history.overlap_m]),
-            rolled: T::rows([rx, ry, rz, relaxed.origin_m]),
-            sliding_j: lost.sliding.values(),
-            rolling_j: lost.rolling.values(),
-            held: Forces::new(held_on_b, held),
-            damped: Forces::new(damping_on_b, damped),
+            damped: T::rows([dx, dy, dz, relaxed.origin_m]),
+            rolled: R::REMEMBERS.then(|| [rows(history.rolling_rad), rows(damped.moment_n_m)]),
+            friction_j: (lost.sliding + lost.rolling).values(),
+            damping_j: damped.lost_j(&damped_before, &touch, self.dt).values(),
+            forces: Forces::new(force_on_b, torques(&touch, force_on_b, moment_on_b)),
         }
     }
 

@@ -24,7 +24,10 @@ pub(super) trait Lanes: Number {
     /// Four numbers of each of `COUNT` bonds: lane by lane what stands row by row.
     fn columns(proof: Self::Proof, rows: impl Fn(usize) -> [f64; 4]) -> [Self; 4];
 
-    /// The opposite: row by row what stands lane by lane. Only the first `COUNT` rows have a meaning.
+    /// For each lane a bit, from the lowest on: whether it is above that of the other.
+    fn above(self, other: Self) -> u8;
+
+    /// The opposite of [`Lanes::columns`]: row by row what stands lane by lane. Only the first `COUNT` rows have a meaning.
     fn rows(columns: [Self; 4]) -> [[f64; 4]; FOUR];
 }
 
@@ -53,6 +56,11 @@ impl Lanes for f64 {
     #[inline(always)]
     fn columns((): (), rows: impl Fn(usize) -> [f64; 4]) -> [Self; 4] {
         rows(0)
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> u8 {
+        u8::from(self > other)
     }
 
     #[inline(always)]
@@ -267,6 +275,13 @@ mod avx2 {
                 Self { simd, v: z },
                 Self { simd, v: w },
             ]
+        }
+
+        #[inline(always)]
+        fn above(self, other: Self) -> u8 {
+            let avx = self.simd.avx;
+            let above = avx._mm256_cmp_pd::<{ std::arch::x86_64::_CMP_GT_OQ }>(self.v, other.v);
+            avx._mm256_movemask_pd(above) as u8
         }
 
         #[inline(always)]

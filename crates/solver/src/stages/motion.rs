@@ -13,7 +13,7 @@ pub const CHUNK: usize = 1024;
 /// Velocities changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
 pub fn kick(
     particles: &mut Particles,
-    resisting: [&[Wrench]; 3],
+    resisting: [&[Wrench]; 2],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 ) {

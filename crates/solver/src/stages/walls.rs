@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::loads::factor_at;
 use crate::geometry::Touch;
+use crate::physics::contact::Damped;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::NoRolling;
 use crate::physics::contact::touch::{Ball, Foot, Touch as Contact, torques, touch_at_wall};
@@ -13,7 +14,7 @@ use crate::physics::contact::{History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::physics::rigid::turn;
 use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
-use crate::state::particles::{Particles, Wrench};
+use crate::state::particles::Particles;
 use crate::state::walls::{Push, Wall, WallTouch};
 
 /// Particles handled by one task.
@@ -46,7 +47,7 @@ pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     }
 }
 
-/// Adds what walls do to the wrenches and, of damping, to the resistance, after a step of `dt`, s; and notes what that does to the walls.
+/// Adds what walls do to the wrenches after a step of `dt`, s; and notes what that does to the walls.
 pub fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
@@ -55,7 +56,6 @@ pub fn wall_wrenches(
 ) {
     let Contacts {
         materials,
-        resistance,
         least_overlap,
         ..
     } = contacts;
@@ -83,7 +83,7 @@ pub fn wall_wrenches(
         wall.stiffness_n_m = 0.0;
         wall.touching.clear();
         for met in met.into_iter().flatten() {
-            book(wall, &met, particles, resistance);
+            book(wall, &met, particles);
         }
     }
 }
@@ -91,30 +91,30 @@ pub fn wall_wrenches(
 /// What a particle and a wall do to each other at one place.
 struct Met {
     touch: WallTouch,
+    /// Feature of what is remembered.
+    old: Option<u32>,
     /// Where, m.
     point: Vector3<f64>,
     /// Velocity of the belt there, m/s.
     belt: Vector3<f64>,
     /// Force on the particle and the part that is damping, N.
     forces: [Vector3<f64>; 2],
-    /// Torque on the particle and the part that is damping, N m.
-    torques: [Vector3<f64>; 2],
+    /// Torque on the particle, N m.
+    torque: Vector3<f64>,
     /// Moment of rolling friction on the particle and the part that is damping, N m.
     moments: [Vector3<f64>; 2],
     elastic_j: f64,
-    lost_j: f64,
+    /// Taken by friction and by damping in the step just made.
+    lost_j: [f64; 2],
     /// Whether the centre of the particle has gone through the surface.
     crossed: bool,
     /// Along the normal, N/m.
     stiffness_n_m: f64,
 }
 
-fn book(wall: &mut Wall, met: &Met, particles: &mut Particles, resistance: &mut [Wrench]) {
+fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     let i = met.touch.particle as usize;
-    let [force, damping] = met.forces;
-    let [torque, damping_torque] = met.torques;
-    particles.wrenches[i].add(&(force - damping), &(torque - damping_torque));
-    resistance[i].add(&damping, &damping_torque);
+    particles.wrenches[i].add(&met.forces[0], &met.torque);
     let arm = met.point - Vector3::from(wall.frame.position_m);
     let pushes = [&mut wall.push, &mut wall.damping];
     for ((push, force), moment) in pushes.into_iter().zip(met.forces).zip(met.moments) {
@@ -127,11 +127,14 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles, resistance: &mut 
     }
     wall.elastic_j += met.elastic_j;
     wall.stiffness_n_m += met.stiffness_n_m;
-    wall.friction_j += met.lost_j;
+    wall.friction_j += met.lost_j[0];
+    wall.damping_j += met.lost_j[1];
     if met.crossed {
         wall.crossed = Some(met.touch.particle);
     }
-    wall.touching.push(met.touch);
+    if met.touch.memory != Memory::default() {
+        wall.touching.push(met.touch);
+    }
 }
 
 /// Finds where a particle touches a wall, and what comes of it.
@@ -153,6 +156,7 @@ fn meet(
     let before = &wall.touching[first..];
     let before = &before[..before.partition_point(|old| old.particle == particle)];
     let kind = wall.kind(materials[i]);
+    let first_found = found.len();
     for touch in &touches {
         let there = wall.frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
@@ -167,6 +171,28 @@ fn meet(
             least_overlap,
             dt,
         ));
+    }
+    // What has ended has its losses still to be booked.
+    for old in before {
+        let goes_on = |met: &Met| met.old == Some(old.feature);
+        if !found[first_found..].iter().any(goes_on) {
+            let there = Touch {
+                point: pose.place().into(),
+                feature: old.feature,
+                normal: old.normal.map(|n| -n),
+                distance_m: pose.radius_m(),
+            };
+            found.push(meet_at(
+                wall,
+                kind,
+                particles,
+                particle,
+                &there,
+                Some(old),
+                least_overlap,
+                dt,
+            ));
+        }
     }
 }
 
@@ -222,14 +248,18 @@ fn meet_at(
     };
     let mut touch = touch_at_wall(&foot, ball, dt);
     let memory = old.map_or(Memory::default(), |old| old.memory);
-    let [rx, ry, rz, origin_m] = memory.rolled;
-    let [sx, sy, sz, overlap_m] = memory.slid;
-    let relaxed = relaxed(touch.overlap_m, origin_m, least_overlap * touch.radius_m);
+    let least_m = least_overlap * touch.radius_m;
+    let relaxed = relaxed(touch.overlap_m, memory.origin_m(), least_m);
     touch.overlap_m = relaxed.overlap_m;
+    let vector = |[x, y, z, _]: [f64; 4]| Triple(x, y, z);
     let history = History {
-        tangential_m: Triple(sx, sy, sz),
-        rolling_rad: Triple(rx, ry, rz),
-        overlap_m,
+        tangential_m: vector(memory.slid),
+        rolling_rad: vector(memory.rolled),
+        overlap_m: memory.overlap_m(),
+    };
+    let damped_before = Damped {
+        force_n: vector(memory.damped),
+        moment_n_m: vector(memory.rolling_damped),
     };
     let Response {
         history,
@@ -239,28 +269,32 @@ fn meet_at(
         lost,
         damping,
     } = of_kind(kind, &touch, &history, dt);
-    let damping_n = damping.normal_n + damping.tangential_n;
+    let damped = damping.total();
     let [_, torque] = torques(&touch, force_on_b, moment_on_b);
-    let [_, damping_torque] = torques(&touch, damping_n, damping.rolling_n_m);
-    let Triple(sx, sy, sz) = history.tangential_m;
-    let Triple(rx, ry, rz) = history.rolling_rad;
+    let row = |Triple(x, y, z): Triple<f64>, last: f64| [x, y, z, last];
     Met {
+        old: old.map(|old| old.feature),
         touch: WallTouch {
             particle,
             feature: there.feature,
             normal: normal.into(),
             memory: Memory {
-                slid: [sx, sy, sz, history.overlap_m],
-                rolled: [rx, ry, rz, relaxed.origin_m],
+                slid: row(history.tangential_m, history.overlap_m),
+                damped: row(damped.force_n, relaxed.origin_m),
+                rolled: row(history.rolling_rad, 0.0),
+                rolling_damped: row(damped.moment_n_m, 0.0),
             },
         },
         point,
         belt,
-        forces: [force_on_b.into(), damping_n.into()],
-        torques: [torque.into(), damping_torque.into()],
+        forces: [force_on_b.into(), damped.force_n.into()],
+        torque: torque.into(),
         moments: [moment_on_b.into(), damping.rolling_n_m.into()],
         elastic_j: energy.normal + energy.tangential + energy.rolling,
-        lost_j: lost.sliding + lost.rolling,
+        lost_j: [
+            lost.sliding + lost.rolling,
+            damped.lost_j(&damped_before, &touch, dt),
+        ],
         crossed: touch.overlap_m > ball.radius_m
             || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
         stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.radius_m),

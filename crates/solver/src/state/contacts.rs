@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::particles::Wrench;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
@@ -49,14 +48,41 @@ pub struct ContactKind {
     pub rolling: Rolling,
 }
 
-/// What a contact remembers: tangential spring x, y, z (m) and the overlap of the law (m); rolling spring x, y, z (rad) and the overlap at which the
-/// law begins (m), which is 0 but for pairs that [parted overlapping](crate::physics::contact::relaxation).
+/// What a contact remembers. Two cache lines, of which contacts without rolling friction use the first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[repr(C, align(64))]
 pub struct Memory {
-    /// Tangential spring and overlap.
+    /// Tangential spring x, y, z and the overlap of the law, m.
     pub slid: [f64; 4],
-    /// Rolling spring and origin.
+    /// Damping force on the second end x, y, z, N, and the overlap at which the law begins, m, which is 0 but for pairs that
+    /// [parted overlapping](crate::physics::contact::relaxation).
+    pub damped: [f64; 4],
+    /// Rolling spring x, y, z, rad, and nothing.
     pub rolled: [f64; 4],
+    /// Damping moment on the second end x, y, z, N m, and nothing.
+    pub rolling_damped: [f64; 4],
+}
+
+impl Memory {
+    /// Of a pair whose law begins at this overlap, m.
+    pub fn parted_at(overlap_m: f64) -> Self {
+        Self {
+            damped: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
+            ..Self::default()
+        }
+    }
+
+    /// Overlap of the law, m; above 0 where the two press on each other.
+    #[inline(always)]
+    pub fn overlap_m(&self) -> f64 {
+        self.slid[3]
+    }
+
+    /// Overlap at which the law begins, m.
+    #[inline(always)]
+    pub fn origin_m(&self) -> f64 {
+        self.damped[3]
+    }
 }
 
 /// Contacts of all particles. None where the scene has one body and no other can come.
@@ -82,9 +108,7 @@ pub struct Contacts {
     pub relaxes: bool,
     /// A pair that parted overlapping is ordinary below this share of its reduced radius.
     pub least_overlap: f64,
-    /// Damping forces of contacts on particles. Empty: no contacts.
-    pub resistance: Vec<Wrench>,
-    /// Energy lost by sliding and by rolling, booked at the first particle of each pair, J.
+    /// Energy that friction and that damping took so far, booked at the first particle of each pair, J.
     pub lost_j: Vec<[f64; 2]>,
 }
 
@@ -99,8 +123,10 @@ pub struct ContactShare {
     pub border: Vec<u32>,
     /// What those remembered before this step.
     pub border_memories: Vec<Memory>,
-    /// For each kind the contacts that touch in this step: numbers in `border`, and in all.
+    /// For each kind the contacts that touch in this step, or did in the one before: numbers in `border`, and in all.
     pub touching: Vec<[Vec<u32>; 2]>,
+    /// Which of its contacts touched in the step before: a bit for each, four to a byte.
+    pub touched: Vec<u8>,
 }
 
 impl Contacts {
@@ -125,11 +151,7 @@ impl Contacts {
                 while before.next_if(|(old, _)| *old < pair).is_some() {}
                 match before.peek() {
                     Some((old, memory)) if *old == pair => **memory,
-                    _ => {
-                        let mut memory = Memory::default();
-                        memory.rolled[3] = overlap_m(*pair).max(0.0);
-                        memory
-                    }
+                    _ => Memory::parted_at(overlap_m(*pair)),
                 }
             })
             .collect();
@@ -155,9 +177,17 @@ impl Contacts {
             .windows(2)
             .map(|w| {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
+                let own = first_of(w[0])..first_of(w[1]);
+                let remembers = |memory: &Memory| *memory != Memory::default();
+                let touched = self.memories[own.clone()].chunks(4).map(|four| {
+                    (0..).zip(four).fold(0, |bits, (lane, memory)| {
+                        bits | u8::from(remembers(memory)) << lane
+                    })
+                });
                 ContactShare {
                     particles: w[0]..w[1],
-                    own: first_of(w[0])..first_of(w[1]),
+                    touched: touched.collect(),
+                    own,
                     border: Vec::new(),
                     border_memories: Vec::new(),
                     touching: vec![Default::default(); self.kinds.len()],

@@ -39,6 +39,8 @@ pub struct Wall {
     pub elastic_j: f64,
     /// Energy that friction took so far, J.
     pub friction_j: f64,
+    /// Energy that damping took so far, J.
+    pub damping_j: f64,
     /// A particle whose centre has gone through its surface.
     pub crossed: Option<u32>,
     /// Work that it did on the particles up to the present, and in the half step to come, J.
@@ -66,6 +68,7 @@ impl Wall {
             stiffness_n_m: 0.0,
             elastic_j: 0.0,
             friction_j: 0.0,
+            damping_j: 0.0,
             crossed: None,
             work_j: 0.0,
             pending_j: 0.0,

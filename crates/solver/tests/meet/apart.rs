@@ -82,7 +82,7 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
             let clusters = state.clusters.as_ref().unwrap();
             assert_eq!(clusters.living().count(), 64);
             let contacts = state.contacts.as_ref().unwrap();
-            let overlapping = contacts.memories.iter().filter(|m| m.rolled[3] > 0.0);
+            let overlapping = contacts.memories.iter().filter(|m| m.origin_m() > 0.0);
             // 144 nearest neighbours; at 0.5 also the 216 across the squares.
             assert_eq!(overlapping.count(), if overlap < 0.4 { 144 } else { 360 });
             // Bonds at rest pull by what rounding leaves of their lengths.

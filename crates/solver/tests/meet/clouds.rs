@@ -80,7 +80,6 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
         room_m: -1.0,
         relaxes: true,
         least_overlap: 1e-3,
-        resistance: vec![Wrench::default(); count],
         lost_j: vec![[0.0; 2]; count],
         ..Contacts::default()
     };

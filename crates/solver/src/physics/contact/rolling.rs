@@ -16,6 +16,9 @@ use crate::physics::number::{Number, Triple};
 
 /// What becomes of rolling.
 pub trait RollingFriction<T: Number> {
+    /// Whether there is anything to remember: else springs and damping are nothing.
+    const REMEMBERS: bool;
+
     /// The spring after a step that began with the elongation `before`, in the axes of that moment, pressed by the normal force `pressed`, N.
     fn roll(
         &self,
@@ -58,6 +61,8 @@ impl ConstantMoment {
 }
 
 impl<T: Number> RollingFriction<T> for NoRolling {
+    const REMEMBERS: bool = false;
+
     #[inline(always)]
     fn roll(
         &self,
@@ -80,6 +85,8 @@ impl<T: Number> RollingFriction<T> for NoRolling {
 }
 
 impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
+    const REMEMBERS: bool = true;
+
     #[inline(always)]
     fn roll(
         &self,
@@ -107,6 +114,8 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
 }
 
 impl<T: Number> RollingFriction<T> for ElasticPlastic<T> {
+    const REMEMBERS: bool = true;
+
     #[inline(always)]
     fn roll(
         &self,
