@@ -13,6 +13,7 @@ pub mod output;
 pub mod physics;
 pub mod plan;
 pub mod run;
+pub mod shape;
 pub mod snapshot;
 pub mod stages;
 pub mod state;

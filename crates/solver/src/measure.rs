@@ -6,10 +6,13 @@ use dem_io::scene::{At, Measure, Quantity};
 use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::{Balance, synchronous_motions};
+use crate::clusters::fragments;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{stresses, utilisation};
 use crate::physics::rigid::rotation_vector;
 use crate::plan::Plan;
+use crate::plan::bodies::PlacedBody;
+use crate::stages::population::{GONE, Renumbered};
 use crate::state::State;
 use crate::state::particles::Motion;
 
@@ -122,6 +125,36 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
             value
         })
         .collect()
+}
+
+/// Lets the gauges count particles as they are counted now: those of all, of bodies by their names, and of sets as far as their particles are there.
+pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], state: &State) {
+    for gauge in gauges {
+        let named = |name: &String| *name == gauge.measure.of;
+        let templates = &state.clumps.templates;
+        if gauge.measure.of == "all" {
+            gauge.particles = (0..state.particles.len() as u32).collect();
+        } else if templates.iter().any(|template| named(&template.body)) {
+            let own = bodies.iter().filter(|body| named(&body.name));
+            let own = own.flat_map(|body| body.particles.iter().copied().filter(|i| *i != GONE));
+            let clumps = state.clumps.all.iter();
+            let clumps = clumps.filter(|clump| named(&state.clumps.template(clump).body));
+            let carried = clumps.flat_map(|clump| {
+                let count = state.clumps.template(clump).outer.len() as u32;
+                clump.first..clump.first + count
+            });
+            gauge.particles = own.chain(carried).collect();
+            gauge.particles.sort_unstable();
+        } else {
+            for by in by {
+                gauge.particles.retain_mut(|particle| {
+                    *particle = by.particles[*particle as usize];
+                    *particle != GONE
+                });
+            }
+        }
+        gauge.of_all = gauge.particles.len() == state.particles.len();
+    }
 }
 
 impl Gauge {
@@ -257,9 +290,8 @@ fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
     };
-    let mass = |&i: &u32| 1.0 / state.particles.motions[i as usize].inverse_mass;
-    let of_one = |id| clusters.members(id).iter().map(mass).sum();
-    clusters.living().map(of_one).collect()
+    let all = fragments(clusters, &state.particles, &state.clumps, None);
+    all.iter().map(|fragment| fragment.mass_kg).collect()
 }
 
 /// What a bond carries: nothing if it is broken.

@@ -3,4 +3,6 @@
 pub mod bond;
 pub mod contact;
 pub mod number;
+pub mod random;
 pub mod rigid;
+pub mod rotation;

@@ -1,7 +1,9 @@
 //! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs and why each other is left out.
 
 pub mod bodies;
+mod clumps;
 mod contacts;
+mod rules;
 pub mod sets;
 mod stages;
 pub mod time_step;
@@ -12,14 +14,18 @@ use std::collections::BTreeMap;
 use dem_io::scene::{Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
+use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
 use crate::stages::loads::SetLoad;
+use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
 use crate::state::particles::Wrench;
 
 use self::bodies::{PlacedBody, place_bodies};
+use self::clumps::{need_pairs, refuse_unbreakable, standing, templates, templates_of};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
 use self::time_step::{StepChoice, choose_step};
@@ -55,9 +61,14 @@ pub fn plan(
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
+    let mut read = read;
+    let templates = templates(scene, &templates_of(scene), &mut read)?;
+    refuse_unbreakable(scene, &templates)?;
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
-    let enough = 1 + (particles.len() + bonds.len()) / WORTH_A_THREAD;
+    let to_come = templates.iter();
+    let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
+    let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
     state.gravity_m_s2 = scene.run.gravity_m_s2;
     state.particle_damping = scene.run.particle_damping;
@@ -67,7 +78,18 @@ pub fn plan(
     state.supports = supports(scene, &sets)?;
     state.loads = loads(scene, &sets, &state.supports)?;
     let mut notes = Vec::new();
+    state.rules = rules(scene, &templates)?;
+    state.clumps.templates = templates;
+    if !state.clumps.templates.is_empty() && state.particle_damping > 0.0 {
+        return Err(Diagnostic::input(
+            format!("{}: run.particle_damping", scene.source),
+            "clumps have no particles of their own, which alone are damped so",
+            "leave it out, or start bodies as \"bonded\"",
+        ));
+    }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
+    notes.extend(doubts(scene, &state));
+    state.ledger = Ledger::opened(&state);
     let step = choose_step(scene, &mut state, allow_any_step)?;
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
@@ -96,10 +118,19 @@ fn place_meetings(
             Quantity::Count | Quantity::MassFractionOfLargest | Quantity::MassOfLargest
         )
     });
-    if !(breaks || counts_pieces || are_needed(scene)) {
+    let has_clumps = !state.clumps.templates.is_empty();
+    if !(breaks || counts_pieces || has_clumps || are_needed(scene)) {
         return Ok(());
     }
     state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
+    let coming = standing(scene, &state.clumps.templates);
+    if !coming.is_empty() {
+        let changes = Changes {
+            coming,
+            ..Changes::default()
+        };
+        change(state, changes);
+    }
     state.triggers = Triggers {
         interval: scene.clusters.interval,
         min_broken: scene.clusters.min_broken,
@@ -107,6 +138,9 @@ fn place_meetings(
     };
     if are_needed(scene) {
         let kinds = Kinds::new(scene)?;
+        if !scene.contacts.is_empty() {
+            need_pairs(scene, &kinds, &state.clumps.templates)?;
+        }
         place_contacts(scene, &kinds, bodies, state)?;
         state.walls = walls::place_walls(scene, &kinds, bodies, state, notes)?;
     }

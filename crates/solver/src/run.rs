@@ -18,18 +18,20 @@ use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
-use crate::measure::{Gauge, gauges, read_gauges};
+use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
 use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
-use crate::output::summary::Summary;
+use crate::output::summary::{PopulationSummary, Summary};
 use crate::plan::Plan;
+use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
+use crate::stages::replacement::replace;
 use crate::state::State;
 use crate::step::{act, move_on};
 
-use self::events::{change_step, new_step, write_breaks, write_splits};
+use self::events::{change_step, new_step, write_breaks, write_happened, write_splits};
 use self::fragments::write_fragments;
 use self::limits::{Limits, went_through};
 pub use self::progress::Progress;
@@ -117,14 +119,14 @@ pub fn run(
     };
     let Plan {
         mut state,
-        bodies,
+        mut bodies,
         step: choice,
         stages,
         notes,
         ..
     } = plan;
     let fingerprint = fingerprint(&state);
-    let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
+    let mut order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
     let size = state.particles.len() + state.bonds.len();
     let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, &choice);
@@ -137,12 +139,16 @@ pub fn run(
             .map(|f| f.checkpoint().display().to_string());
         snapshot
             .check_scene(&scene.describe())
-            .and_then(|()| snapshot.restore(&mut state))
+            .and_then(|()| snapshot.restore(&mut state, &mut bodies))
             .map_err(|error| error.within(&place.unwrap_or_default()))?;
         progress = snapshot.progress;
         progress.go_on(&state, rhythm, scene)?;
         for (gauge, history) in gauges.iter_mut().zip(snapshot.measures) {
             gauge.history = history;
+        }
+        if !state.clumps.templates.is_empty() {
+            renumber_gauges(&mut gauges, &[], &bodies, &state);
+            order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
         changed_step = change_step(&mut state, &choice);
     }
@@ -240,6 +246,16 @@ pub fn run(
             };
             break (why, balance);
         }
+        if let Some((renumbered, happened)) = replace(&mut state) {
+            for by in &renumbered {
+                renumber(&mut bodies, by);
+            }
+            renumber_gauges(&mut gauges, &renumbered, &bodies, &state);
+            if let Some(files) = &mut files {
+                write_happened(&state, &happened, files)?;
+                files.order = FrameOrder::new(&bodies, &state);
+            }
+        }
         move_on(&mut state);
 
         if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {
@@ -248,7 +264,15 @@ pub fn run(
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
             saved = Instant::now();
-            save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
+            save(
+                &state,
+                &bodies,
+                scene,
+                fingerprint,
+                &gauges,
+                &mut progress,
+                files,
+            )?;
         }
         if interrupted {
             return Err(interruption(&state, files.as_ref()));
@@ -263,7 +287,7 @@ pub fn run(
     let fragments = state
         .clusters
         .as_ref()
-        .map(|clusters| fragments_of(clusters, &state.particles, &state.particles.motions));
+        .map(|clusters| fragments_of(clusters, &state.particles, &state.clumps, None));
     let of_state = state.clusters.as_ref().zip(fragments.as_ref());
     let summary = Summary {
         scene: scene.source.clone(),
@@ -276,12 +300,18 @@ pub fn run(
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
+        population: PopulationSummary::of(&state),
         steps: state.steps,
         time_step_s: state.time_step_s,
         limit_s: progress.limit_s,
         share_of_limit: state.time_step_s / progress.limit_s,
         steps_per_s,
-        bond_steps_per_s: steps_per_s * state.bonds.len() as f64,
+        bond_steps_per_s: if state.rules.are_none() {
+            steps_per_s * state.bonds.len() as f64
+        } else {
+            // Of the whole run, as the number of bonds changes.
+            steps_per_s * state.rules.bond_steps[0] as f64 / state.steps.max(1) as f64
+        },
         energy_error,
         momentum_error,
         angular_momentum_error,
@@ -306,7 +336,15 @@ pub fn run(
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
-        save(&state, scene, fingerprint, &gauges, &mut progress, files)?;
+        save(
+            &state,
+            &bodies,
+            scene,
+            fingerprint,
+            &gauges,
+            &mut progress,
+            files,
+        )?;
         write_json(&files.folder.summary(), &summary)?;
         write_plots(files.folder, &gauges)?;
         if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
@@ -319,6 +357,7 @@ pub fn run(
 
 fn save(
     state: &State,
+    bodies: &[PlacedBody],
     scene: &Scene,
     fingerprint: u64,
     gauges: &[Gauge],
@@ -337,6 +376,7 @@ fn save(
     let measures = gauges.iter().map(|gauge| gauge.history).collect();
     let snapshot = Snapshot::taken(
         state,
+        bodies,
         scene.describe(),
         fingerprint,
         measures,

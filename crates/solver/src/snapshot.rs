@@ -9,14 +9,17 @@ use serde::{Deserialize, Serialize};
 use crate::check::ledger::Ledger;
 use crate::measure;
 use crate::physics::bond::incremental::History;
+use crate::plan::bodies::PlacedBody;
 use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
 
 mod meetings;
+mod population;
 
 use self::meetings::Meetings;
+use self::population::Population;
 
 /// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
 type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
@@ -37,6 +40,8 @@ pub struct Snapshot {
     histories: Vec<[f64; 6]>,
     ledger: Ledger,
     meetings: Meetings,
+    /// None: bodies neither come nor go, and what stands above is enough.
+    population: Option<Population>,
     /// What the gauges have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
@@ -47,12 +52,15 @@ impl Snapshot {
     /// Of a run between two steps.
     pub fn taken(
         state: &State,
+        bodies: &[PlacedBody],
         scene: String,
         fingerprint: u64,
         measures: Vec<measure::History>,
         progress: Progress,
     ) -> Self {
         let p = &state.particles;
+        let population = Population::taken(state, bodies);
+        let is_planned = population.is_none();
         Self {
             scene,
             fingerprint,
@@ -65,6 +73,7 @@ impl Snapshot {
                 .poses
                 .iter()
                 .zip(&p.motions)
+                .filter(|_| is_planned)
                 .map(|(pose, motion)| {
                     let [x, y, z, _] = pose.position_m;
                     (
@@ -76,13 +85,14 @@ impl Snapshot {
                 })
                 .collect(),
             broken: (0..state.bonds.len())
-                .filter(|&at| state.bonds.is_broken(at))
+                .filter(|&at| is_planned && state.bonds.is_broken(at))
                 .map(|at| at as u32)
                 .collect(),
             histories: state
                 .bonds
                 .histories
                 .iter()
+                .filter(|_| is_planned)
                 .map(|h| {
                     let [fx, fy, fz]: [f64; 3] = h.shear_force.into();
                     let [mx, my, mz]: [f64; 3] = h.moment.into();
@@ -91,6 +101,7 @@ impl Snapshot {
                 .collect(),
             ledger: state.ledger,
             meetings: Meetings::taken(state),
+            population,
             measures,
             progress,
         }
@@ -173,18 +184,34 @@ impl Snapshot {
     ///
     /// # Errors
     /// The scene's bodies or bonds are others than those of the run.
-    pub fn restore(&self, state: &mut State) -> Result<()> {
+    pub fn restore(&self, state: &mut State, bodies: &mut Vec<PlacedBody>) -> Result<()> {
+        if let Some(population) = &self.population {
+            if self.fingerprint != fingerprint(state) {
+                return Err(other_bodies());
+            }
+            population.restore(state, bodies)?;
+        } else {
+            self.restore_planned(state)?;
+        }
+        state.ledger = self.ledger;
+        self.meetings.restore(state)?;
+        state.steps = self.steps;
+        state.time_s = self.time_s;
+        state.time_step_s = self.time_step_s;
+        state.previous_time_step_s = self.previous_time_step_s;
+        state.broken_count = self.broken_count;
+        Ok(())
+    }
+
+    /// Puts the particles and bonds where they stood.
+    fn restore_planned(&self, state: &mut State) -> Result<()> {
         let bonds = state.bonds.len();
         if self.fingerprint != fingerprint(state)
             || self.particles.len() != state.particles.len()
             || self.histories.len() != state.bonds.histories.len()
             || self.broken.iter().any(|&at| at as usize >= bonds)
         {
-            return Err(Diagnostic::input(
-                "",
-                "this checkpoint belongs to a run with other bodies or bonds than the scene has now",
-                "give the scene and the bodies that the run began with, or start again without --resume",
-            ));
+            return Err(other_bodies());
         }
         let p = &mut state.particles;
         for (i, &([x, y, z], turned, velocity_m_s, spin_rad_s)) in self.particles.iter().enumerate()
@@ -206,15 +233,16 @@ impl Snapshot {
             moment: Vector3::new(mx, my, mz),
         };
         state.bonds.histories = self.histories.iter().map(history).collect();
-        state.ledger = self.ledger;
-        self.meetings.restore(state)?;
-        state.steps = self.steps;
-        state.time_s = self.time_s;
-        state.time_step_s = self.time_step_s;
-        state.previous_time_step_s = self.previous_time_step_s;
-        state.broken_count = self.broken_count;
         Ok(())
     }
+}
+
+fn other_bodies() -> Diagnostic {
+    Diagnostic::input(
+        "",
+        "this checkpoint belongs to a run with other bodies or bonds than the scene has now",
+        "give the scene and the bodies that the run began with, or start again without --resume",
+    )
 }
 
 /// A hash (FNV-1a) of what a state is made of: particles and bonds as planned, before the first step.
@@ -248,6 +276,16 @@ pub fn fingerprint(state: &State) -> u64 {
     }
     for &[a, c] in &b.ends {
         add(u64::from(a) << 32 | u64::from(c));
+    }
+    for template in &state.clumps.templates {
+        for sphere in &template.spheres {
+            let numbers = sphere.place_m.into_iter();
+            let numbers = numbers.chain([sphere.radius_m, sphere.mass_kg]);
+            numbers.for_each(|x| add(x.to_bits()));
+        }
+        for &[a, c] in &template.bonds.ends {
+            add(u64::from(a) << 32 | u64::from(c));
+        }
     }
     hash
 }

@@ -3,6 +3,7 @@
 mod blocks;
 pub mod bonds;
 pub mod breakage;
+pub mod clumps;
 pub mod contacts;
 pub mod damping;
 pub mod incremental;
@@ -10,5 +11,7 @@ mod lanes;
 pub mod loads;
 pub mod motion;
 pub mod neighbours;
+pub mod population;
+pub mod replacement;
 pub mod supports;
 pub mod walls;

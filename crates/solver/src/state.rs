@@ -1,9 +1,12 @@
 //! What moves and what joins it, as plain arrays; and all that a step needs besides.
 
 pub mod bonds;
+pub mod clumps;
 pub mod contacts;
 pub mod order;
 pub mod particles;
+pub mod regions;
+pub mod rules;
 pub mod shares;
 pub mod walls;
 
@@ -15,18 +18,24 @@ use crate::stages::loads::SetLoad;
 use crate::stages::supports::SetSupport;
 
 use self::bonds::Bonds;
+use self::clumps::Clumps;
 use self::contacts::Contacts;
 use self::particles::{Particles, Wrench};
+use self::rules::Rules;
 use self::shares::{Share, divide};
 use self::walls::Wall;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
 #[derive(Debug, Clone)]
 pub struct State {
-    /// Spheres.
+    /// Spheres: first those that move by themselves, then those that clumps carry.
     pub particles: Particles,
+    /// Rigid clumps.
+    pub clumps: Clumps,
     /// What joins them.
     pub bonds: Bonds,
+    /// Number of shares in which the work is divided, at most.
+    pub threads: usize,
     /// Who works on what.
     pub shares: Vec<Share>,
     /// Which particles are of one piece. None: nothing can break, and nothing can touch.
@@ -37,6 +46,8 @@ pub struct State {
     pub unsearched: Vec<u32>,
     /// Clusters that were found in pieces in this step.
     pub splits: Vec<Split>,
+    /// When bodies come, go, and become others.
+    pub rules: Rules,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
     /// Walls, in the order of their names.
@@ -86,12 +97,15 @@ impl State {
             },
             ledger: Ledger::default(),
             particles,
+            clumps: Clumps::default(),
             bonds,
+            threads,
             shares,
             clusters: None,
             triggers: Triggers::default(),
             unsearched: Vec::new(),
             splits: Vec::new(),
+            rules: Rules::default(),
             contacts: None,
             walls: Vec::new(),
             loads: Vec::new(),
@@ -115,6 +129,41 @@ impl State {
     /// The lists of damping forces that are booked apart: of bonds and on particles; each with one for each particle, or empty.
     pub fn resistances(&self) -> [&[Wrench]; 2] {
         [&self.bond_resistance, &self.particle_resistance]
+    }
+
+    /// Density of particle `i`, kg/m3, be it carried by a clump or not.
+    pub fn density_kg_m3(&self, i: usize) -> f64 {
+        let after = self
+            .clumps
+            .all
+            .partition_point(|clump| clump.first as usize <= i);
+        match after.checked_sub(1).filter(|_| i >= self.particles.free) {
+            Some(at) => {
+                let clump = &self.clumps.all[at];
+                let template = self.clumps.template(clump);
+                let sphere = template.outer[i - clump.first as usize] as usize;
+                let sphere = &template.spheres[sphere];
+                let volume = 4.0 / 3.0 * std::f64::consts::PI * sphere.radius_m.powi(3);
+                sphere.mass_kg / volume
+            }
+            None => self.particles.density_kg_m3(i),
+        }
+    }
+
+    /// Radius of the largest sphere that is there or may come, m; 0 where there is none.
+    pub fn largest_radius_m(&self) -> f64 {
+        let of_clumps = self.clumps.templates.iter().flat_map(|template| {
+            let radii = template.spheres.iter().map(|sphere| sphere.radius_m);
+            radii.map(|radius| template.scale * radius)
+        });
+        of_clumps.fold(self.particles.largest_radius_m(), f64::max)
+    }
+
+    /// Radius of the smallest sphere that is there or may come, m; infinite where there is none.
+    pub fn smallest_radius_m(&self) -> f64 {
+        let templates = self.clumps.templates.iter();
+        let of_clumps = templates.flat_map(|t| t.spheres.iter().map(|sphere| sphere.radius_m));
+        of_clumps.fold(self.particles.smallest_radius_m(), f64::min)
     }
 
     /// Length of the kick of this step: half of the step before and half of the step to come, s.

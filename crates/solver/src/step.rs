@@ -3,6 +3,7 @@
 use crate::clock::Stage;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::breakage::break_bonds;
+use crate::stages::clumps;
 use crate::stages::contacts::{contact_wrenches, list_contacts};
 use crate::stages::damping::damping_wrenches;
 use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
@@ -41,6 +42,7 @@ pub fn act(state: &mut State) {
         }
         contact_wrenches(contacts, p, before_s);
         wall_wrenches(&mut state.walls, contacts, p, before_s);
+        clumps::gather(&mut state.clumps, p, before_s);
         state.clock.book(Stage::Contacts);
     }
 
@@ -91,6 +93,7 @@ pub fn act(state: &mut State) {
     let p = &mut state.particles;
     let resistance = [&state.bond_resistance[..], &state.particle_resistance];
     kick(p, resistance, state.gravity_m_s2, kick_s);
+    clumps::kick(&mut state.clumps, state.gravity_m_s2, kick_s);
     state.clock.book(Stage::Motion);
     hold(
         &mut state.supports,
@@ -107,7 +110,8 @@ pub fn act(state: &mut State) {
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
-    state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
+    let of_clumps_m_s = clumps::drift(&mut state.clumps, &mut state.particles, state.time_step_s);
+    state.fastest_m_s = drift(&mut state.particles, state.time_step_s).max(of_clumps_m_s);
     if let Some(contacts) = &mut state.contacts {
         let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
         state.fastest_m_s += of_walls_m_s;

@@ -4,13 +4,16 @@
 //! as the step: its error falls with the square of the time step.
 
 use crate::physics::bond::total::BondEnergy;
+use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
+use crate::state::clumps::Clumps;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::walls::{Push, Wall};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +25,8 @@ pub struct Ledger {
     pending: Work,
     /// Released by bonds that broke, J.
     released_j: f64,
+    /// Brought by bodies that came, J.
+    brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.
     opening_j: f64,
     /// Largest energy and work seen, J.
@@ -83,6 +88,8 @@ pub struct Balance {
     pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub released_j: f64,
+    /// That bodies brought which came, less what those took along that went, and what clumps and clusters gained as they took each other's place, J.
+    pub brought_j: f64,
     /// What is there less what should be, J.
     pub energy_error_j: f64,
     /// The same over the largest energy or work so far.
@@ -112,11 +119,18 @@ impl Ledger {
     /// The ledger of a state before its first step.
     pub fn opened(state: &State) -> Self {
         let p = &state.particles;
-        let mass_kg = ordered_sum(p.len(), |i| 1.0 / p.motions[i].inverse_mass);
+        let clumps = &state.clumps;
+        let free_kg = ordered_sum(p.free, |i| 1.0 / p.motions[i].inverse_mass);
+        let mass_kg = free_kg + clumps.mass_kg();
         let about_m = [0, 1, 2].map(|k| {
-            ordered_sum(p.len(), |i| {
+            let of_free = ordered_sum(p.free, |i| {
                 p.poses[i].position_m[k] / p.motions[i].inverse_mass
-            }) / mass_kg
+            });
+            let of_clumps = clumps.all.iter();
+            let of_clumps: f64 = of_clumps
+                .map(|clump| clump.place_m[k] * clumps.template(clump).mass_kg)
+                .sum();
+            over(of_free + of_clumps, mass_kg)
         });
         let mut ledger = Self {
             about_m,
@@ -132,9 +146,10 @@ impl Ledger {
         ledger.floor_j = ordered_sum(bonds.len(), stretched);
         let pressed = state.contacts.as_ref();
         let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
-        ledger.opening_j = kinetic_energy(p, |i| p.motions[i]) + elastic + pressed;
+        let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
+        ledger.opening_j = kinetic + elastic + pressed;
         ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
-        let (momentum, scales) = momenta(p, about_m);
+        let (momentum, scales) = momenta(p, clumps, about_m);
         [ledger.momentum, ledger.angular_momentum] = momentum;
         [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
         ledger
@@ -155,12 +170,40 @@ impl Ledger {
         let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
         let pushed = walls_work_j(walls).abs();
         let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen.abs();
+        let given = given + self.brought_j.abs();
         self.opening_j.abs() + given + self.floor_j
     }
 
     fn settle(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         self.work.add(&pending, 1.0);
+    }
+
+    /// Books something that comes (1) or goes (-1) between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
+    /// angular momentum that it has after the kick, and with this energy at the moment of the places, that in gravity left out, J.
+    pub fn bring(
+        &mut self,
+        sign: f64,
+        [mass_kg, energy_j]: [f64; 2],
+        [place_m, velocity_m_s, own]: [[f64; 3]; 3],
+        gravity_m_s2: [f64; 3],
+    ) {
+        let [px, py, pz, lx, ly, lz, ..] =
+            momenta_of(mass_kg, place_m, velocity_m_s, own, self.about_m);
+        self.brought_j += sign * energy_j;
+        self.mass_kg += sign * mass_kg;
+        for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {
+            let moment = sign * mass_kg * (place_m[k] - self.about_m[k]);
+            self.first_moment[k] += moment;
+            self.brought_j -= gravity_m_s2[k] * moment;
+            self.momentum[k] += sign * p;
+            self.angular_momentum[k] += sign * l;
+        }
+    }
+
+    /// Books energy that was gained without a cause that has a place of its own, J.
+    pub fn gain(&mut self, energy_j: f64) {
+        self.brought_j += energy_j;
     }
 
     /// Where the centre of mass should be after a drift.
@@ -283,7 +326,12 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions(state);
     let p = &state.particles;
-    let kinetic = kinetic_energy(p, |i| motions[i]);
+    let clumps = synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s);
+    let of_clumps = clumps.iter();
+    let of_clumps: f64 = of_clumps
+        .map(|clump| clump.kinetic_j(state.clumps.template(clump)))
+        .sum();
+    let kinetic = kinetic_energy(p, |i| motions[i]) + of_clumps;
     let elastic = elastic_energy(state);
     let wall_work = walls_work_j(&state.walls);
     let (mut contact_elastic, [mut friction, mut contact_damping]) = match &state.contacts {
@@ -295,7 +343,7 @@ pub fn balance(state: &mut State) -> Balance {
         friction += wall.friction_j;
         contact_damping += wall.damping_j;
     }
-    let (present, scales) = momenta(p, state.ledger.about_m);
+    let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
@@ -304,7 +352,7 @@ pub fn balance(state: &mut State) -> Balance {
     let gone =
         work.bond_damping + work.particle_damping + contact_damping + friction + ledger.released_j;
     let stored = elastic.total() + contact_elastic;
-    let given = work.loads + work.supports + wall_work;
+    let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
     let largest = [
         kinetic + stored,
@@ -341,6 +389,7 @@ pub fn balance(state: &mut State) -> Balance {
         contact_damping_j: contact_damping,
         friction_j: friction,
         released_j: ledger.released_j,
+        brought_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),
         energy_scale_j: ledger.scale_j,
@@ -389,11 +438,20 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         }
         motion
     };
-    let mut motions: Vec<Motion> = (0..p.len())
+    let mut motions: Vec<Motion> = (0..p.free)
         .into_par_iter()
         .with_min_len(CHUNK)
         .map(back)
         .collect();
+    for clump in synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s) {
+        let template = state.clumps.template(&clump);
+        let spheres = &p.poses[clump.first as usize..][..template.outer.len()];
+        motions.extend(
+            spheres
+                .iter()
+                .map(|pose| clump.motion_at(template, &pose.place())),
+        );
+    }
     let steps_s = [state.previous_time_step_s, state.time_step_s];
     for support in &state.supports {
         for held in &support.held {
@@ -414,9 +472,9 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     motions
 }
 
-/// Kinetic energy of particles that move so, J.
+/// Kinetic energy of the particles that move by themselves, so, J.
 pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
-    ordered_sum(particles.len(), |i| particles.kinetic_j(i, &motion(i)))
+    ordered_sum(particles.free, |i| particles.kinetic_j(i, &motion(i)))
 }
 
 /// Elastic energy of all bonds by mode.
@@ -437,9 +495,24 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
     }
 }
 
+/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity, m/s, and own angular momentum; and their magnitudes.
+fn momenta_of(
+    mass_kg: f64,
+    place_m: [f64; 3],
+    velocity_m_s: [f64; 3],
+    own: [f64; 3],
+    about_m: [f64; 3],
+) -> [f64; 8] {
+    let momentum = Vector3::from(velocity_m_s) * mass_kg;
+    let arm = Vector3::from(place_m) - Vector3::from(about_m);
+    let angular = arm.cross(&momentum) + Vector3::from(own);
+    let ([px, py, pz], [lx, ly, lz]): ([f64; 3], [f64; 3]) = (momentum.into(), angular.into());
+    [px, py, pz, lx, ly, lz, momentum.norm(), angular.norm()]
+}
+
 /// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
-fn momenta(particles: &Particles, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
-    let sums = ordered_sums(particles.len(), |i| {
+fn momenta(particles: &Particles, clumps: &Clumps, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
+    let mut sums = ordered_sums(particles.free, |i| {
         let (pose, motion) = (&particles.poses[i], &particles.motions[i]);
         let mass = 1.0 / motion.inverse_mass;
         let inertia = 1.0 / motion.inverse_inertia;
@@ -460,6 +533,19 @@ fn momenta(particles: &Particles, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]
             magnitude(l),
         ]
     });
+    for clump in &clumps.all {
+        let mass = clumps.template(clump).mass_kg;
+        let parts = momenta_of(
+            mass,
+            clump.place_m,
+            clump.velocity_m_s,
+            clump.angular_momentum,
+            about_m,
+        );
+        for (sum, part) in sums.iter_mut().zip(parts) {
+            *sum += part;
+        }
+    }
     let [px, py, pz, lx, ly, lz, momentum, angular_momentum] = sums;
     ([[px, py, pz], [lx, ly, lz]], [momentum, angular_momentum])
 }

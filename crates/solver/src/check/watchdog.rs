@@ -44,7 +44,7 @@ impl Watchdog {
             return false;
         }
         let p = &state.particles;
-        let kinetic = kinetic_energy(p, |i| p.motions[i]);
+        let kinetic = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
         // Not a number is due as well.
         let quiet = kinetic
             <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2, &state.walls);

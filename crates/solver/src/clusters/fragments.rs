@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::Clusters;
+use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::particles::{Motion, Particles};
 
 /// A cluster as one body.
@@ -33,12 +34,41 @@ pub struct Fragment {
     pub extent_m: f64,
 }
 
-/// All clusters that are whole, in the order of their numbers. `motions` may be those of the particles or others for the same moment as the poses.
-pub fn fragments(clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Vec<Fragment> {
-    clusters
+/// All clusters that are whole, in the order of their numbers. `now`: motions of particles and clumps for the moment of the poses, if others than those that
+/// they have.
+pub fn fragments(
+    clusters: &Clusters,
+    particles: &Particles,
+    clumps: &Clumps,
+    now: Option<(&[Motion], &[Clump])>,
+) -> Vec<Fragment> {
+    let (motions, moving) = now.unwrap_or((&particles.motions, &clumps.all));
+    let mut fragments: Vec<Fragment> = clusters
         .living()
         .map(|id| fragment(id, clusters, particles, motions))
-        .collect()
+        .collect();
+    for clump in moving {
+        if let Ok(at) = fragments.binary_search_by_key(&clump.cluster, |fragment| fragment.id) {
+            fragments[at] = as_fragment(clump, clumps.template(clump), &fragments[at]);
+        }
+    }
+    fragments
+}
+
+/// A clump, of which only the outer spheres are known.
+fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment {
+    let cubes: f64 = template.spheres.iter().map(|s| s.radius_m.powi(3)).sum();
+    Fragment {
+        particles: template.spheres.len() as u32,
+        mass_kg: template.mass_kg,
+        centre_m: clump.place_m,
+        velocity_m_s: clump.velocity_m_s,
+        angular_velocity_rad_s: clump.spin_rad_s(template).into(),
+        angular_momentum_kg_m2_s: clump.angular_momentum,
+        force_n: clump.force_n,
+        size_m: 2.0 * cubes.cbrt(),
+        ..*outer
+    }
 }
 
 fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Fragment {

@@ -1,5 +1,7 @@
 //! Frames: all particles and bonds at one time, in the order of the bodies' files.
 
+use std::collections::BTreeSet;
+
 use dem_io::Result;
 use dem_io::results::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS};
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
@@ -9,9 +11,10 @@ use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::plan::bodies::PlacedBody;
+use crate::stages::population::GONE;
 use crate::state::State;
 
-/// Who is who in a frame: particles and bonds of all bodies, in the order of their files.
+/// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after them the spheres of clumps.
 #[derive(Debug, Clone)]
 pub struct FrameOrder {
     particles: Vec<u32>,
@@ -20,6 +23,8 @@ pub struct FrameOrder {
     start: Vec<[f64; 3]>,
     /// For each particle of the state, its number in the frames.
     place_of: Vec<u32>,
+    /// Whether bodies come, go, or become others: then no particle has a place at the start.
+    changes: bool,
 }
 
 impl FrameOrder {
@@ -31,9 +36,14 @@ impl FrameOrder {
             bonds: Vec::new(),
             start: Vec::new(),
             place_of: vec![0_u32; state.particles.len()],
+            changes: !state.clumps.templates.is_empty(),
         };
-        for (number, body) in (0..).zip(bodies) {
-            for &i in &body.particles {
+        let templates = state.clumps.templates.iter().map(|t| &t.body);
+        let names: BTreeSet<&String> = bodies.iter().map(|b| &b.name).chain(templates).collect();
+        let number_of = |name: &String| names.iter().take_while(|known| **known < name).count();
+        for body in bodies {
+            let number = number_of(&body.name) as u32;
+            for &i in body.particles.iter().filter(|i| **i != GONE) {
                 order.place_of[i as usize] = order.particles.len() as u32;
                 order.particles.push(i);
                 order.bodies.push(number);
@@ -41,18 +51,22 @@ impl FrameOrder {
                     .start
                     .push(state.particles.poses[i as usize].place().into());
             }
-            let mut of_file = vec![0_u32; body.bonds.len()];
-            for (at, &original) in (body.first_bond as u32..).zip(&body.bonds) {
-                of_file[original as usize] = at;
+            let mut of_file: Vec<(u32, u32)> = (body.bonds.iter().copied())
+                .zip(body.first_bond as u32..)
+                .collect();
+            of_file.sort_unstable();
+            order.bonds.extend(of_file.iter().map(|(_, at)| at));
+        }
+        for clump in &state.clumps.all {
+            let template = state.clumps.template(clump);
+            let number = number_of(&template.body) as u32;
+            for i in clump.first..clump.first + template.outer.len() as u32 {
+                order.place_of[i as usize] = order.particles.len() as u32;
+                order.particles.push(i);
+                order.bodies.push(number);
             }
-            order.bonds.extend(of_file);
         }
         order
-    }
-
-    /// Number in the frames of a particle of the state.
-    pub fn number_of(&self, particle: u32) -> u64 {
-        u64::from(self.place_of[particle as usize])
     }
 
     /// Writes the frame of a state between a kick and the drift after it.
@@ -76,7 +90,8 @@ impl FrameOrder {
             let clusters = state.clusters.as_ref();
             clusters.map_or(0, |clusters| clusters.of_particle[particle(i)])
         };
-        let density = |i: usize| p.density_kg_m3(particle(i));
+        let density = |i: usize| state.density_kg_m3(particle(i));
+        let rigid = |i: usize| u32::from(particle(i) >= p.free);
         let bond = |i: usize| self.bonds[i] as usize;
         // Dear to compute, and seven arrays follow from them.
         let loads: Vec<BondLoad> = (0..self.bonds.len())
@@ -102,7 +117,6 @@ impl FrameOrder {
         let mut particle_arrays = vec![
             scalars(RADIUS, &radius),
             counts("body", &body),
-            vectors("displacement_m", &displacement),
             vectors("velocity_m_s", &velocity),
             vectors("angular_velocity_rad_s", &spin),
         ];
@@ -117,6 +131,11 @@ impl FrameOrder {
             scalars("utilisation", &utilisation),
             counts(BROKEN, &broken),
         ];
+        if self.changes {
+            particle_arrays.push(counts("rigid", &rigid));
+        } else {
+            particle_arrays.insert(2, vectors("displacement_m", &displacement));
+        }
         if state.clusters.is_some() {
             // With these a fragment can be taken out as a body.
             particle_arrays.push(counts(CLUSTER, &cluster));

@@ -6,9 +6,10 @@ use dem_io::units::significant;
 use serde::Serialize;
 
 use super::fragments::FragmentSummary;
-use crate::check::ledger::Balance;
+use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
+use crate::state::State;
 
 /// Energy errors above this share are worth a word.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
@@ -37,6 +38,9 @@ pub struct Summary {
     /// What the bodies broke into, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
+    /// Which bodies came, went, and became others, where they can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<PopulationSummary>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.
@@ -75,6 +79,60 @@ pub struct Summary {
     pub test: Option<TestResult>,
 }
 
+/// Which bodies came, went, and became others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PopulationSummary {
+    /// Rigid clumps at the end.
+    pub clumps: usize,
+    /// Clumps that became bonded clusters.
+    pub replaced: u32,
+    /// Bodies that came through inlets.
+    pub came: u32,
+    /// Their mass, kg.
+    pub came_kg: f64,
+    /// Bodies that had to wait until a place was free.
+    pub delayed: u32,
+    /// Bodies that an inlet still owes at the end.
+    pub waiting: u32,
+    /// Bodies and fragments that went through outlets.
+    pub left: u32,
+    /// Their mass, kg.
+    pub left_kg: f64,
+    /// Share of bonds times steps that was left out because bodies were clumps.
+    pub bonds_left_out: f64,
+    /// Share of the spheres of a clump that no other can touch, the mean of all templates.
+    pub inner_spheres: f64,
+}
+
+impl PopulationSummary {
+    /// Of a state at its end. None: no body can come, go, or become another.
+    pub fn of(state: &State) -> Option<Self> {
+        let (rules, clumps) = (&state.rules, &state.clumps);
+        if clumps.templates.is_empty() && rules.are_none() {
+            return None;
+        }
+        let [done, left_out] = rules.bond_steps.map(|count| count as f64);
+        let inner = clumps.templates.iter();
+        let inner: f64 = inner
+            .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
+            .sum();
+        Some(Self {
+            clumps: clumps.all.len(),
+            replaced: rules.replaced,
+            came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
+            came_kg: rules.inlets.iter().map(|inlet| inlet.come.mass_kg).sum(),
+            delayed: rules.inlets.iter().map(|inlet| inlet.come.delayed).sum(),
+            waiting: (rules.inlets.iter())
+                .map(|inlet| inlet.owed(state.time_s))
+                .sum(),
+            left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
+            left_kg: rules.outlets.iter().map(|outlet| outlet.gone.1).sum(),
+            bonds_left_out: over(left_out, done + left_out),
+            inner_spheres: over(inner, clumps.templates.len() as f64),
+        })
+    }
+}
+
 impl Summary {
     /// What speaks against trusting the result. Empty: nothing.
     pub fn doubts(&self) -> Vec<String> {
@@ -87,6 +145,12 @@ impl Summary {
         }
         if self.share_of_limit > 1.0 {
             doubts.push("the step is above the largest stable one".to_owned());
+        }
+        if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
+            doubts.push(format!(
+                "{} bodies still wait for a place at their inlet: make its region larger, its bodies faster, or its rate smaller",
+                population.waiting
+            ));
         }
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
@@ -159,6 +223,24 @@ impl fmt::Display for Summary {
                 f,
                 "broken       {} of {} bonds",
                 self.broken_bonds, self.bonds
+            )?;
+        }
+        if let Some(p) = &self.population {
+            writeln!(
+                f,
+                "bodies       {} came ({} kg), {} replaced, {} left ({} kg), {} clumps at the end",
+                p.came,
+                significant(p.came_kg, 4),
+                p.replaced,
+                p.left,
+                significant(p.left_kg, 4),
+                p.clumps,
+            )?;
+            writeln!(
+                f,
+                "saved        {:.0} % of bonds times steps, as their bodies were rigid; {:.0} % of the spheres of clumps, which nothing can touch",
+                100.0 * p.bonds_left_out,
+                100.0 * p.inner_spheres,
             )?;
         }
         if let Some(fragments) = &self.fragments {

@@ -7,6 +7,7 @@ use dem_io::body::files::body_files;
 use dem_io::scene::{BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::damping::{chen, chen_by_mode, platzer, reduced};
 use crate::physics::bond::failure::Criteria;
@@ -15,6 +16,7 @@ use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::strength_factor;
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
+use crate::stages::population::{Born, GONE, Renumbered};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::Particles;
@@ -23,18 +25,67 @@ use crate::state::particles::Particles;
 const SAME_LENGTH: f64 = 1e-9;
 
 /// Which particles and bonds of the state are those of a body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlacedBody {
     /// Its name in the scene.
     pub name: String,
     /// First of its particles in the state.
     pub first_particle: usize,
-    /// For each particle of the body's file, in order: its number in the state.
+    /// For each particle of the body's file, in order: its number in the state, or [`GONE`].
     pub particles: Vec<u32>,
     /// First of its bonds in the state.
     pub first_bond: usize,
     /// For each bond of the body in the state, in order: its number in the body's file.
     pub bonds: Vec<u32>,
+}
+
+impl PlacedBody {
+    /// Number in the body's file of a particle of the state.
+    pub fn number_of(&self, particle: u32) -> Option<u32> {
+        let number = self.particles.iter().position(|&i| i == particle)?;
+        Some(number as u32)
+    }
+
+    /// A clump that has become a cluster.
+    pub fn born(born: &Born) -> Self {
+        let template = &born.template;
+        let mut particles = vec![GONE; template.spheres.len()];
+        for (i, &number) in (born.first_particle as u32..).zip(&template.file_number) {
+            particles[number as usize] = i;
+        }
+        Self {
+            name: template.body.clone(),
+            first_particle: born.first_particle,
+            particles,
+            first_bond: born.first_bond,
+            bonds: template.bonds_of_file.clone(),
+        }
+    }
+}
+
+/// Bodies as they are counted now, with those that have come; without those of which nothing is left.
+pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbered) {
+    bodies.retain_mut(|body| {
+        for particle in body.particles.iter_mut().filter(|p| **p != GONE) {
+            *particle = by.particles[*particle as usize];
+        }
+        let mut first_bond = None;
+        let mut at = body.first_bond;
+        body.bonds.retain(|_| {
+            let now = by.bonds[at];
+            at += 1;
+            if now != GONE {
+                first_bond.get_or_insert(now as usize);
+            }
+            now != GONE
+        });
+        body.first_bond = first_bond.unwrap_or(0);
+        let left = body.particles.iter().filter(|p| **p != GONE);
+        let first = left.min();
+        body.first_particle = first.map_or(0, |first| *first as usize);
+        first.is_some()
+    });
+    bodies.extend(by.born.iter().map(PlacedBody::born));
 }
 
 /// The body of a bond of the state, and the bond's number in that body's file.
@@ -48,7 +99,7 @@ pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u3
 /// A particle of the state as its body's file knows it, for a person.
 pub fn called(bodies: &[PlacedBody], particle: u32) -> String {
     let found = bodies.iter().find_map(|body| {
-        let number = body.particles.iter().position(|&i| i == particle)?;
+        let number = body.number_of(particle)?;
         Some(format!("particle {number} of the body '{}'", body.name))
     });
     found.unwrap_or_else(|| format!("particle {particle}"))
@@ -65,40 +116,55 @@ pub fn place_bodies(
     let mut particles = Particles::default();
     let mut bonds = Bonds::default();
     let mut placed = Vec::new();
-    let kinds: Vec<&String> = scene.bonds.keys().collect();
     bonds.rules = scene.bonds.values().map(rule).collect();
-    for (number, (name, entry)) in scene.bodies.iter().enumerate() {
-        let Some(body) = read.remove(name) else {
-            continue;
-        };
-        let mut one = place_particles(scene, name, entry, &body, &mut particles)?;
-        let kind_number = entry
-            .bond_kind
-            .as_ref()
-            .and_then(|kind| kinds.iter().position(|k| *k == kind));
-        match kind_number {
-            Some(rule) => {
-                let kind = &scene.bonds[kinds[rule]];
-                one.first_bond = bonds.len();
-                let seed = (scene.run.seed, number as u64);
-                place_bonds(&body, kind, rule, seed, &particles, &mut one, &mut bonds)
-                    .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
-            }
-            None if !body.bonds.is_empty() => {
-                return Err(Diagnostic::input(
-                    format!("{}: [bodies.{name}]", scene.source),
-                    format!(
-                        "the body has {} bonds, and no kind of bonds is named",
-                        body.bonds.len()
-                    ),
-                    "add bonds = \"NAME\" and a table [bonds.NAME]",
-                ));
-            }
-            None => {}
+    for (name, entry) in &scene.bodies {
+        if let Some(body) = read.remove(name) {
+            let (particles, bonds) = (&mut particles, &mut bonds);
+            placed.push(place_body(scene, name, entry, &body, particles, bonds)?);
         }
-        placed.push(one);
     }
     Ok((particles, bonds, placed))
+}
+
+/// Adds the particles and bonds of one body of a scene.
+///
+/// # Errors
+/// As [`place_bodies`].
+pub(super) fn place_body(
+    scene: &Scene,
+    name: &str,
+    entry: &BodyEntry,
+    body: &Body,
+    particles: &mut Particles,
+    bonds: &mut Bonds,
+) -> Result<PlacedBody> {
+    if bonds.rules.is_empty() {
+        bonds.rules = scene.bonds.values().map(rule).collect();
+    }
+    let number = scene.bodies.keys().position(|known| known == name);
+    let mut one = place_particles(scene, name, entry, body, particles)?;
+    let of_kind = entry.bond_kind.as_ref();
+    let rule = of_kind.and_then(|kind| scene.bonds.keys().position(|known| known == kind));
+    match (rule, of_kind.and_then(|kind| scene.bonds.get(kind))) {
+        (Some(rule), Some(kind)) => {
+            one.first_bond = bonds.len();
+            let seed = (scene.run.seed, number.unwrap_or(0) as u64);
+            place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
+                .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
+        }
+        _ if !body.bonds.is_empty() => {
+            return Err(Diagnostic::input(
+                format!("{}: [bodies.{name}]", scene.source),
+                format!(
+                    "the body has {} bonds, and no kind of bonds is named",
+                    body.bonds.len()
+                ),
+                "add bonds = \"NAME\" and a table [bonds.NAME]",
+            ));
+        }
+        _ => {}
+    }
+    Ok(one)
 }
 
 /// The same message said of a body of the scene and, where it comes from a file, of that one of its `files` that says so.

@@ -151,11 +151,16 @@ pub(super) fn place_contacts(
             materials[i as usize] = material as u8;
         }
     }
+    for clump in &state.clumps.all {
+        let template = state.clumps.template(clump);
+        let first = clump.first as usize;
+        materials[first..first + template.outer.len()].fill(template.material);
+    }
     let mut contacts = Contacts {
         kinds: kinds.kinds.clone(),
         kind_of: kinds.of_pair.clone(),
         materials,
-        skin_m: scene.search.skin.unwrap_or(SKIN[0]) * p.largest_radius_m(),
+        skin_m: scene.search.skin.unwrap_or(SKIN[0]) * state.largest_radius_m(),
         least_overlap: scene.relaxation.min_overlap,
         relaxes: true,
         lost_j: vec![[0.0; 2]; p.len()],
@@ -176,7 +181,7 @@ pub(super) fn place_contacts(
 
 /// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may move in some steps, both.
 pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
-    let (step_s, largest_m) = (state.time_step_s, state.particles.largest_radius_m());
+    let (step_s, largest_m) = (state.time_step_s, state.largest_radius_m());
     if let (Some(contacts), None) = (&mut state.contacts, scene.search.skin) {
         let moved_m = 2.0 * STEPS_PER_LIST * speed_m_s * step_s;
         contacts.skin_m = moved_m.clamp(SKIN[0] * largest_m, SKIN[1] * largest_m);

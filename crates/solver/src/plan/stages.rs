@@ -17,7 +17,12 @@ pub struct PlannedStage {
 
 /// What a step consists of, and what is left out.
 pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
-    let bonds = state.bonds.len();
+    let templates = &state.clumps.templates;
+    let of_clumps: usize = templates.iter().map(|t| t.bonds.len()).sum();
+    let can_bond = !state.rules.triggers.iter().all(Option::is_none)
+        || state.rules.starts.iter().any(|start| start.bonded);
+    let bonds = state.bonds.len() + if can_bond { of_clumps } else { 0 };
+    let by_inlets = !state.rules.inlets.is_empty();
     let rules = &state.bonds.rules;
     let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
     let stage = |name, needed, yes: String, no: &str| PlannedStage {
@@ -28,18 +33,59 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
     let contacts = state.contacts.as_ref();
     let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
     let breaks = any(&|rule| rule.criteria.is_some()) && bonds > 0;
-    let meets = contacts.is_some() && (pieces > 1 || breaks);
+    let meets = contacts.is_some() && (pieces > 1 || breaks || by_inlets);
     let rolls = scene
         .contacts
         .iter()
         .any(|c| c.rolling != dem_io::scene::Rolling::None);
-    let scattered = !state.bonds.strength_factors.is_empty();
+    let scattered = !state.bonds.strength_factors.is_empty()
+        || (can_bond && templates.iter().any(|t| t.scatter.is_some()));
+    let spheres: usize = templates.iter().map(|t| t.spheres.len()).sum();
+    let outer: usize = templates.iter().map(|t| t.outer.len()).sum();
+    let damped = any(&|rule| rule.damped) && bonds > 0;
     vec![
         stage(
             "bond forces",
             bonds > 0,
-            format!("{bonds} bonds"),
-            "no body has bonds",
+            if of_clumps > 0 {
+                format!(
+                    "{} bonds at the start; those of a clump, once it is replaced",
+                    state.bonds.len()
+                )
+            } else {
+                format!("{bonds} bonds")
+            },
+            if of_clumps > 0 {
+                "clumps are never replaced"
+            } else {
+                "no body has bonds"
+            },
+        ),
+        stage(
+            "rigid clumps",
+            !templates.is_empty(),
+            format!(
+                "{} at the start; of {spheres} spheres of {} shapes the {outer} outer ones",
+                state.clumps.all.len(),
+                templates.len()
+            ),
+            "no body starts as a clump",
+        ),
+        stage(
+            "replacement",
+            state.rules.triggers.iter().any(Option::is_some),
+            "clumps become bonded clusters".to_owned(),
+            "no clump can become a cluster",
+        ),
+        stage(
+            "inlets and outlets",
+            by_inlets || !state.rules.outlets.is_empty(),
+            format!(
+                "{} and {}",
+                state.rules.inlets.len(),
+                state.rules.outlets.len()
+            ),
+            "no body comes or goes",
         ),
         stage(
             "bond history",
@@ -110,7 +156,7 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
         ),
         stage(
             "bond damping",
-            !state.bond_resistance.is_empty(),
+            damped,
             "bonds are damped".to_owned(),
             "no bond is damped: no relative velocities",
         ),

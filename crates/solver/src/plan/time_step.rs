@@ -7,8 +7,14 @@ use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
 use crate::check::linear::{at_impact, largest_contact_rate_1_s2};
+use crate::clusters::Clusters;
 use crate::geometry::{Bounds, Shape};
+use crate::stages::population::{Changes, change};
 use crate::state::State;
+use crate::state::bonds::Bonds;
+use crate::state::clumps::Clump;
+use crate::state::contacts::Contacts;
+use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
 /// Share of its own limit with which an impact is followed, at most: a sphere that bounces keeps its energy to some 3e-3 of it then, and
@@ -52,7 +58,18 @@ impl StepChoice {
 /// A given step above the limit, unless any step is allowed.
 pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
     let run = &scene.run;
-    let limit = limit(state);
+    let mut bonded = as_clusters(state);
+    let limit = match &mut bonded {
+        Some(bonded) => {
+            let (now, later) = (limit(state), limit(bonded));
+            if later.step_s < now.step_s {
+                later
+            } else {
+                now
+            }
+        }
+        None => limit(state),
+    };
     if limit.step_s.is_nan() || limit.step_s <= 0.0 {
         return Err(Diagnostic::input(
             scene.source.clone(),
@@ -61,7 +78,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         ));
     }
     let impact_speed_m_s = impact_speed(scene, state);
-    let [k, c, rate] = at_impact(state, impact_speed_m_s);
+    let [k, c, rate] = at_impact(bonded.as_ref().unwrap_or(state), impact_speed_m_s);
     let foreseen_s = limit.with_more([k, c]);
     let step_s = match run.time_step_s {
         Some(given) => {
@@ -75,7 +92,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             given
         }
         None => {
-            let across = FARTHEST * state.particles.smallest_radius_m() / impact_speed_m_s;
+            let across = FARTHEST * state.smallest_radius_m() / impact_speed_m_s;
             let largest = (run.safety * foreseen_s)
                 .min(SHARE_OF_IMPACT * safe_step(k, c))
                 .min(run.end_time_s / 100.0)
@@ -97,6 +114,55 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         rayleigh_s: rayleigh_s(scene, state),
         thesis_s: thesis_s(state),
     })
+}
+
+/// One bonded cluster of each template, which stand where they do not touch: what the step has to be right for once clumps are replaced. None: no clump can
+/// become a cluster.
+fn as_clusters(state: &State) -> Option<State> {
+    let becomes_one = |n: usize| {
+        let starts = state.rules.starts.get(n).is_some_and(|start| start.bonded);
+        starts || state.rules.triggers.get(n).is_some_and(Option::is_some)
+    };
+    let templates = &state.clumps.templates;
+    let coming: Vec<Clump> = (0..templates.len())
+        .filter(|&n| becomes_one(n))
+        .map(|n| Clump {
+            template: n as u32,
+            turned: [0.0, 0.0, 0.0, 1.0],
+            ..Clump::default()
+        })
+        .collect();
+    if coming.is_empty() {
+        return None;
+    }
+    let bonds = Bonds {
+        rules: state.bonds.rules.clone(),
+        ..Bonds::default()
+    };
+    let mut bonded = State::new(Particles::default(), bonds, 1.0, state.threads);
+    bonded.clumps.templates.clone_from(templates);
+    bonded.clusters = Some(Clusters::new(0, &bonded.bonds));
+    bonded.walls.clone_from(&state.walls);
+    for wall in &mut bonded.walls {
+        wall.touching.clear();
+    }
+    bonded.contacts = state.contacts.as_ref().map(|contacts| Contacts {
+        kinds: contacts.kinds.clone(),
+        kind_of: contacts.kind_of.clone(),
+        ..Contacts::default()
+    });
+    let to_clusters = (0..coming.len()).collect();
+    let come = Changes {
+        coming,
+        ..Changes::default()
+    };
+    let swap = Changes {
+        to_clusters,
+        ..Changes::default()
+    };
+    change(&mut bonded, come);
+    change(&mut bonded, swap);
+    Some(bonded)
 }
 
 /// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest of all particles [Platzer 14].
@@ -139,6 +205,8 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
         return 0.0;
     }
     let of_particles = state.particles.motions.iter().map(|m| m.velocity_m_s);
+    let of_inlets = state.rules.inlets.iter().map(|inlet| inlet.velocity_m_s);
+    let of_particles = of_particles.chain(of_inlets);
     let of_walls = state.walls.iter().map(|wall| wall_speed(wall, state));
     let start_m_s =
         Bounds::of(of_particles.chain([[0.0; 3]])).diagonal_m() + of_walls.fold(0.0, f64::max);
@@ -148,7 +216,9 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
         return start_m_s;
     }
     let by_time = g * scene.run.end_time_s;
-    let by_height = (2.0 * g * fall_m(state, &(gravity / g))).sqrt();
+    let down = gravity / g;
+    let fall_m = fall_m(state, &down).max(fall_from_inlets_m(state, &down));
+    let by_height = (2.0 * g * fall_m).sqrt();
     start_m_s.hypot(by_time.min(by_height))
 }
 
@@ -201,6 +271,36 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
 pub fn impact_step_s(state: &State, speed_m_s: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
     SHARE_OF_IMPACT * safe_step(k, c)
+}
+
+/// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall, m.
+fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
+    let depth = |low: [f64; 3], high: [f64; 3], deepest: bool| {
+        let depths = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
+            let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] });
+            Vector3::from(corner).dot(down)
+        });
+        let pick: fn(f64, f64) -> f64 = if deepest { f64::max } else { f64::min };
+        depths.into_iter().reduce(pick).unwrap_or(0.0)
+    };
+    let regions =
+        (state.rules.inlets.iter()).map(|inlet| state.rules.regions[inlet.region].bounds());
+    let top = regions.map(|b| depth(b.low, b.high, false));
+    let top = top.fold(f64::INFINITY, f64::min);
+    let bottom = state.walls.iter().map(|wall| match &wall.shape {
+        Shape::Plane(_) => Vector3::from(wall.frame.position_m).dot(down),
+        other => {
+            let bounds = other.bounds();
+            let corners = |b: Bounds| {
+                let ends = [b.low, b.high].map(|corner| wall.frame.to_space(corner));
+                Bounds::of(ends)
+            };
+            let Bounds { low, high } = corners(bounds);
+            depth(low, high, true)
+        }
+    });
+    let bottom = bottom.fold(f64::NEG_INFINITY, f64::max);
+    (bottom - top).max(0.0)
 }
 
 /// How far anything can fall along `down` before it meets a wall or another particle, at most, m.

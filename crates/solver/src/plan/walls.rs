@@ -28,7 +28,10 @@ pub(super) fn place_walls(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Wall>> {
     let places = state.particles.poses.iter().map(|pose| pose.place().into());
-    let extent_m = Bounds::of(places).diagonal_m() + 2.0 * state.particles.largest_radius_m();
+    let of_clumps = state.clumps.templates.iter().map(|t| 2.0 * t.reach_m);
+    let extent_m = (Bounds::of(places).diagonal_m().max(0.0)
+        + 2.0 * state.particles.largest_radius_m())
+    .max(of_clumps.fold(0.0, f64::max));
     let mut walls = Vec::new();
     for (name, entry) in &scene.walls {
         let place = format!("{}: [walls.{name}]", scene.source);
@@ -36,6 +39,14 @@ pub(super) fn place_walls(
             let pair = [&scene.bodies[&body.name].material, &entry.material];
             let who = format!("the body '{}' and the wall '{name}' need", body.name);
             kinds.need(scene, pair.map(|m| kinds.material(m)), &who)?;
+        }
+        for template in &state.clumps.templates {
+            let pair = [
+                usize::from(template.material),
+                kinds.material(&entry.material),
+            ];
+            let who = format!("the body '{}' and the wall '{name}' need", template.body);
+            kinds.need(scene, pair, &who)?;
         }
         let shape = shape(entry, name, notes).map_err(|error| error.within(&place))?;
         question_size(name, entry, &shape, extent_m, notes);

@@ -7,6 +7,7 @@ use super::Files;
 use crate::output::fragments::split_text;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
+use crate::stages::replacement::Happened;
 use crate::state::State;
 
 /// The bonds that broke in this step, by the numbers of the body's file.
@@ -18,16 +19,19 @@ pub(super) fn write_breaks(
     for broken in &state.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
-        let first = found.map_or(0, |(body, _)| body.first_particle as u64);
-        let mut ends = ends.map(|end| files.order.number_of(end) - first);
+        let mut ends = ends.map(|end| {
+            found
+                .and_then(|(body, _)| body.number_of(end))
+                .map(u64::from)
+        });
         ends.sort_unstable();
         let event = Event {
             step: state.steps,
             time_s: state.time_s,
             kind: "bond_broken",
             bond: found.map(|(_, number)| u64::from(number)),
-            particle_a: Some(ends[0]),
-            particle_b: Some(ends[1]),
+            particle_a: ends[0],
+            particle_b: ends[1],
             position_m: Some(broken.place_m),
             cause: broken.cause.name(),
             energy_j: Some(broken.released_j),
@@ -53,6 +57,65 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
         .map(|detail| of_all(state, "split", "", detail))
         .collect();
     files.events.append(&events)
+}
+
+/// What has happened to bodies in this step.
+pub(super) fn write_happened(
+    state: &State,
+    happened: &[Happened],
+    files: &mut Files<'_>,
+) -> Result<()> {
+    for one in happened {
+        let (kind, cause, place_m, energy_j, detail) = match one {
+            Happened::Replaced {
+                cluster,
+                body,
+                cause,
+                mass_kg: [mass, mass_after],
+                momentum_n_s: [momentum, momentum_after],
+                kinetic_j: [kinetic, kinetic_after],
+                place_m,
+            } => (
+                "replaced",
+                *cause,
+                place_m,
+                Some(kinetic_after - kinetic),
+                format!(
+                    "cluster {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
+                ),
+            ),
+            Happened::Came {
+                cluster,
+                body,
+                inlet,
+                place_m,
+            } => (
+                "came",
+                inlet.as_str(),
+                place_m,
+                None,
+                format!("cluster {cluster} ({body})"),
+            ),
+            Happened::Left {
+                cluster,
+                outlet,
+                mass_kg,
+                place_m,
+            } => (
+                "left",
+                outlet.as_str(),
+                place_m,
+                None,
+                format!("cluster {cluster}: {mass_kg:e} kg"),
+            ),
+        };
+        files.events.append(&[Event {
+            position_m: Some(*place_m),
+            energy_j,
+            ..of_all(state, kind, cause, &detail)
+        }])?;
+    }
+    Ok(())
 }
 
 /// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.

@@ -6,6 +6,7 @@ use super::{Files, Progress};
 use crate::check::ledger::synchronous_motions;
 use crate::clusters::fragments;
 use crate::output::fragments::rows;
+use crate::stages::clumps::synchronous;
 use crate::state::State;
 
 /// Besides the frames, fragments are written when there are more by one in so many: of few every one shows, and the rows written for all
@@ -32,7 +33,10 @@ pub(super) fn write_fragments(
     let (Some(clusters), Some(file)) = (&state.clusters, &mut files.fragments) else {
         return Ok(());
     };
-    let fragments = fragments(clusters, &state.particles, &synchronous_motions(state));
+    let motions = synchronous_motions(state);
+    let moving = synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s);
+    let now = Some((&motions[..], &moving[..]));
+    let fragments = fragments(clusters, &state.particles, &state.clumps, now);
     progress.fragments_written = fragments.len() as u64;
     file.append(state.time_s, &rows(&fragments))
 }

@@ -38,7 +38,7 @@ pub(super) struct Limits {
 impl Limits {
     pub(super) fn of(scene: &Scene, state: &State) -> Self {
         Self {
-            smallest_radius_m: state.particles.smallest_radius_m(),
+            smallest_radius_m: state.smallest_radius_m(),
             safety: scene.run.time_step_s.is_none().then_some(scene.run.safety),
             end_s: scene.run.end_time_s,
         }
@@ -82,7 +82,7 @@ impl Limits {
         if let (true, Some(_)) = (look_at_contacts, self.safety) {
             // Loads or supports may have made bodies faster than was foreseen. Not the fastest particle: a bond that breaks lets a few snap back.
             let p = &state.particles;
-            let kinetic_j = kinetic_energy(p, |i| p.motions[i]);
+            let kinetic_j = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;

@@ -122,7 +122,9 @@ fn stored_j(
 
 /// Energy that friction and that damping took so far, J.
 pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
-    ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i])
+    let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
+    let [gone_friction, gone_damping] = contacts.lost_by_gone_j;
+    [friction + gone_friction, damping + gone_damping]
 }
 
 /// What all shares look at.

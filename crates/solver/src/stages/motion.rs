@@ -10,18 +10,16 @@ use crate::state::particles::{Motion, Particles, Wrench};
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
 
-/// Velocities changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
+/// Velocities of the particles that move by themselves, changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
 pub fn kick(
     particles: &mut Particles,
     resisting: [&[Wrench]; 2],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 ) {
-    let Particles {
-        motions, wrenches, ..
-    } = particles;
+    let (motions, wrenches) = (&mut particles.motions, &particles.wrenches);
     let fall = gravity_m_s2.map(|g| kick_s * g);
-    motions
+    motions[..particles.free]
         .par_chunks_mut(CHUNK)
         .enumerate()
         .for_each(|(chunk, motions)| {
@@ -44,10 +42,10 @@ pub fn kick(
         });
 }
 
-/// Places and orientations after moving on for `time_step_s`. Returns the largest speed of a particle, m/s.
+/// Places and orientations of the particles that move by themselves after moving on for `time_step_s`. Returns the largest speed of a particle, m/s.
 pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
-    let Particles { poses, motions, .. } = particles;
-    poses
+    let (poses, motions) = (&mut particles.poses, &particles.motions);
+    poses[..particles.free]
         .par_chunks_mut(CHUNK)
         .zip(motions.par_chunks(CHUNK))
         .map(|(poses, motions)| {
@@ -78,7 +76,7 @@ pub fn add_particle_damping(
     gamma: f64,
     resisting: &mut [Wrench],
 ) {
-    resisting
+    resisting[..particles.free]
         .par_chunks_mut(CHUNK)
         .enumerate()
         .for_each(|(chunk, resisting)| {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use dem_io::scene::RateOf;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
@@ -36,7 +37,7 @@ pub const BLOCK: usize = 4;
 pub type Column = [f64; BLOCK];
 
 /// Bonds that follow one another: what their forces come from, number by number side by side, so that a loop over them reads whole vectors.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct BondBlock {
     /// Unit vectors from the first to the second end at the start, x, y, z.
@@ -88,7 +89,7 @@ pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
 }
 
 /// All bonds of a scene, sorted by their first particle and then by their second.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bonds {
     /// The two particles, the smaller index first.
     pub ends: Vec<[u32; 2]>,
@@ -99,8 +100,10 @@ pub struct Bonds {
     /// Damping along, across, torsion, bending: N s/m, N s/m, N m s/rad, N m s/rad. Empty: none is damped.
     pub damping: Vec<[f64; 4]>,
     /// What incremental bonds carry. Empty: none is incremental.
+    #[serde(with = "histories")]
     pub histories: Vec<History>,
     /// Kinds of bonds.
+    #[serde(skip)]
     pub rules: Vec<BondRule>,
     /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the material only.
     pub torsion_per_bending: Vec<f64>,
@@ -159,6 +162,32 @@ impl Bonds {
         match self.stretches.last_mut() {
             Some((last, of)) if *of == rule => *last = end,
             _ => self.stretches.push((end, rule)),
+        }
+    }
+
+    /// Adds a copy of bond `at` of others that follow the same rules, between these ends, with its strength times a factor.
+    pub fn push_copy(&mut self, other: &Self, at: usize, ends: [u32; 2], factor: f64) {
+        let rule = other.rule_of(at);
+        let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
+        let direction = [0, 1, 2].map(|axis| from.direction[axis][k]);
+        self.push(ends, direction, from.radii_m[k], &other.stiffness(at), rule);
+        self.torsion_per_bending[rule] = other.torsion_per_bending[rule];
+        let factor = factor * other.strength_factor(at);
+        if factor != 1.0 || !self.strength_factors.is_empty() {
+            self.strength_factors.resize(self.len() - 1, 1.0);
+            self.strength_factors.push(factor);
+        }
+        if let Some(&damping) = other.damping.get(at) {
+            self.damping.resize(self.len() - 1, [0.0; 4]);
+            self.damping.push(damping);
+        } else if !self.damping.is_empty() {
+            self.damping.push([0.0; 4]);
+        }
+        if let Some(&history) = other.histories.get(at) {
+            self.histories.resize(self.len() - 1, History::default());
+            self.histories.push(history);
+        } else if !self.histories.is_empty() {
+            self.histories.push(History::default());
         }
     }
 
@@ -250,5 +279,34 @@ impl Bonds {
             .zip(&self.stretches)
             .map(move |(start, &(end, rule))| (rule, start.max(range.start)..end.min(range.end)))
             .filter(|(_, run)| run.start < run.end)
+    }
+}
+
+/// Histories as plain numbers in a file: shear force x, y, z and moment x, y, z.
+mod histories {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::History;
+
+    pub(super) fn serialize<S: Serializer>(
+        histories: &[History],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let numbers: Vec<[[f64; 3]; 2]> = histories
+            .iter()
+            .map(|h| [h.shear_force.into(), h.moment.into()])
+            .collect();
+        numbers.serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<History>, D::Error> {
+        let numbers = Vec::<[[f64; 3]; 2]>::deserialize(deserializer)?;
+        let history = |[force, moment]: [[f64; 3]; 2]| History {
+            shear_force: force.into(),
+            moment: moment.into(),
+        };
+        Ok(numbers.into_iter().map(history).collect())
     }
 }

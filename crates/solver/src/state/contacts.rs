@@ -72,6 +72,17 @@ impl Memory {
         }
     }
 
+    /// The same of a pair that is named the other way round.
+    pub fn turned_round(&self) -> Self {
+        let back = |[x, y, z, last]: [f64; 4]| [-x, -y, -z, last];
+        Self {
+            slid: back(self.slid),
+            damped: back(self.damped),
+            rolled: back(self.rolled),
+            rolling_damped: back(self.rolling_damped),
+        }
+    }
+
     /// Overlap of the law, m; above 0 where the two press on each other.
     #[inline(always)]
     pub fn overlap_m(&self) -> f64 {
@@ -110,6 +121,8 @@ pub struct Contacts {
     pub least_overlap: f64,
     /// Energy that friction and that damping took so far, booked at the first particle of each pair, J.
     pub lost_j: Vec<[f64; 2]>,
+    /// The same of particles that are no more, J.
+    pub lost_by_gone_j: [f64; 2],
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.

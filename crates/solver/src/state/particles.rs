@@ -1,12 +1,13 @@
 //! Particles: one entry per sphere in every array.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::physics::contact::touch::Ball;
 use crate::physics::number::Triple;
 
 /// Where a particle is and how it is turned. One cache line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct Pose {
     /// Centre x, y, z and, beside it for all who ask who is near, the radius of the sphere, m.
@@ -44,7 +45,7 @@ impl Pose {
 }
 
 /// How a particle moves, half a step after its pose (leapfrog), and how easily that changes. One cache line.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct Motion {
     /// m/s. Length 3.
@@ -78,7 +79,7 @@ impl Wrench {
     }
 }
 
-/// All particles of a scene. Those of a body stand together, near ones near each other.
+/// All particles of a scene. Those of a body stand together, near ones near each other; those that clumps carry come last.
 #[derive(Debug, Clone, Default)]
 pub struct Particles {
     /// Where they are.
@@ -87,6 +88,8 @@ pub struct Particles {
     pub motions: Vec<Motion>,
     /// What acts on them in this step.
     pub wrenches: Vec<Wrench>,
+    /// Number of those that move by themselves.
+    pub free: usize,
 }
 
 impl Particles {
@@ -155,5 +158,6 @@ impl Particles {
             ..Motion::default()
         });
         self.wrenches.push(Wrench::default());
+        self.free += 1;
     }
 }

@@ -2,6 +2,7 @@
 
 use dem_run::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
 use dem_run::clusters::{Clusters, fragments};
+use dem_run::state::clumps::Clumps;
 use dem_run::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -80,7 +81,7 @@ proptest! {
         let bonds = bonds(pairs.into_iter().filter(|[a, b]| *a.max(b) < count));
         let clusters = Clusters::new(spheres.len(), &bonds);
         let particles = particles(&spheres);
-        let fragments = fragments(&clusters, &particles, &particles.motions);
+        let fragments = fragments(&clusters, &particles, &Clumps::default(), None);
         let (mass, sums) = sums_of_fragments(&fragments);
         let (wanted_mass, wanted) = sums_of_spheres(&spheres);
         prop_assert!((mass / wanted_mass - 1.0).abs() < 1e-13);
@@ -125,7 +126,7 @@ proptest! {
         let bonds = bonds(chain(0, rigid.len() as u32));
         let clusters = Clusters::new(rigid.len(), &bonds);
         let particles = particles(&rigid);
-        let found = fragments(&clusters, &particles, &particles.motions)[0];
+        let found = fragments(&clusters, &particles, &Clumps::default(), None)[0];
         prop_assert!((Vector::from(found.angular_velocity_rad_s) - w).norm() < 1e-8);
         let centre = Vector::from(found.centre_m).add_scalar(-far);
         prop_assert!((Vector::from(found.velocity_m_s) - v - w.cross(&centre)).norm() < 1e-8);
@@ -144,7 +145,7 @@ fn sizes_of_equal_fragments_are_one_point() {
     ];
     let clusters = Clusters::new(5, &bonds([[2, 3]]));
     let particles = particles(&spheres);
-    let fragments = fragments(&clusters, &particles, &particles.motions);
+    let fragments = fragments(&clusters, &particles, &Clumps::default(), None);
     // Masses 1, 1, 2, 8 of 12.
     let found: Vec<[f64; 2]> = size_distribution(&fragments)
         .iter()

@@ -11,7 +11,7 @@ use dem_run::snapshot::{Snapshot, fingerprint};
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
-use dem_run::state::particles::{Particles, Wrench};
+use dem_run::state::particles::Particles;
 use dem_run::step::{act, move_on, step};
 
 /// Numbers between -1 and 1 that look random.
@@ -155,6 +155,7 @@ fn a_cloud_taken_up_again_at_any_step_goes_on_to_the_same_bits() {
         step(&mut state);
         let taken = Snapshot::taken(
             &state,
+            &[],
             String::new(),
             fingerprint,
             Vec::new(),
@@ -164,7 +165,7 @@ fn a_cloud_taken_up_again_at_any_step_goes_on_to_the_same_bits() {
         let mut again = start.clone();
         Snapshot::from_bytes(&bytes)
             .unwrap()
-            .restore(&mut again)
+            .restore(&mut again, &mut Vec::new())
             .unwrap();
         let mut on = state.clone();
         for _ in 0..20 {

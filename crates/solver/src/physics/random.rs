@@ -1,0 +1,18 @@
+//! Numbers that look random and depend on nothing but names: no state has to be kept, and they are the same in whatever order they are asked for.
+
+/// A number in (0, 1), uniform over all seeds and words.
+pub fn uniform(seed: u64, words: &[u64]) -> f64 {
+    let hash = words
+        .iter()
+        .fold(mixed(seed), |hash, &word| mixed(hash ^ word));
+    // 53 bits, in the middle of their interval: neither 0 nor 1.
+    ((hash >> 11) as f64 + 0.5) * (0.5 * f64::EPSILON)
+}
+
+/// One step of SplitMix64 (Steele, Lea and Flood 2014).
+fn mixed(state: u64) -> u64 {
+    let z = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}

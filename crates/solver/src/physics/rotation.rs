@@ -1,0 +1,113 @@
+//! Free rotation of a rigid body.
+//!
+//! The kinetic energy is split into parts that each turn the body about one axis, exactly, in a symmetric order (Reich 1994; Dullweber, Leimkuhler and McLachlan 1997). The step is of second order and reversible, and the error of the energy stays bounded. The angular momentum in space is never written, so it stays the same to the last bit.
+//!
+//! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into space.
+
+/// Part of the step at each end for which the error of second order is least (McLachlan 1995).
+const EDGE: f64 = 0.193_183_327_503_783_6;
+
+/// Turns a body freely for a time.
+///
+/// `orientation` is the unit quaternion x, y, z, w from principal axes to space, `angular_momentum_world` in space, kg m^2/s, `moments` the principal moments, all positive, kg m^2, and `dt` the time, s, which may be negative.
+///
+/// The kinetic energy is |L|^2 / (2 M), with M the middle moment, and L_k^2 / 2 (1 / I_k - 1 / M) for the other two axes. The first part turns the body about its angular momentum and leaves the others alone, so that it can be taken at any time. The other two alternate, the axis of the least moment first and last (five turns, McLachlan 1995). A body with two equal moments turns exactly, and one with nearly equal ones nearly so.
+///
+/// The energy is right to 1e-5 with 50 steps or more in the time 2 pi I / |L|, with I the least moment.
+pub fn drift(
+    orientation: &mut [f64; 4],
+    angular_momentum_world: [f64; 3],
+    moments: [f64; 3],
+    dt: f64,
+) {
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| moments[a].total_cmp(&moments[b]));
+    let [least, middle, most] = order;
+    let rate = |k: usize| (moments[middle] - moments[k]) / (moments[middle] * moments[k]);
+    let mut q = *orientation;
+    let mut l = into_body(&q, angular_momentum_world);
+    for (axis, part) in [
+        (least, EDGE),
+        (most, 0.5),
+        (least, 1.0 - 2.0 * EDGE),
+        (most, 0.5),
+        (least, EDGE),
+    ] {
+        spin_about(axis, &mut q, &mut l, part * dt * rate(axis));
+    }
+    let about = angular_momentum_world.map(|l| l * dt / moments[middle]);
+    *orientation = turn(q, about);
+}
+
+/// The spin of a body in space, rad/s, from its orientation (unit quaternion x, y, z, w), its angular momentum in space, kg m^2/s, and its principal moments, kg m^2.
+pub fn spin_rad_s(
+    orientation: &[f64; 4],
+    angular_momentum_world: [f64; 3],
+    moments: [f64; 3],
+) -> [f64; 3] {
+    let l = into_body(orientation, angular_momentum_world);
+    rotated(orientation, [0, 1, 2].map(|k| l[k] / moments[k]))
+}
+
+/// The kinetic energy of the rotation, J, from the orientation (unit quaternion x, y, z, w), the angular momentum in space, kg m^2/s, and the principal moments, kg m^2.
+pub fn kinetic_j(
+    orientation: &[f64; 4],
+    angular_momentum_world: [f64; 3],
+    moments: [f64; 3],
+) -> f64 {
+    let l = into_body(orientation, angular_momentum_world);
+    0.5 * (l[0] * l[0] / moments[0] + l[1] * l[1] / moments[1] + l[2] * l[2] / moments[2])
+}
+
+/// Turns a body about one of its axes for a time, s, times a rate per angular momentum, 1/(kg m^2), and the angular momentum in the body the other way.
+#[inline(always)]
+fn spin_about(axis: usize, q: &mut [f64; 4], l: &mut [f64; 3], time_rate: f64) {
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    let (sine, cosine) = (0.5 * time_rate * l[axis]).sin_cos();
+    let [a, b, c, w] = [q[axis], q[next], q[last], q[3]];
+    q[axis] = cosine * a + sine * w;
+    q[next] = cosine * b + sine * c;
+    q[last] = cosine * c - sine * b;
+    q[3] = cosine * w - sine * a;
+    let (sine, cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
+    let [b, c] = [l[next], l[last]];
+    l[next] = cosine * b + sine * c;
+    l[last] = cosine * c - sine * b;
+}
+
+/// An orientation after a rotation vector in space, rad, with the norm set right to first order, so that it does not drift.
+fn turn([x, y, z, w]: [f64; 4], vector: [f64; 3]) -> [f64; 4] {
+    let half = vector.map(|v| 0.5 * v);
+    let angle = half.iter().map(|h| h * h).sum::<f64>().sqrt();
+    let (sine, rw) = angle.sin_cos();
+    let per_angle = if angle > 0.0 { sine / angle } else { 1.0 };
+    let [rx, ry, rz] = half.map(|h| h * per_angle);
+    let new = [
+        rw * x + rx * w + ry * z - rz * y,
+        rw * y - rx * z + ry * w + rz * x,
+        rw * z + rx * y - ry * x + rz * w,
+        rw * w - rx * x - ry * y - rz * z,
+    ];
+    let norm = new.iter().map(|q| q * q).sum::<f64>();
+    new.map(|q| q * (1.5 - 0.5 * norm))
+}
+
+fn into_body(&[x, y, z, w]: &[f64; 4], vector: [f64; 3]) -> [f64; 3] {
+    rotated(&[-x, -y, -z, w], vector)
+}
+
+/// A vector turned by a unit quaternion.
+#[inline(always)]
+fn rotated(&[x, y, z, w]: &[f64; 4], v: [f64; 3]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let u = [x, y, z];
+    let twice = cross(u, v).map(|c| 2.0 * c);
+    let more = cross(u, twice);
+    [0, 1, 2].map(|k| v[k] + w * twice[k] + more[k])
+}

@@ -1,0 +1,219 @@
+//! Templates of rigid clumps, from the bodies of a scene, and the clumps that stand in it at the start.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use dem_io::scene::{BodyEntry, ClumpMass, Scene, StartAs};
+use dem_io::{Body, Diagnostic, Result};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::bodies::place_body;
+use super::contacts::Kinds;
+use crate::shape::inertia::{MassProperties, of_spheres, of_union};
+use crate::shape::outer_layer::outer_layer;
+use crate::stages::replacement::angular_momentum;
+use crate::state::bonds::Bonds;
+use crate::state::clumps::{Clump, Scatter, SubSphere, Template, numbers, rotation};
+use crate::state::particles::Particles;
+
+/// A sphere of a clump is left out if it is hidden even when it grows by this share of its radius: what touches the clump overlaps it by less.
+const HIDDEN: f64 = 0.05;
+
+/// Names of the bodies that are templates: those that start as clumps or come through inlets.
+pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
+    let clumps = scene.bodies.iter();
+    let clumps = clumps.filter(|(_, entry)| matches!(entry.start_as, StartAs::Clump(_)));
+    let by_inlets = scene.inlets.values().flat_map(|inlet| &inlet.bodies);
+    clumps
+        .map(|(name, _)| name.clone())
+        .chain(by_inlets.map(|(name, _)| name.clone()))
+        .collect()
+}
+
+/// Templates, in the order of their names, from bodies that have been read.
+///
+/// # Errors
+/// As those of bodies that stand in the scene.
+pub(super) fn templates(
+    scene: &Scene,
+    names: &BTreeSet<String>,
+    read: &mut BTreeMap<String, Body>,
+) -> Result<Vec<Arc<Template>>> {
+    let mut templates = Vec::new();
+    for name in names {
+        if let Some(body) = read.remove(name) {
+            templates.push(Arc::new(template(scene, name, &body)?));
+        }
+    }
+    Ok(templates)
+}
+
+fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
+    let entry = &scene.bodies[name];
+    // As in its file: where and how it stands is said of each clump.
+    let in_file = BodyEntry {
+        position_m: [0.0; 3],
+        rotation_rad: [0.0; 3],
+        velocity_m_s: [0.0; 3],
+        angular_velocity_rad_s: [0.0; 3],
+        ..entry.clone()
+    };
+    let (mut particles, mut bonds) = (Particles::default(), Bonds::default());
+    let placed = place_body(scene, name, &in_file, body, &mut particles, &mut bonds)?;
+    let centres: Vec<[f64; 3]> = particles.poses.iter().map(|p| p.place().into()).collect();
+    let radii: Vec<f64> = particles.poses.iter().map(|p| p.radius_m()).collect();
+    let masses: Vec<f64> = particles
+        .motions
+        .iter()
+        .map(|m| 1.0 / m.inverse_mass)
+        .collect();
+    let inertias: Vec<f64> = particles
+        .motions
+        .iter()
+        .map(|m| 1.0 / m.inverse_inertia)
+        .collect();
+    let settings = match entry.start_as {
+        StartAs::Clump(settings) => settings,
+        StartAs::Bonded => Default::default(),
+    };
+    let MassProperties {
+        mass_kg,
+        centre_m,
+        moments_kg_m2,
+        axes,
+    } = match settings.mass {
+        ClumpMass::Spheres => of_spheres(&centres, &masses, &inertias),
+        ClumpMass::Union => of_union(&centres, &radii, particles.density_kg_m3(0)),
+    };
+    let to_principal = rotation(axes).inverse();
+    let spheres: Vec<SubSphere> = (0..centres.len())
+        .map(|i| {
+            let arm = Vector3::from(centres[i]) - Vector3::from(centre_m);
+            SubSphere {
+                place_m: (to_principal * arm).into(),
+                turned: numbers(&to_principal),
+                radius_m: radii[i],
+                mass_kg: masses[i],
+                inertia_kg_m2: inertias[i],
+            }
+        })
+        .collect();
+    let reach = spheres
+        .iter()
+        .map(|sphere| Vector3::from(sphere.place_m).norm() + sphere.radius_m);
+    let reach_m = reach.fold(0.0, f64::max);
+    let mut file_number = vec![0; spheres.len()];
+    for (number, &i) in (0..).zip(&placed.particles) {
+        file_number[i as usize] = number;
+    }
+    let modulus = entry
+        .bond_kind
+        .as_ref()
+        .and_then(|kind| scene.bonds[kind].failure.weibull_modulus);
+    let number = scene.bodies.keys().position(|body| body == name);
+    // Each body has its own factors.
+    bonds.strength_factors.clear();
+    Ok(Template {
+        body: name.to_owned(),
+        mass_kg,
+        moments_kg_m2,
+        axes,
+        centre_m,
+        reach_m,
+        outer: outer_layer(&centres, &radii, HIDDEN),
+        spheres,
+        scale: settings.scale,
+        material: scene
+            .materials
+            .keys()
+            .position(|material| *material == entry.material)
+            .unwrap_or(0) as u8,
+        bonds,
+        file_number,
+        scatter: modulus.map(|modulus| Scatter {
+            seed: scene.run.seed,
+            body: number.unwrap_or(0) as u64,
+            modulus,
+        }),
+        bonds_of_file: placed.bonds,
+    })
+}
+
+/// Clumps that stand in the scene at the start: bodies that start as clumps and come through no inlet.
+pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump> {
+    let by_inlets: BTreeSet<&String> = scene
+        .inlets
+        .values()
+        .flat_map(|inlet| inlet.bodies.iter().map(|(name, _)| name))
+        .collect();
+    (0..)
+        .zip(templates)
+        .filter(|(_, template)| !by_inlets.contains(&template.body))
+        .map(|(number, template)| {
+            let entry = &scene.bodies[&template.body];
+            let as_file = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
+            let turned = numbers(&(as_file * rotation(template.axes)));
+            let place =
+                as_file * Vector3::from(template.centre_m) + Vector3::from(entry.position_m);
+            Clump {
+                template: number,
+                cluster: 0,
+                instance: 0,
+                place_m: place.into(),
+                turned,
+                velocity_m_s: entry.velocity_m_s,
+                angular_momentum: angular_momentum(template, turned, entry.angular_velocity_rad_s),
+                force_n: [0.0; 3],
+                torque_n_m: [0.0; 3],
+                first: 0,
+                impact_energy_j: 0.0,
+            }
+        })
+        .collect()
+}
+
+/// Whether the scene says how all clumps and what comes of them meet each other and the other bodies.
+///
+/// # Errors
+/// Names the materials of which it says nothing.
+pub(super) fn need_pairs(
+    scene: &Scene,
+    kinds: &Kinds<'_>,
+    templates: &[Arc<Template>],
+) -> Result<()> {
+    for (n, template) in templates.iter().enumerate() {
+        let own = usize::from(template.material);
+        let by_inlet = (scene.inlets.values())
+            .any(|inlet| inlet.bodies.iter().any(|(name, _)| *name == template.body));
+        if by_inlet || scene.replacement.contains_key(&template.body) {
+            let who = format!("the bodies '{}' and their pieces need", template.body);
+            kinds.need(scene, [own; 2], &who)?;
+        }
+        for (name, entry) in &scene.bodies {
+            let is_later = templates[n + 1..].iter().any(|other| other.body == *name);
+            let stands = templates.iter().all(|other| other.body != *name);
+            if is_later || stands {
+                let who = format!("the bodies '{}' and '{name}' need", template.body);
+                kinds.need(scene, [own, kinds.material(&entry.material)], &who)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses replacement of bodies without bonds.
+///
+/// # Errors
+/// Names the body.
+pub(super) fn refuse_unbreakable(scene: &Scene, templates: &[Arc<Template>]) -> Result<()> {
+    for template in templates {
+        if scene.replacement.contains_key(&template.body) && template.bonds.is_empty() {
+            return Err(Diagnostic::input(
+                format!("{}: [replacement.{}]", scene.source, template.body),
+                "the body has no bonds, so it cannot break",
+                "make it with bonds: dem-pack --bonding-radius 1.1",
+            ));
+        }
+    }
+    Ok(())
+}

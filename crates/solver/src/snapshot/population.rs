@@ -1,0 +1,122 @@
+//! What a checkpoint holds of a scene in which bodies come, go, and become others: all particles, bonds, clumps and bodies, as no plan knows them.
+
+use dem_io::{Diagnostic, Result};
+use serde::{Deserialize, Serialize};
+
+use crate::plan::bodies::PlacedBody;
+use crate::state::State;
+use crate::state::bonds::Bonds;
+use crate::state::clumps::Clump;
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::rules::Come;
+use crate::state::shares::divide;
+
+/// Everything that is there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Population {
+    poses: Vec<Pose>,
+    motions: Vec<Motion>,
+    free: usize,
+    bonds: Bonds,
+    clumps: Vec<Clump>,
+    bodies: Vec<PlacedBody>,
+    materials: Vec<u8>,
+    lost_by_gone_j: [f64; 2],
+    inlets: Vec<Come>,
+    outlets: Vec<(u32, f64)>,
+    instances: u32,
+    replaced: u32,
+    bond_steps: [u64; 2],
+}
+
+impl Population {
+    /// None where the plan knows all.
+    pub(super) fn taken(state: &State, bodies: &[PlacedBody]) -> Option<Self> {
+        if state.clumps.templates.is_empty() && state.rules.are_none() {
+            return None;
+        }
+        let contacts = state.contacts.as_ref();
+        Some(Self {
+            poses: state.particles.poses.clone(),
+            motions: state.particles.motions.clone(),
+            free: state.particles.free,
+            bonds: Bonds {
+                rules: Vec::new(),
+                ..state.bonds.clone()
+            },
+            clumps: state.clumps.all.clone(),
+            bodies: bodies.to_vec(),
+            materials: contacts.map_or(Vec::new(), |c| c.materials.clone()),
+            lost_by_gone_j: contacts.map_or([0.0; 2], |c| c.lost_by_gone_j),
+            inlets: state.rules.inlets.iter().map(|inlet| inlet.come).collect(),
+            outlets: state
+                .rules
+                .outlets
+                .iter()
+                .map(|outlet| outlet.gone)
+                .collect(),
+            instances: state.rules.instances,
+            replaced: state.rules.replaced,
+            bond_steps: state.rules.bond_steps,
+        })
+    }
+
+    /// Puts it into a state that has been planned from the same scene. Contacts and clusters are put back by others, after this.
+    ///
+    /// # Errors
+    /// The scene has other templates, inlets or outlets.
+    pub(super) fn restore(&self, state: &mut State, bodies: &mut Vec<PlacedBody>) -> Result<()> {
+        let count = self.poses.len();
+        let rules = state.bonds.rules.len();
+        let fits = self.motions.len() == count
+            && self.free <= count
+            && self.inlets.len() == state.rules.inlets.len()
+            && self.outlets.len() == state.rules.outlets.len()
+            && (self.clumps.iter())
+                .all(|clump| (clump.template as usize) < state.clumps.templates.len())
+            && (self.bonds.ends.iter().flatten()).all(|&end| (end as usize) < self.free)
+            && self.bonds.stretches.iter().all(|&(_, rule)| rule < rules);
+        if !fits {
+            return Err(Diagnostic::input(
+                "",
+                "this checkpoint belongs to a run with other bodies, inlets or outlets than the scene has now",
+                "give the scene and the bodies that the run began with, or start again without --resume",
+            ));
+        }
+        state.particles = Particles {
+            poses: self.poses.clone(),
+            motions: self.motions.clone(),
+            wrenches: vec![Wrench::default(); count],
+            free: self.free,
+        };
+        let rules = std::mem::take(&mut state.bonds.rules);
+        state.bonds = Bonds {
+            rules,
+            ..self.bonds.clone()
+        };
+        state.clumps.all.clone_from(&self.clumps);
+        state.shares = divide(&state.bonds, self.free, state.threads);
+        let damped = state.bonds.rules.iter().any(|rule| rule.damped);
+        state.bond_resistance = if damped {
+            vec![Wrench::default(); self.free]
+        } else {
+            Vec::new()
+        };
+        if let Some(contacts) = &mut state.contacts {
+            contacts.materials.clone_from(&self.materials);
+            contacts.lost_by_gone_j = self.lost_by_gone_j;
+            contacts.lost_j = vec![[0.0; 2]; count];
+        }
+        for (inlet, come) in state.rules.inlets.iter_mut().zip(&self.inlets) {
+            inlet.come = *come;
+        }
+        for (outlet, gone) in state.rules.outlets.iter_mut().zip(&self.outlets) {
+            outlet.gone = *gone;
+        }
+        state.rules.instances = self.instances;
+        state.rules.replaced = self.replaced;
+        state.rules.bond_steps = self.bond_steps;
+        bodies.clone_from(&self.bodies);
+        Ok(())
+    }
+}

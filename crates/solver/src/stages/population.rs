@@ -1,0 +1,313 @@
+//! Bodies that come, go, or change what they are: everything that one step asks for happens at once, and everything that counts particles is counted anew.
+//!
+//! Between a kick and the drift after it: places are those of the moment, velocities stand half a step later.
+
+use std::sync::Arc;
+
+use crate::clusters::{Cluster, Clusters};
+use crate::physics::bond::scatter::strength_factor;
+use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::state::State;
+use crate::state::clumps::{Clump, Template};
+use crate::state::contacts::Memory;
+use crate::state::particles::{Motion, Particles, Wrench};
+use crate::state::shares::divide;
+
+/// What is no more.
+pub const GONE: u32 = u32::MAX;
+
+/// What is to happen.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Changes {
+    /// Clumps that become bonded clusters: numbers, rising.
+    pub to_clusters: Vec<usize>,
+    /// Clumps that come.
+    pub coming: Vec<Clump>,
+    /// Clusters that leave, be they clumps or not: their numbers, rising.
+    pub leaving: Vec<u32>,
+}
+
+/// A clump that has become a bonded cluster.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Born {
+    /// As it was.
+    pub clump: Clump,
+    /// What it is made of.
+    pub template: Arc<Template>,
+    /// First of its particles.
+    pub first_particle: usize,
+    /// First of its bonds.
+    pub first_bond: usize,
+}
+
+/// How particles and bonds are counted now.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Renumbered {
+    /// For each particle before, its number now, or [`GONE`].
+    pub particles: Vec<u32>,
+    /// For each bond before, its number now, or [`GONE`].
+    pub bonds: Vec<u32>,
+    /// Clusters that clumps have become.
+    pub born: Vec<Born>,
+}
+
+/// Makes the changes. The clumps that come get their numbers among the clusters.
+pub fn change(state: &mut State, changes: Changes) -> Renumbered {
+    let pressed_before_j = pressed_j(state);
+    let Changes {
+        to_clusters,
+        coming,
+        leaving,
+    } = changes;
+    let leaves = |id: u32| leaving.binary_search(&id).is_ok();
+    let old = std::mem::take(&mut state.particles);
+    let of_particle = state.clusters.as_ref().map(|c| c.of_particle.clone());
+    let of_particle = of_particle.unwrap_or_else(|| vec![0; old.len()]);
+
+    // Who is where now.
+    let mut new = Particles::default();
+    let mut particles = vec![GONE; old.len()];
+    let mut ids: Vec<u32> = Vec::new();
+    let mut is_new = Vec::new();
+    for i in 0..old.free {
+        if !leaves(of_particle[i]) {
+            particles[i] = keep(&old, i, &mut new);
+            ids.push(of_particle[i]);
+        }
+    }
+    new.free = new.len();
+    is_new.resize(new.len(), None);
+
+    let mut born = Vec::new();
+    for &at in &to_clusters {
+        let clump = state.clumps.all[at];
+        let template = Arc::clone(state.clumps.template(&clump));
+        let first_particle = new.len();
+        push_cluster(&template, &clump, &mut new);
+        for (n, &sphere) in template.outer.iter().enumerate() {
+            particles[clump.first as usize + n] = first_particle as u32 + sphere;
+        }
+        ids.resize(new.len(), clump.cluster);
+        is_new.resize(new.len(), Some(template.material));
+        born.push(Born {
+            clump,
+            template,
+            first_particle,
+            first_bond: 0,
+        });
+    }
+
+    let mut at = 0;
+    let clumps = &mut state.clumps;
+    let templates = &clumps.templates;
+    clumps.all.retain_mut(|clump| {
+        at += 1;
+        if to_clusters.binary_search(&(at - 1)).is_ok() || leaves(clump.cluster) {
+            return false;
+        }
+        let first = clump.first as usize;
+        clump.first = new.len() as u32;
+        for i in first..first + templates[clump.template as usize].outer.len() {
+            particles[i] = keep(&old, i, &mut new);
+        }
+        ids.resize(new.len(), clump.cluster);
+        true
+    });
+    is_new.resize(new.len(), None);
+
+    let mut history = state
+        .clusters
+        .as_ref()
+        .map_or(Vec::new(), |c| c.history.clone());
+    for mut clump in coming {
+        let template = Arc::clone(clumps.template(&clump));
+        clump.cluster = history.len() as u32;
+        history.push(Cluster {
+            parent: None,
+            born_s: state.time_s,
+            ended_s: None,
+            particles: template.outer.len() as u32,
+        });
+        crate::state::clumps::Clumps::push_spheres(&template, &mut clump, &mut new);
+        ids.resize(new.len(), clump.cluster);
+        is_new.resize(new.len(), Some(template.material));
+        clumps.all.push(clump);
+    }
+    for born in &born {
+        history[born.clump.cluster as usize].particles = born.template.spheres.len() as u32;
+    }
+    for &id in &leaving {
+        history[id as usize].ended_s = Some(state.time_s);
+    }
+
+    state.particles = new;
+    let bonds = change_bonds(state, &particles, &mut born);
+    count_anew(state, &particles, &bonds, &is_new);
+    if let Some(clusters) = &mut state.clusters {
+        let visited = clusters.visited;
+        // The two are made to belong together above.
+        if let Some(resumed) = Clusters::resumed(ids, history, &state.bonds) {
+            *clusters = resumed;
+        }
+        clusters.visited = visited;
+    }
+    let pressed_j = pressed_j(state);
+    state.ledger.gain(pressed_j - pressed_before_j);
+    Renumbered {
+        particles,
+        bonds,
+        born,
+    }
+}
+
+/// Elastic energy of contacts between particles, J.
+fn pressed_j(state: &State) -> f64 {
+    let contacts = state.contacts.as_ref();
+    contacts.map_or(0.0, |contacts| elastic_energy_j(contacts, &state.particles))
+}
+
+fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
+    new.poses.push(old.poses[i]);
+    new.motions.push(old.motions[i]);
+    new.wrenches.push(old.wrenches[i]);
+    new.len() as u32 - 1
+}
+
+/// All spheres of a clump, as particles that move with it (Platzer 2022, 4.5.4.1): x = c + R s, v = v_c + w x (R s).
+fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
+    for (sphere, sub) in template.spheres.iter().enumerate() {
+        let pose = template.pose(sphere, clump);
+        let motion = clump.motion_at(template, &pose.place());
+        new.poses.push(pose);
+        new.motions.push(Motion {
+            inverse_mass: 1.0 / sub.mass_kg,
+            inverse_inertia: 1.0 / sub.inertia_kg_m2,
+            ..motion
+        });
+        new.wrenches.push(Wrench::default());
+    }
+    new.free += template.spheres.len();
+}
+
+/// Bonds of particles that are still there, and those of the clusters born. Returns how they are counted now.
+fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<u32> {
+    let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
+    let mut count = 0;
+    let bonds: Vec<u32> = (state.bonds.ends.iter())
+        .map(|&ends| {
+            if now(ends).contains(&GONE) {
+                return GONE;
+            }
+            count += 1;
+            count - 1
+        })
+        .collect();
+    if (count as usize) < bonds.len() {
+        let old = std::mem::take(&mut state.bonds);
+        state.bonds.rules.clone_from(&old.rules);
+        for at in (0..old.len()).filter(|&at| bonds[at] != GONE) {
+            state.bonds.push_copy(&old, at, now(old.ends[at]), 1.0);
+        }
+    } else {
+        for ends in &mut state.bonds.ends {
+            *ends = now(*ends);
+        }
+    }
+    for born in born {
+        born.first_bond = state.bonds.len();
+        let template = &born.template;
+        let first = born.first_particle as u32;
+        for (at, ends) in template.bonds.ends.iter().enumerate() {
+            let factor = template.scatter.map_or(1.0, |scatter| {
+                let number = scatter.body | u64::from(born.clump.instance) << 32;
+                let pair = ends.map(|end| u64::from(template.file_number[end as usize]));
+                strength_factor(scatter.seed, number, pair, scatter.modulus)
+            });
+            let ends = ends.map(|end| first + end);
+            state.bonds.push_copy(&template.bonds, at, ends, factor);
+        }
+    }
+    bonds
+}
+
+/// Everything else that counts particles and bonds. `is_new`: the material of those that have come.
+fn count_anew(state: &mut State, particles: &[u32], bonds: &[u32], is_new: &[Option<u8>]) {
+    let count = state.particles.len();
+    // The next step computes them before it needs them.
+    if state.bonds.rules.iter().any(|rule| rule.damped) {
+        state.bond_resistance = vec![Wrench::default(); state.particles.free];
+    }
+    state.unsearched.retain_mut(|bond| {
+        *bond = bonds[*bond as usize];
+        *bond != GONE
+    });
+    for support in &mut state.supports {
+        support.held.retain_mut(|held| {
+            held.particle = particles[held.particle as usize];
+            held.particle != GONE
+        });
+    }
+    for load in &mut state.loads {
+        load.particles.retain_mut(|particle| {
+            *particle = particles[*particle as usize];
+            *particle != GONE
+        });
+    }
+    state.shares = divide(&state.bonds, state.particles.free, state.threads);
+    for wall in &mut state.walls {
+        wall.near.clear();
+        wall.touching.retain_mut(|touch| {
+            touch.particle = particles[touch.particle as usize];
+            touch.particle != GONE
+        });
+        wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    let Some(contacts) = &mut state.contacts else {
+        return;
+    };
+    let old_materials = std::mem::take(&mut contacts.materials);
+    let old_lost_j = std::mem::take(&mut contacts.lost_j);
+    contacts.materials = is_new
+        .iter()
+        .map(|material| material.unwrap_or(0))
+        .collect();
+    contacts.lost_j = vec![[0.0; 2]; count];
+    for (i, &now) in particles.iter().enumerate() {
+        let booked = match contacts.lost_j.get_mut(now as usize) {
+            Some(place) => {
+                contacts.materials[now as usize] = old_materials[i];
+                place
+            }
+            None => &mut contacts.lost_by_gone_j,
+        };
+        for k in 0..2 {
+            booked[k] += old_lost_j[i][k];
+        }
+    }
+    let mut remembered: Vec<([u32; 2], Memory)> = (contacts.pairs.iter().zip(&contacts.memories))
+        .filter_map(|(pair, memory)| {
+            let [a, b] = pair.map(|end| particles[end as usize]);
+            if a == GONE || b == GONE {
+                return None;
+            }
+            let mut memory = if a < b {
+                *memory
+            } else {
+                memory.turned_round()
+            };
+            let changed = [a, b].iter().any(|&i| is_new[i as usize].is_some());
+            if changed && memory.overlap_m() > 0.0 {
+                // Contact spheres of clumps may be larger than those of clusters.
+                let pair = [a.min(b), a.max(b)];
+                let now = overlap_m(&state.particles.poses, pair) - memory.origin_m();
+                memory.slid[3] = now.max(0.0).min(memory.slid[3]);
+            }
+            Some(([a.min(b), a.max(b)], memory))
+        })
+        .collect();
+    remembered.sort_unstable_by_key(|(pair, _)| *pair);
+    (contacts.pairs, contacts.memories) = remembered.into_iter().unzip();
+    contacts.divide(count, state.threads);
+    // The next step looks for near pairs again.
+    contacts.room_m = -1.0;
+}

@@ -1,0 +1,400 @@
+//! Which clumps become bonded clusters in this step (BPRM: Platzer 2022, 4.5.4), which bodies come through inlets, and which leave through outlets.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::population::{Changes, Renumbered, change};
+use crate::check::ledger::synchronous_motions;
+use crate::clusters::{Fragment, fragments};
+use crate::physics::random::uniform;
+use crate::physics::rotation::spin_rad_s;
+use crate::stages::clumps::synchronous;
+use crate::state::State;
+use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::rules::{Feed, Inlet, Trigger};
+
+/// Places looked at for a body in one step.
+const TRIES: u32 = 10;
+/// Steps after which a place is looked for again.
+const WAIT: u64 = 50;
+/// Outlets look for what has come to them once in so many steps.
+const OUTLET_EVERY: u64 = 50;
+
+/// What has happened to bodies in a step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Happened {
+    /// A clump has become a bonded cluster.
+    Replaced {
+        /// Its number among the clusters.
+        cluster: u32,
+        /// Name of its body.
+        body: String,
+        /// Which condition was met: `enters`, `force`, `impact_energy`, `time`, `start`.
+        cause: &'static str,
+        /// Mass before and after, kg.
+        mass_kg: [f64; 2],
+        /// Magnitude of the momentum before and after, N s.
+        momentum_n_s: [f64; 2],
+        /// Kinetic energy before and after, J.
+        kinetic_j: [f64; 2],
+        /// Centre of mass, m. Length 3.
+        place_m: [f64; 3],
+    },
+    /// A body has come.
+    Came {
+        /// Its number among the clusters.
+        cluster: u32,
+        /// Name of its body.
+        body: String,
+        /// Name of the inlet.
+        inlet: String,
+        /// Centre of mass, m. Length 3.
+        place_m: [f64; 3],
+    },
+    /// A body or a fragment has gone.
+    Left {
+        /// Its number among the clusters.
+        cluster: u32,
+        /// Name of the outlet.
+        outlet: String,
+        /// Its mass, kg.
+        mass_kg: f64,
+        /// Centre of mass, m. Length 3.
+        place_m: [f64; 3],
+    },
+}
+
+/// Does to the bodies what the scene asks for, between a kick and the drift after it. None: nothing.
+pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
+    if state.rules.are_none() {
+        return None;
+    }
+    let waiting = state.clumps.all.iter();
+    let waiting = waiting.map(|clump| state.clumps.template(clump).bonds.len() as u64);
+    state.rules.bond_steps[1] += waiting.sum::<u64>();
+    state.rules.bond_steps[0] += state.bonds.len() as u64;
+    let mut happened = Vec::new();
+    let mut renumbered = Vec::new();
+
+    let leaving = leaving(state, &mut happened);
+    let coming = coming(state, &mut happened);
+    if !(leaving.is_empty() && coming.is_empty()) {
+        let changes = Changes {
+            coming,
+            leaving,
+            ..Changes::default()
+        };
+        renumbered.push(change(state, changes));
+    }
+    let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = triggered(state).unzip();
+    if !to_clusters.is_empty() {
+        renumbered.push(swap(state, to_clusters, &causes, &mut happened));
+    }
+    (!happened.is_empty()).then_some((renumbered, happened))
+}
+
+/// Clumps that become clusters: their numbers, and why.
+fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
+    let rules = &state.rules;
+    (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
+        let template = clump.template as usize;
+        if rules.starts.get(template)?.bonded {
+            return Some((n, "start"));
+        }
+        let trigger = rules.triggers.get(template)?.as_ref()?;
+        Some((n, met(trigger, clump, state)?))
+    })
+}
+
+/// Which condition of a trigger a clump meets, or the first where it needs all and meets all.
+fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> {
+    let enters = trigger
+        .enters
+        .map(|region| state.rules.regions[region].contains(clump.place_m));
+    let force = trigger
+        .force_n
+        .map(|limit| Vector3::from(clump.force_n).norm() > limit);
+    let energy = trigger
+        .impact_energy_j
+        .map(|limit| clump.impact_energy_j > limit);
+    let time = trigger.time_s.map(|from| state.time_s >= from);
+    let all = [
+        ("enters", enters),
+        ("force", force),
+        ("impact_energy", energy),
+        ("time", time),
+    ];
+    let mut asked = all
+        .iter()
+        .filter_map(|(name, met)| met.map(|met| (*name, met)));
+    if trigger.needs_all {
+        let first = asked.clone().next()?.0;
+        asked.all(|(_, met)| met).then_some(first)
+    } else {
+        asked.find(|(_, met)| *met).map(|(name, _)| name)
+    }
+}
+
+/// Clumps become clusters; notes mass, momentum and energy before and after.
+fn swap(
+    state: &mut State,
+    to_clusters: Vec<usize>,
+    causes: &[&'static str],
+    happened: &mut Vec<Happened>,
+) -> Renumbered {
+    state.rules.replaced += to_clusters.len() as u32;
+    let changes = Changes {
+        to_clusters,
+        ..Changes::default()
+    };
+    let renumbered = change(state, changes);
+    for (born, cause) in renumbered.born.iter().zip(causes) {
+        let (clump, template) = (&born.clump, &born.template);
+        let p = &state.particles;
+        let (mut mass, mut momentum, mut kinetic) = (0.0, Vector3::zeros(), 0.0);
+        for i in born.first_particle..born.first_particle + template.spheres.len() {
+            let motion = &p.motions[i];
+            mass += 1.0 / motion.inverse_mass;
+            momentum += Vector3::from(motion.velocity_m_s) / motion.inverse_mass;
+            kinetic += p.kinetic_j(i, motion);
+        }
+        happened.push(Happened::Replaced {
+            cluster: clump.cluster,
+            body: template.body.clone(),
+            cause,
+            mass_kg: [template.mass_kg, mass],
+            momentum_n_s: [
+                template.mass_kg * Vector3::from(clump.velocity_m_s).norm(),
+                momentum.norm(),
+            ],
+            kinetic_j: [clump.kinetic_j(template), kinetic],
+            place_m: clump.place_m,
+        });
+    }
+    renumbered
+}
+
+/// Bodies that come through inlets in this step.
+fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
+    let mut coming: Vec<Clump> = Vec::new();
+    let mut inlets = std::mem::take(&mut state.rules.inlets);
+    let mut next_cluster = state
+        .clusters
+        .as_ref()
+        .map_or(0, |c| c.history.len() as u32);
+    for (n, inlet) in inlets.iter_mut().enumerate() {
+        while is_due(inlet, state.time_s) && state.steps >= inlet.come.next_try {
+            let Some(clump) = next_body(n, inlet, state, &coming) else {
+                if inlet.come.tries <= TRIES {
+                    inlet.come.delayed += 1;
+                }
+                inlet.come.next_try = state.steps + WAIT;
+                break;
+            };
+            let template = state.clumps.template(&clump);
+            let moment = Vector3::from(clump.velocity_m_s) - half_kick(state);
+            let spin = spin_rad_s(
+                &clump.turned,
+                clump.angular_momentum,
+                template.moments_kg_m2,
+            );
+            let kinetic = 0.5
+                * (template.mass_kg * moment.norm_squared()
+                    + Vector3::from(spin).dot(&Vector3::from(clump.angular_momentum)));
+            state.ledger.bring(
+                1.0,
+                [template.mass_kg, kinetic],
+                [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
+                state.gravity_m_s2,
+            );
+            inlet.come.bodies += 1;
+            inlet.come.mass_kg += template.mass_kg;
+            inlet.come.tries = 0;
+            state.rules.instances += 1;
+            happened.push(Happened::Came {
+                cluster: next_cluster,
+                body: template.body.clone(),
+                inlet: inlet.name.clone(),
+                place_m: clump.place_m,
+            });
+            next_cluster += 1;
+            coming.push(clump);
+        }
+    }
+    state.rules.inlets = inlets;
+    coming
+}
+
+/// What gravity adds to a velocity from the moment of the places to the half step after it, m/s.
+fn half_kick(state: &State) -> Vector3<f64> {
+    Vector3::from(state.gravity_m_s2) * (0.5 * state.time_step_s)
+}
+
+/// Whether an inlet owes a body.
+fn is_due(inlet: &Inlet, time_s: f64) -> bool {
+    let [start_s, end_s] = inlet.between_s;
+    if inlet.come.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
+        return false;
+    }
+    let since_s = time_s - start_s;
+    match inlet.feed {
+        Feed::Number(per_s) => since_s * per_s >= f64::from(inlet.come.bodies),
+        Feed::Mass(kg_s) => since_s * kg_s >= inlet.come.mass_kg,
+    }
+}
+
+/// The next body of an inlet, where there is place for it: a random place of the region at which the sphere around it touches no sphere of another body.
+fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
+    let seed = state.rules.seed;
+    let number = u64::from(inlet.come.bodies);
+    let random = |of: u64, attempt: u32| uniform(seed, &[n as u64, number, of, u64::from(attempt)]);
+    let which = {
+        let share = random(0, 0);
+        let mut sum = 0.0;
+        let chosen = inlet.templates.iter().find(|(_, part)| {
+            sum += part;
+            share < sum
+        });
+        chosen.or(inlet.templates.last())?.0
+    };
+    let template = &state.clumps.templates[which as usize];
+    let region = &state.rules.regions[inlet.region];
+    let reach_m = template.reach_m * template.scale.max(1.0);
+    for _ in 0..TRIES {
+        inlet.come.tries += 1;
+        let attempt = inlet.come.tries;
+        let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
+            continue;
+        };
+        if is_taken(place_m, reach_m, state, coming) {
+            continue;
+        }
+        let as_file = if inlet.random_orientation {
+            any_rotation([4, 5, 6].map(|of| random(of, attempt)))
+        } else {
+            rotation(state.rules.starts[which as usize].turned)
+        };
+        let turned = numbers(&(as_file * rotation(template.axes)));
+        let velocity = Vector3::from(inlet.velocity_m_s) + half_kick(state);
+        return Some(Clump {
+            template: which,
+            cluster: 0,
+            instance: state.rules.instances + 1,
+            place_m,
+            turned,
+            velocity_m_s: velocity.into(),
+            angular_momentum: angular_momentum(template, turned, inlet.spin_rad_s),
+            force_n: [0.0; 3],
+            torque_n_m: [0.0; 3],
+            first: 0,
+            impact_energy_j: 0.0,
+        });
+    }
+    None
+}
+
+/// Angular momentum of a clump that is turned so and spins so, kg m2/s.
+pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64; 3]) -> [f64; 3] {
+    let turned = rotation(turned);
+    let spin = turned.inverse() * Vector3::from(spin_rad_s);
+    let own = spin.component_mul(&Vector3::from(template.moments_kg_m2));
+    (turned * own).into()
+}
+
+/// A rotation, uniform over all, from three numbers in (0, 1) (Shoemake 1992).
+fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
+    let turn = std::f64::consts::TAU;
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    let ((sv, cv), (sw, cw)) = ((turn * v).sin_cos(), (turn * w).sin_cos());
+    rotation([a * sv, a * cv, b * sw, b * cw])
+}
+
+fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) -> bool {
+    let place = Vector3::from(place_m);
+    let mut poses = state.particles.poses.iter();
+    let near = |other: Vector3<f64>, reach: f64| {
+        (other - place).norm_squared() < (reach_m + reach).powi(2)
+    };
+    poses.any(|pose| near(pose.place(), pose.radius_m()))
+        || coming
+            .iter()
+            .any(|clump| near(clump.place_m.into(), state.clumps.template(clump).reach_m))
+}
+
+/// Clusters that have come to an outlet, and books that they go. Their numbers, rising.
+fn leaving(state: &mut State, happened: &mut Vec<Happened>) -> Vec<u32> {
+    let mut leaving = Vec::new();
+    if state.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
+        return leaving;
+    }
+    let Some(clusters) = &state.clusters else {
+        return leaving;
+    };
+    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, None);
+    let mut outlets = std::mem::take(&mut state.rules.outlets);
+    for fragment in &all {
+        let goes = outlets.iter_mut().find(|outlet| {
+            let inside = state.rules.regions[outlet.region].contains(fragment.centre_m);
+            inside != outlet.removes_outside
+        });
+        let Some(outlet) = goes else {
+            continue;
+        };
+        outlet.gone.0 += 1;
+        outlet.gone.1 += fragment.mass_kg;
+        leaving.push(fragment.id);
+        happened.push(Happened::Left {
+            cluster: fragment.id,
+            outlet: outlet.name.clone(),
+            mass_kg: fragment.mass_kg,
+            place_m: fragment.centre_m,
+        });
+    }
+    state.rules.outlets = outlets;
+    if !leaving.is_empty() {
+        book_leaving(state, &leaving);
+    }
+    leaving
+}
+
+/// Books mass, momenta and energy of what leaves: kinetic energy at the moment of the places, and elastic energy of bonds.
+fn book_leaving(state: &mut State, leaving: &[u32]) {
+    let gravity = state.gravity_m_s2;
+    let leaves = |id: u32| leaving.binary_search(&id).is_ok();
+    let motions = synchronous_motions(state);
+    let ids = state.clusters.as_ref().map(|c| c.of_particle.clone());
+    let ids = ids.unwrap_or_default();
+    for i in 0..state.particles.free {
+        if !leaves(ids[i]) {
+            continue;
+        }
+        let p = &state.particles;
+        let motion = p.motions[i];
+        let spin = motion.spin_rad_s.map(|w| w / motion.inverse_inertia);
+        let kinetic_j = p.kinetic_j(i, &motions[i]);
+        state.ledger.bring(
+            -1.0,
+            [1.0 / motion.inverse_mass, kinetic_j],
+            [p.poses[i].place().into(), motion.velocity_m_s, spin],
+            gravity,
+        );
+    }
+    let bonds = &state.bonds;
+    let poses = &state.particles.poses;
+    let elastic_j: f64 = (0..bonds.len())
+        .filter(|&at| !bonds.is_broken(at) && leaves(ids[bonds.ends[at][0] as usize]))
+        .map(|at| bonds.forces(at, poses).energy.total())
+        .sum();
+    state.ledger.gain(-elastic_j);
+    let now = synchronous(&state.clumps, gravity, state.time_step_s);
+    for (clump, now) in state.clumps.all.iter().zip(&now) {
+        if leaves(clump.cluster) {
+            let template = state.clumps.template(clump);
+            state.ledger.bring(
+                -1.0,
+                [template.mass_kg, now.kinetic_j(template)],
+                [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
+                gravity,
+            );
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Rigid clumps: bodies that move as one, and what they are made of.
+
+use std::sync::Arc;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::bonds::Bonds;
+use super::particles::{Motion, Particles, Pose};
+use crate::physics::rotation::{kinetic_j, spin_rad_s};
+
+/// A sphere of a template.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SubSphere {
+    /// Centre, from the clump's centre along its principal axes, m. Length 3.
+    pub place_m: [f64; 3],
+    /// How the sphere is turned against the principal axes: unit quaternion x, y, z, w.
+    pub turned: [f64; 4],
+    /// m.
+    pub radius_m: f64,
+    /// Mass, kg, as a particle of the bonded cluster.
+    pub mass_kg: f64,
+    /// Moment of inertia, kg m2, as a particle of the bonded cluster.
+    pub inertia_kg_m2: f64,
+}
+
+/// Strengths that vary from bond to bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// Of the scene.
+    pub seed: u64,
+    /// Number of the body in the scene.
+    pub body: u64,
+    /// Weibull modulus.
+    pub modulus: f64,
+}
+
+/// What clumps of one shape have in common. Kept once, however many there are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Template {
+    /// Name of the body in the scene.
+    pub body: String,
+    /// kg.
+    pub mass_kg: f64,
+    /// Principal moments of inertia, rising, kg m2. Length 3.
+    pub moments_kg_m2: [f64; 3],
+    /// Rotation from the principal axes to those of the body's file: unit quaternion x, y, z, w.
+    pub axes: [f64; 4],
+    /// Centre of mass in the axes of the file, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// Largest distance of a point of it from the centre of mass, m.
+    pub reach_m: f64,
+    /// All its spheres.
+    pub spheres: Vec<SubSphere>,
+    /// Those that can be touched: numbers in `spheres`, rising. Only these are in the scene while it is a clump.
+    pub outer: Vec<u32>,
+    /// Radius of a contact sphere of the clump over that of the sphere.
+    pub scale: f64,
+    /// Number of its material.
+    pub material: u8,
+    /// Bonds of the cluster that it can become, between numbers in `spheres`. Empty: none.
+    pub bonds: Bonds,
+    /// For each of `spheres`, its number in the body's file.
+    pub file_number: Vec<u32>,
+    /// How strengths of bonds scatter. None: not at all.
+    pub scatter: Option<Scatter>,
+    /// For each of `bonds`, its number in the body's file.
+    pub bonds_of_file: Vec<u32>,
+}
+
+/// A rigid clump. Velocity and angular momentum stand half a step before or after its place, as those of particles do.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clump {
+    /// Which template.
+    pub template: u32,
+    /// Its number among the clusters.
+    pub cluster: u32,
+    /// How many bodies of the scene came before it.
+    pub instance: u32,
+    /// Centre of mass, m. Length 3.
+    pub place_m: [f64; 3],
+    /// From its principal axes to space: unit quaternion x, y, z, w.
+    pub turned: [f64; 4],
+    /// Of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// About the centre of mass, along the axes of space, kg m2/s. Length 3.
+    pub angular_momentum: [f64; 3],
+    /// What acts on it in this step, N. Length 3.
+    pub force_n: [f64; 3],
+    /// About its centre of mass, N m. Length 3.
+    pub torque_n_m: [f64; 3],
+    /// First of its spheres among the particles.
+    pub first: u32,
+    /// Energy that contacts have taken from its motion so far, J: the sum over all times at which they slowed it down.
+    pub impact_energy_j: f64,
+}
+
+/// All clumps. Their spheres are the last of the particles, in the same order.
+#[derive(Debug, Clone, Default)]
+pub struct Clumps {
+    /// Shapes.
+    pub templates: Vec<Arc<Template>>,
+    /// Those that are there.
+    pub all: Vec<Clump>,
+}
+
+/// A rotation from its numbers x, y, z, w.
+pub fn rotation([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+}
+
+/// The numbers x, y, z, w of a rotation.
+pub fn numbers(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+    [rotation.i, rotation.j, rotation.k, rotation.w]
+}
+
+impl Template {
+    /// The clump's sphere of this number while the clump stands so: place, radius, and how it is turned. The radius is not scaled.
+    pub fn pose(&self, sphere: usize, clump: &Clump) -> Pose {
+        let sphere = &self.spheres[sphere];
+        let turned = rotation(clump.turned);
+        let [x, y, z] =
+            (Vector3::from(clump.place_m) + turned * Vector3::from(sphere.place_m)).into();
+        Pose {
+            position_m: [x, y, z, sphere.radius_m],
+            turned: numbers(&(turned * rotation(sphere.turned))),
+        }
+    }
+
+    /// Mass over mass of the spheres that are in the scene, for contacts: as inverse mass and inverse moment of inertia of all of it.
+    pub fn inert(&self) -> [f64; 2] {
+        let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
+        [1.0 / self.mass_kg, 1.0 / mean]
+    }
+}
+
+impl Clump {
+    /// Spin, rad/s.
+    pub fn spin_rad_s(&self, template: &Template) -> Vector3<f64> {
+        spin_rad_s(&self.turned, self.angular_momentum, template.moments_kg_m2).into()
+    }
+
+    /// Kinetic energy, J.
+    pub fn kinetic_j(&self, template: &Template) -> f64 {
+        let speed = Vector3::from(self.velocity_m_s).norm_squared();
+        0.5 * template.mass_kg * speed
+            + kinetic_j(&self.turned, self.angular_momentum, template.moments_kg_m2)
+    }
+
+    /// How one of its spheres moves with it, as far as its place is concerned.
+    pub fn motion_at(&self, template: &Template, place: &Vector3<f64>) -> Motion {
+        let spin = self.spin_rad_s(template);
+        let arm = place - Vector3::from(self.place_m);
+        let [inverse_mass, inverse_inertia] = template.inert();
+        Motion {
+            velocity_m_s: (Vector3::from(self.velocity_m_s) + spin.cross(&arm)).into(),
+            inverse_mass,
+            spin_rad_s: spin.into(),
+            inverse_inertia,
+        }
+    }
+}
+
+impl Clumps {
+    /// Template of a clump.
+    pub fn template(&self, clump: &Clump) -> &Arc<Template> {
+        &self.templates[clump.template as usize]
+    }
+
+    /// Number of spheres that clumps carry.
+    pub fn spheres(&self) -> usize {
+        self.all
+            .iter()
+            .map(|clump| self.template(clump).outer.len())
+            .sum()
+    }
+
+    /// Mass of all, kg.
+    pub fn mass_kg(&self) -> f64 {
+        self.all
+            .iter()
+            .map(|clump| self.template(clump).mass_kg)
+            .sum()
+    }
+
+    /// Kinetic energy of all, as they move, J.
+    pub fn kinetic_j(&self) -> f64 {
+        self.all
+            .iter()
+            .map(|clump| clump.kinetic_j(self.template(clump)))
+            .sum()
+    }
+
+    /// Adds the contact spheres of a clump at the end of the particles, and tells it where.
+    pub fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
+        clump.first = particles.len() as u32;
+        for &sphere in &template.outer {
+            let mut pose = template.pose(sphere as usize, clump);
+            pose.position_m[3] *= template.scale;
+            particles
+                .motions
+                .push(clump.motion_at(template, &pose.place()));
+            particles.poses.push(pose);
+            particles
+                .wrenches
+                .push(crate::state::particles::Wrench::default());
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Regions of space in which something is done.
+
+use nalgebra::Vector3;
+
+use crate::geometry::Bounds;
+
+/// A region of space.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Region {
+    /// A box along the axes, m.
+    Box(Bounds),
+    /// A ball.
+    Sphere {
+        /// m. Length 3.
+        centre_m: [f64; 3],
+        /// m.
+        radius_m: f64,
+    },
+    /// A cylinder with flat ends.
+    Cylinder {
+        /// Middle of one end, m. Length 3.
+        from_m: [f64; 3],
+        /// Middle of the other, m. Length 3.
+        to_m: [f64; 3],
+        /// m.
+        radius_m: f64,
+    },
+    /// The inside of a closed surface: the corners of its triangles, m.
+    Inside(Vec<[[f64; 3]; 3]>, Bounds),
+}
+
+impl Region {
+    /// Whether a point is in it; m.
+    pub fn contains(&self, point_m: [f64; 3]) -> bool {
+        match self {
+            Self::Box(bounds) => is_in(bounds, point_m),
+            Self::Sphere { centre_m, radius_m } => {
+                (Vector3::from(point_m) - Vector3::from(*centre_m)).norm() <= *radius_m
+            }
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => {
+                let axis = Vector3::from(*to_m) - Vector3::from(*from_m);
+                let way = Vector3::from(point_m) - Vector3::from(*from_m);
+                let along = way.dot(&axis) / axis.norm_squared();
+                (0.0..=1.0).contains(&along) && (way - along * axis).norm() <= *radius_m
+            }
+            Self::Inside(triangles, bounds) => {
+                is_in(bounds, point_m) && turns(triangles, &point_m.into()) > 0.5
+            }
+        }
+    }
+
+    /// Box around it, m.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Box(bounds) | Self::Inside(_, bounds) => *bounds,
+            Self::Sphere { centre_m, radius_m } => Bounds {
+                low: centre_m.map(|x| x - radius_m),
+                high: centre_m.map(|x| x + radius_m),
+            },
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => {
+                let around = Bounds::of([*from_m, *to_m]);
+                Bounds {
+                    low: around.low.map(|x| x - radius_m),
+                    high: around.high.map(|x| x + radius_m),
+                }
+            }
+        }
+    }
+
+    /// A point of it for numbers in (0, 1), or none where they lead beside it: ask again with others.
+    pub fn point(&self, [u, v, w]: [f64; 3]) -> Option<[f64; 3]> {
+        let Bounds { low, high } = self.bounds();
+        let share = [u, v, w];
+        let point = [0, 1, 2].map(|k| low[k] + share[k] * (high[k] - low[k]));
+        self.contains(point).then_some(point)
+    }
+}
+
+fn is_in(bounds: &Bounds, point: [f64; 3]) -> bool {
+    (0..3).all(|k| (bounds.low[k]..=bounds.high[k]).contains(&point[k]))
+}
+
+/// How often a closed surface winds around a point: 1 inside, 0 outside (solid angles by van Oosterom and Strackee 1983).
+fn turns(triangles: &[[[f64; 3]; 3]], point: &Vector3<f64>) -> f64 {
+    let mut angle = 0.0;
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| Vector3::from(corner) - point);
+        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        let below = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        angle += 2.0 * a.dot(&b.cross(&c)).atan2(below);
+    }
+    angle.abs() / (4.0 * std::f64::consts::PI)
+}
