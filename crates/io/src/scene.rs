@@ -4,22 +4,29 @@
 
 mod body;
 mod bond;
+mod clump;
 mod clusters;
 mod contact;
 mod describe;
 mod direction;
 mod field;
+mod inlet;
 mod load;
 mod material;
 mod measure;
 mod names;
+mod outlet;
 mod output;
 mod overrides;
+mod presence;
 mod read;
+mod region;
 mod relaxation;
+mod replacement;
 mod run;
 mod search;
 mod set;
+mod shape;
 mod support;
 mod table;
 mod targets;
@@ -30,10 +37,15 @@ mod wall;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};
+pub use inlet::{FeedRate, Inlet};
+pub use outlet::Outlet;
 pub use read::{read_scene, scene_from_text};
+pub use region::Region;
 pub use relaxation::Relaxation;
+pub use replacement::{Back, Replacement};
 pub use search::Search;
 pub use test::{Test, TestKind};
 pub use wall::{Wall, WallMotion, WallShape};
@@ -64,6 +76,14 @@ pub struct Scene {
     pub supports: BTreeMap<String, Support>,
     /// `[loads.NAME]`
     pub loads: BTreeMap<String, Load>,
+    /// `[regions.NAME]`, of any names.
+    pub regions: BTreeMap<String, Region>,
+    /// `[replacement.NAME]`, by the name of the body: a clump that has bonds.
+    pub replacement: BTreeMap<String, Replacement>,
+    /// `[inlets.NAME]`. The bodies that they name do not stand in the scene at the start.
+    pub inlets: BTreeMap<String, Inlet>,
+    /// `[outlets.NAME]`
+    pub outlets: BTreeMap<String, Outlet>,
     /// `[measures.NAME]`
     pub measures: BTreeMap<String, Measure>,
     /// `[clusters]`
@@ -241,6 +261,8 @@ pub struct BodyEntry {
     pub velocity_m_s: [f64; 3],
     /// `angular_velocity` about the centre of mass, as a rigid body, rad/s. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
+    /// `start_as`, "bonded" unless given, and `clump`.
+    pub start_as: StartAs,
 }
 
 /// Which particles are meant.

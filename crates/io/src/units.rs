@@ -207,6 +207,32 @@ pub const ENERGY: Dimension = Dimension {
     example: "3 mJ",
 };
 
+/// Energy over mass, J/kg.
+pub const ENERGY_PER_MASS: Dimension = Dimension {
+    name: "energy per mass",
+    si: "J/kg",
+    units: &[
+        ("mJ/kg", 1e-3),
+        ("J/kg", 1.0),
+        ("kJ/kg", 1e3),
+        ("kWh/t", 3600.0),
+    ],
+    example: "0.01 J/kg",
+};
+
+/// Mass over time, kg/s.
+pub const MASS_RATE: Dimension = Dimension {
+    name: "mass rate",
+    si: "kg/s",
+    units: &[
+        ("g/s", 1e-3),
+        ("kg/s", 1.0),
+        ("kg/h", 1.0 / 3600.0),
+        ("t/h", 1.0 / 3.6),
+    ],
+    example: "10 kg/s",
+};
+
 /// Rate, 1/s.
 pub const RATE: Dimension = Dimension {
     name: "rate",
@@ -413,6 +439,8 @@ mod tests {
             MASS,
             STIFFNESS,
             ENERGY,
+            ENERGY_PER_MASS,
+            MASS_RATE,
             RATE,
             VISCOUS_DAMPING,
             NUMBER,

@@ -8,11 +8,11 @@ use super::field::Field;
 use super::names::meaning;
 use super::read::named_path;
 use super::table::Table;
-use super::{BodyEntry, BodySource, BondKind, Material};
+use super::{BodyEntry, BodySource, BondKind, Material, clump};
 use crate::Result;
 use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 11] = [
     "file",
     "particles",
     "bond_list",
@@ -22,6 +22,8 @@ const KEYS: [&str; 9] = [
     "rotation",
     "velocity",
     "angular_velocity",
+    "start_as",
+    "clump",
 ];
 
 pub(super) fn read_all(
@@ -101,6 +103,7 @@ fn read(
         angular_velocity_rad_s: table
             .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
             .unwrap_or_default(),
+        start_as: clump::read(&table)?,
     })
 }
 

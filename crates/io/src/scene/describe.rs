@@ -1,6 +1,7 @@
 //! Every value of a scene in SI, defaults included, for a person.
 
 mod contacts;
+mod regions;
 mod test;
 mod walls;
 
@@ -46,6 +47,18 @@ impl Scene {
         }
         for (name, load) in &self.loads {
             lines.load(&format!("loads.{name}"), load);
+        }
+        for (name, region) in &self.regions {
+            lines.region(&format!("regions.{name}"), region);
+        }
+        for (name, replacement) in &self.replacement {
+            lines.replacement(&format!("replacement.{name}"), replacement);
+        }
+        for (name, inlet) in &self.inlets {
+            lines.inlet(&format!("inlets.{name}"), inlet);
+        }
+        for (name, outlet) in &self.outlets {
+            lines.outlet(&format!("outlets.{name}"), outlet);
         }
         for (name, measure) in &self.measures {
             lines.measure(&format!("measures.{name}"), measure);
@@ -209,6 +222,7 @@ impl Lines {
         ] {
             self.add(format!("{path}.{key}"), vector(components, unit));
         }
+        self.start_as(path, body.start_as);
     }
 
     fn set(&mut self, path: &str, set: &ParticleSet) {

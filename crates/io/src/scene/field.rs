@@ -194,6 +194,16 @@ impl<'a> Field<'a> {
         .ok_or_else(|| self.wrong("a whole number from 1", remedy))
     }
 
+    /// A whole number from 1 that 32 bits hold.
+    pub(super) fn small_count(&self, remedy: &str) -> Result<u32> {
+        let limit = format!("a whole number from 1 to {}", u32::MAX);
+        let number = match &self.node.value {
+            Value::Number(written, _) => written.parse().ok().filter(|number| *number > 0),
+            _ => None,
+        };
+        number.ok_or_else(|| self.wrong(&limit, remedy))
+    }
+
     /// Number of one of `count` particles, from 0.
     pub(super) fn particle(&self, count: u32) -> Result<u32> {
         let remedy = "particles are numbered from 0: correct or remove it";
@@ -232,15 +242,38 @@ impl<'a> Field<'a> {
         table: &str,
     ) -> Result<String> {
         let name = self.text()?;
-        let known: Vec<&str> = known.map(String::as_str).collect();
-        if known.contains(&name) {
-            return Ok(name.to_owned());
-        }
         let problem = format!(
             "{} is {}, but nothing in [{table}] has this name",
             self.path,
             self.shown()
         );
+        self.named(name, known, table, problem)?;
+        Ok(name.to_owned())
+    }
+
+    /// Refuses the key `name` of this value where it is no name of `known`: the names in `[table.NAME]`.
+    pub(super) fn key_reference<'n>(
+        &self,
+        name: &str,
+        known: impl Iterator<Item = &'n String>,
+        table: &str,
+    ) -> Result<()> {
+        let problem = format!("{}: nothing in [{table}] has this name", self.path);
+        self.named(name, known, table, problem)
+    }
+
+    /// Refuses `name`, as `problem` says, where it is not among `known`.
+    fn named<'n>(
+        &self,
+        name: &str,
+        known: impl Iterator<Item = &'n String>,
+        table: &str,
+        problem: String,
+    ) -> Result<()> {
+        let known: Vec<&str> = known.map(String::as_str).collect();
+        if known.contains(&name) {
+            return Ok(());
+        }
         let remedy = if known.is_empty() {
             let name = if well_formed(name) { name } else { "NAME" };
             format!("add [{table}.{name}]")

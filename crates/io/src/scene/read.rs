@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::presence::Presence;
 use super::table::Table;
 use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
-    SCENE_VERSION, Scene, body, bond, clusters, contact, load, material, measure, output,
-    relaxation, run, search, set, support, test, wall,
+    SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material, measure, outlet,
+    output, region, relaxation, replacement, run, search, set, support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 20] = [
     "version",
     "run",
     "materials",
@@ -26,6 +27,10 @@ const KEYS: [&str; 16] = [
     "sets",
     "supports",
     "loads",
+    "regions",
+    "replacement",
+    "inlets",
+    "outlets",
     "measures",
     "clusters",
     "relaxation",
@@ -82,16 +87,26 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let bonds = each(&root, "bonds", bond::read)?;
     let bodies = body::read_all(&root, &materials, &bonds, folder)?;
     let contacts = contact::read_all(&root, &materials)?;
-    let sets = set::read_all(&root, &bodies)?;
+    let regions = each(&root, "regions", |field| region::read(field, folder))?;
+    let replacement = replacement::read_all(&root, &bodies, &regions)?;
+    let inlets = inlet::read_all(&root, &bodies, &regions)?;
+    let outlets = each(&root, "outlets", |field| {
+        outlet::read(field, &regions, &inlets)
+    })?;
+    let presence = Presence {
+        bodies: &bodies,
+        inlets: &inlets,
+    };
+    let sets = set::read_all(&root, &presence)?;
     let walls = wall::read_all(&root, &materials, &bodies, &sets, folder)?;
     let targets = Targets {
         sets: &sets,
-        bodies: &bodies,
+        presence: &presence,
         walls: &walls,
     };
     let supports = each(&root, "supports", |field| support::read(field, &targets))?;
     let known = test::Known {
-        bodies: &bodies,
+        presence: &presence,
         sets: &sets,
         walls: &walls,
         supports: &supports,
@@ -120,6 +135,10 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         bodies,
         walls,
         sets,
+        regions,
+        replacement,
+        inlets,
+        outlets,
     })
 }
 

@@ -4,18 +4,20 @@ use std::collections::{BTreeMap, HashSet};
 
 use super::field::Field;
 use super::names::{FRAGMENTS, meaning};
+use super::presence::Presence;
+use super::shape::{corners, sphere};
 use super::table::Table;
 use super::{BodyEntry, BodySource, ParticleSet, Pick};
 use crate::Result;
-use crate::units::LENGTH;
 
 /// The ways to pick.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
 pub(super) fn read_all(
     root: &Table<'_>,
-    bodies: &BTreeMap<String, BodyEntry>,
+    presence: &Presence<'_>,
 ) -> Result<BTreeMap<String, ParticleSet>> {
+    let bodies = presence.bodies;
     let mut sets = BTreeMap::new();
     for (name, field) in root.named("sets")? {
         let body = format!("the body [bodies.{name}]");
@@ -29,7 +31,9 @@ pub(super) fn read_all(
             };
             return Err(field.refuse(problem, remedy));
         }
-        sets.insert(name, read(&field, bodies)?);
+        let set = read(&field, bodies)?;
+        presence.refuse_set(&field, set.body.as_deref())?;
+        sets.insert(name, set);
     }
     Ok(sets)
 }
@@ -75,11 +79,8 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
             pick: region(&first)?,
         }),
         "sphere" => {
-            let sphere = first.table(&["centre", "radius"])?;
-            let pick = Pick::Sphere {
-                centre: sphere.need("centre", "[0, 0, 0]")?.vector(&LENGTH)?,
-                radius: sphere.need("radius", "\"5 mm\"")?.positive(&LENGTH)?,
-            };
+            let (centre, radius) = sphere(&first)?;
+            let pick = Pick::Sphere { centre, radius };
             Ok(ParticleSet { body, pick })
         }
         _ => {
@@ -117,31 +118,4 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
 fn region(field: &Field<'_>) -> Result<Pick> {
     let [min, max] = corners(field, "at most", |low, high| low <= high)?;
     Ok(Pick::Box { min, max })
-}
-
-/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each axis; `limit` says in words what min must be to max.
-pub(super) fn corners(
-    field: &Field<'_>,
-    limit: &str,
-    holds: impl Fn(f64, f64) -> bool,
-) -> Result<[[f64; 3]; 2]> {
-    let table = field.table(&["min", "max"])?;
-    let min = table.need("min", "[0, 0, 0]")?.vector(&LENGTH)?;
-    let upper = table.need("max", "[1, 1, 1]")?;
-    let max = upper.vector(&LENGTH)?;
-    for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.into_iter().zip(max)) {
-        if !holds(low, high) {
-            let problem = format!(
-                "{} is {high} m along {axis}, but min is {low} m",
-                upper.path
-            );
-            let remedy = if low > high {
-                format!("min must be {limit} max: swap them")
-            } else {
-                format!("min must be {limit} max: move one of them")
-            };
-            return Err(upper.refuse(problem, remedy));
-        }
-    }
-    Ok([min, max])
 }

@@ -47,6 +47,16 @@ impl<'a> Table<'a> {
         Some(self.field(name, node))
     }
 
+    /// The value at the end of `keys`, each in the table of the one before, if it is there.
+    pub(super) fn find(&self, keys: &[&str]) -> Option<Field<'a>> {
+        let (first, rest) = keys.split_first()?;
+        let mut field = self.get(first)?;
+        for key in rest {
+            field = field.any_table().ok()?.get(key)?;
+        }
+        Some(field)
+    }
+
     /// What `read` makes of a key, if it is there.
     pub(super) fn read<T>(
         &self,

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use super::field::Field;
 use super::names::{ALL, FRAGMENTS, suggestion};
-use super::{BodyEntry, ParticleSet, Wall};
+use super::presence::Presence;
+use super::{ParticleSet, Wall};
 use crate::{Diagnostic, Result};
 
 /// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can only be measured.
 pub(super) struct Targets<'a> {
     pub(super) sets: &'a BTreeMap<String, ParticleSet>,
-    pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
+    pub(super) presence: &'a Presence<'a>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
 }
 
@@ -26,11 +27,18 @@ pub(super) enum Subject {
 }
 
 impl Targets<'_> {
-    /// The name that `field` gives, if it is that of a set, of a body or `all`.
+    /// The name that `field` gives, if it is that of a set, of a body or `all`, and has particles of its own at the start.
     pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
         let name = field.text()?;
         match self.subject(name) {
-            Some(Subject::Particles) => Ok(name.to_owned()),
+            Some(Subject::Particles) => {
+                if name == ALL {
+                    self.presence.refuse_all(field)?;
+                } else {
+                    self.presence.refuse_body(field, name)?;
+                }
+                Ok(name.to_owned())
+            }
             Some(Subject::Wall) => {
                 let problem = format!("{} is \"{name}\", which is a wall", field.path);
                 let remedy = format!(
@@ -56,7 +64,7 @@ impl Targets<'_> {
     }
 
     fn subject(&self, name: &str) -> Option<Subject> {
-        if name == ALL || self.sets.contains_key(name) || self.bodies.contains_key(name) {
+        if name == ALL || self.sets.contains_key(name) || self.presence.bodies.contains_key(name) {
             Some(Subject::Particles)
         } else if self.walls.contains_key(name) {
             Some(Subject::Wall)
@@ -66,7 +74,7 @@ impl Targets<'_> {
     }
 
     fn of_particles(&self) -> impl Iterator<Item = &str> {
-        let names = self.sets.keys().chain(self.bodies.keys());
+        let names = self.sets.keys().chain(self.presence.bodies.keys());
         names.map(String::as_str).chain([ALL])
     }
 }

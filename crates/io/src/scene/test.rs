@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::direction::direction;
 use super::field::Field;
 use super::names::suggestion;
+use super::presence::Presence;
 use super::table::Table;
 use super::tree::Value;
-use super::{BodyEntry, ParticleSet, Support, Wall, WallMotion};
+use super::{ParticleSet, Support, Wall, WallMotion};
 use crate::Result;
 use crate::units::{AREA, LENGTH, NUMBER, STRESS, VELOCITY};
 
@@ -119,7 +120,7 @@ pub struct Test {
 
 /// What a test can name.
 pub(super) struct Known<'a> {
-    pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
+    pub(super) presence: &'a Presence<'a>,
     pub(super) sets: &'a BTreeMap<String, ParticleSet>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
     pub(super) supports: &'a BTreeMap<String, Support>,
@@ -198,15 +199,21 @@ fn refuse_dimensions(table: &Table<'_>, kind: TestKind) -> Result<()> {
 
 /// The body that is named, or the only one.
 fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
+    let bodies = known.presence.bodies;
     if let Some(field) = table.get("body") {
-        return field.reference(known.bodies.keys(), "bodies");
+        let name = field.reference(bodies.keys(), "bodies")?;
+        known.presence.refuse_body(&field, &name)?;
+        return Ok(name);
     }
-    let mut names = known.bodies.keys();
+    let mut names = bodies.keys();
     match (names.next(), names.next()) {
-        (Some(only), None) => Ok(only.clone()),
+        (Some(only), None) => {
+            known.presence.refuse_only(table, only)?;
+            Ok(only.clone())
+        }
         _ => {
             let problem = format!("{}.body is missing, and there are several", table.path);
-            let names: Vec<&str> = known.bodies.keys().map(String::as_str).collect();
+            let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
             Err(table.refuse(problem, format!("name one of {}", names.join(", "))))
         }
     }

@@ -8,21 +8,21 @@ use dem_io::scene::{
     TestKind, Wall, WallMotion, WallShape,
 };
 use dem_io::units::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, FORCE, LENGTH, MASS, NUMBER,
-    RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
+    ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH,
+    MASS, MASS_RATE, NUMBER, RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
 };
 use dem_io::{read_scene, scene_from_text};
 
-fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene/good")
 }
 
-fn good(name: &str) -> Scene {
+pub(crate) fn good(name: &str) -> Scene {
     read_scene(&folder().join(name), &[]).unwrap()
 }
 
 #[track_caller]
-fn assert_near(got: f64, wanted: f64) {
+pub(crate) fn assert_near(got: f64, wanted: f64) {
     assert!(
         (got - wanted).abs() <= 4.0 * f64::EPSILON * wanted.abs(),
         "{got} is not {wanted}"
@@ -72,6 +72,8 @@ fn the_documentation_lists_every_unit() {
         TORQUE,
         STRESS,
         ENERGY,
+        ENERGY_PER_MASS,
+        MASS_RATE,
         STIFFNESS,
         VISCOUS_DAMPING,
         DENSITY,
@@ -487,6 +489,7 @@ bodies.block.position           [0, 0, 0] m
 bodies.block.rotation           [0, 0, 0] rad
 bodies.block.velocity           [0, 0, 0] m/s
 bodies.block.angular_velocity   [0, 0, 0] rad/s
+bodies.block.start_as           bonded
 output                          none
 ";
     let text = std::fs::read_to_string(folder().join("shortest.toml")).unwrap();

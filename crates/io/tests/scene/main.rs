@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod corpus;
+mod feed;
 mod good;
 mod options;
 mod properties;

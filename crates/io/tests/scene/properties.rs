@@ -4,6 +4,7 @@ use dem_io::scene_from_text;
 use proptest::prelude::*;
 
 const EVERY_KEY: &str = include_str!("good/every-key.toml");
+const CLUMPS_AND_FEED: &str = include_str!("good/clumps-and-feed.toml");
 
 /// A change of a text.
 #[derive(Debug, Clone)]
@@ -18,8 +19,9 @@ enum Change {
     Word(usize, usize),
 }
 
-fn change() -> impl Strategy<Value = Change> {
-    let place = 0..EVERY_KEY.len();
+/// A change of a text of `bytes`.
+fn change(bytes: usize) -> impl Strategy<Value = Change> {
+    let place = 0..bytes;
     let length = 1..60_usize;
     prop_oneof![
         (place.clone(), length.clone()).prop_map(|(at, length)| Change::Cut(at, length)),
@@ -104,8 +106,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn changed_scenes(changes in prop::collection::vec(change(), 1..5)) {
+    fn changed_scenes(changes in prop::collection::vec(change(EVERY_KEY.len()), 1..5)) {
         let text = changes.iter().fold(EVERY_KEY.to_owned(), changed);
+        assert_one_message(&text, &[]);
+    }
+
+    #[test]
+    fn changed_feeds(changes in prop::collection::vec(change(CLUMPS_AND_FEED.len()), 1..5)) {
+        let text = changes.iter().fold(CLUMPS_AND_FEED.to_owned(), changed);
         assert_one_message(&text, &[]);
     }
 

@@ -1,0 +1,52 @@
+//! `[outlets.NAME]`
+
+use std::collections::BTreeMap;
+
+use super::field::Field;
+use super::{Inlet, Region};
+use crate::Result;
+
+const KEYS: [&str; 2] = ["inside", "outside"];
+
+/// Removes bodies and fragments whose centre is there, and counts them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlet {
+    /// `inside` or `outside`: a name of `[regions]`.
+    pub region: String,
+    /// `outside`: removes what is not in the region.
+    pub removes_outside: bool,
+}
+
+pub(super) fn read(
+    field: &Field<'_>,
+    regions: &BTreeMap<String, Region>,
+    inlets: &BTreeMap<String, Inlet>,
+) -> Result<Outlet> {
+    let table = field.table(&KEYS)?;
+    let mut given = table.given(&KEYS);
+    let Some((key, field)) = given.next() else {
+        let problem = format!("{} has no region", table.path);
+        let remedy = "add inside = \"NAME\" or outside = \"NAME\", a name in [regions]";
+        return Err(table.refuse(problem, remedy));
+    };
+    if let Some((_, second)) = given.next() {
+        let problem = format!("{} stands beside {key}", second.path);
+        let remedy = "an outlet has one region: remove one, or make two outlets";
+        return Err(second.refuse(problem, remedy));
+    }
+    let region = field.reference(regions.keys(), "regions")?;
+    let removes_outside = key == "outside";
+    let into = inlets.iter().find(|(_, inlet)| inlet.region == region);
+    if let (Some((inlet, _)), false) = (into, removes_outside) {
+        let problem = format!(
+            "{} is \"{region}\", into which [inlets.{inlet}] puts bodies",
+            field.path
+        );
+        let remedy = "they would be removed at once: name another region";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(Outlet {
+        region,
+        removes_outside,
+    })
+}
