@@ -289,13 +289,8 @@ fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
     let top = top.fold(f64::INFINITY, f64::min);
     let bottom = state.walls.iter().map(|wall| match &wall.shape {
         Shape::Plane(_) => Vector3::from(wall.frame.position_m).dot(down),
-        other => {
-            let bounds = other.bounds();
-            let corners = |b: Bounds| {
-                let ends = [b.low, b.high].map(|corner| wall.frame.to_space(corner));
-                Bounds::of(ends)
-            };
-            let Bounds { low, high } = corners(bounds);
+        _ => {
+            let Bounds { low, high } = wall.bounds_in_space();
             depth(low, high, true)
         }
     });

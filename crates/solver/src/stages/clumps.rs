@@ -93,14 +93,17 @@ fn drift_one(
     );
     let now = rotation_of(clump.turned);
     let spin_rad_s = rotation_vector(numbers(&(now * before.inverse()))).map(|angle| angle / dt);
+    let centre = Vector3::from(clump.place_m);
+    let to_space = now.to_rotation_matrix();
+    let per_s = 1.0 / dt;
     let mut fastest = 0.0_f64;
     for ((&sphere, pose), motion) in template.outer.iter().zip(poses).zip(motions) {
-        let old = pose.place();
-        let new = template.pose(sphere as usize, clump);
-        pose.put_at(new.place().into());
-        pose.turned = new.turned;
+        let sphere = &template.spheres[sphere as usize];
+        let place = centre + to_space * Vector3::from(sphere.place_m);
         // What contacts ask for: the way made in the step.
-        let velocity = (new.place() - old) / dt;
+        let velocity = (place - pose.place()) * per_s;
+        pose.put_at(place.into());
+        pose.turned = numbers(&(now * rotation_of(sphere.turned)));
         motion.velocity_m_s = velocity.into();
         motion.spin_rad_s = spin_rad_s;
         fastest = fastest.max(velocity.norm_squared());

@@ -28,10 +28,14 @@ const SERVO: f64 = 0.1;
 pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
         let bounds = wall.shape.bounds();
+        let in_space = wall.bounds_in_space();
         let is_near = |i: &u32| {
             let pose = &particles.poses[*i as usize];
-            let centre = wall.frame.to_wall(pose.place().into());
             let reach = pose.radius_m() + skin_m;
+            if !in_space.is_near(&pose.place().into(), reach) {
+                return false;
+            }
+            let centre = wall.frame.to_wall(pose.place().into());
             let mut found = Vec::new();
             if bounds.is_near(&centre, reach) {
                 wall.shape.touches(centre, reach, &mut found);

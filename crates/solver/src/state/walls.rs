@@ -4,7 +4,7 @@ use dem_io::scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
 use super::contacts::{ContactKind, Memory};
-use crate::geometry::{Frame, Shape};
+use crate::geometry::{Bounds, Frame, Shape};
 
 /// A wall of the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +73,19 @@ impl Wall {
             work_j: 0.0,
             pending_j: 0.0,
         }
+    }
+
+    /// Box around it in space, m: without end for a plane.
+    pub fn bounds_in_space(&self) -> Bounds {
+        if matches!(self.shape, Shape::Plane(_)) {
+            return self.shape.bounds();
+        }
+        let Bounds { low, high } = self.shape.bounds();
+        let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
+            let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] });
+            self.frame.to_space(corner)
+        });
+        Bounds::of(corners)
     }
 
     /// How it meets a material of this number, which it is known to meet.
