@@ -423,6 +423,10 @@ pub struct Output {
     pub frames_s: Option<f64>,
     /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at least in large scenes.
     pub series_s: Option<f64>,
+    /// `pictures`: time between pictures. None: no pictures.
+    pub pictures_s: Option<f64>,
+    /// `view = { from }`: where pictures are taken from, as seen from the bodies; of length 1. None: from the front, the right and above. Length 3.
+    pub view_from: Option<[f64; 3]>,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,
 }

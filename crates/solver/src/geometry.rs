@@ -121,6 +121,16 @@ impl Bounds {
         (0..3).all(|k| point[k] >= self.low[k] - reach && point[k] <= self.high[k] + reach)
     }
 
+    /// The eight corners, m. Shape 8 x 3.
+    pub fn corners(&self) -> [[f64; 3]; 8] {
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
+            [0, 1, 2].map(|k| match corner >> k & 1 {
+                0 => self.low[k],
+                _ => self.high[k],
+            })
+        })
+    }
+
     /// Length of the diagonal, m.
     pub fn diagonal_m(&self) -> f64 {
         (Vector3::from(self.high) - Vector3::from(self.low)).norm()

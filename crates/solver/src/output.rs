@@ -1,7 +1,8 @@
-//! What a run tells: frames, time series, events, fragments, plots, and the summary at its end.
+//! What a run tells: frames, pictures, time series, events, fragments, plots, and the summary at its end.
 
 pub mod fragments;
 pub mod frames;
+pub mod pictures;
 pub mod plots;
 pub mod series;
 pub mod summary;

@@ -3,6 +3,7 @@
 mod events;
 mod fragments;
 mod limits;
+mod pictures;
 mod progress;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,6 +35,7 @@ use crate::step::{act, move_on};
 use self::events::{change_step, new_step, write_breaks, write_happened, write_splits};
 use self::fragments::write_fragments;
 use self::limits::{Limits, went_through};
+use self::pictures::{Order, Pictures};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
 
@@ -61,6 +63,8 @@ struct Files<'a> {
     series: SeriesFile,
     events: EventFile,
     frames: FrameFiles,
+    /// None: no pictures are wanted.
+    pictures: Option<Pictures>,
     /// None: nothing can break into fragments.
     fragments: Option<FragmentFile>,
     order: FrameOrder,
@@ -96,6 +100,7 @@ impl<'a> Files<'a> {
             series,
             events,
             frames,
+            pictures: None,
             fragments: fragments.transpose()?,
             order,
         })
@@ -127,6 +132,7 @@ pub fn run(
     } = plan;
     let fingerprint = fingerprint(&state);
     let mut order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
+    let of_pictures = settings.folder.and(Order::of(scene, &state));
     let size = state.particles.len() + state.bonds.len();
     let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, &choice);
@@ -168,6 +174,10 @@ pub fn run(
         _ => None,
     };
 
+    if let (Some(order), Some(files)) = (of_pictures, &mut files) {
+        let continued = is_continued.then_some((&state, progress.pictures));
+        files.pictures = Some(Pictures::open(files.folder, order, continued)?);
+    }
     if let (Some(detail), Some(files)) = (&changed_step, &mut files) {
         files
             .events
@@ -224,6 +234,11 @@ pub fn run(
         if let (true, Some(files)) = (frame_due || rests, &mut files) {
             progress.next_frame = rhythm.frame_s.map_or(0, |s| next(&state, s));
             files.order.write(&state, &mut files.frames)?;
+        }
+        if let Some(pictures) = files.as_mut().and_then(|files| files.pictures.as_mut())
+            && (ends || rests || pictures.are_due(&state))
+        {
+            pictures.take(&state, &bodies)?;
         }
         let fragments_due = frame_due || rests || (row_due && progress.has_new_fragments(&state));
         if let (true, Some(files)) = (fragments_due, &mut files) {
@@ -351,6 +366,9 @@ pub fn run(
             write_tree(files.folder, clusters)?;
             write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
         }
+        if let Some(pictures) = &files.pictures {
+            pictures.finish()?;
+        }
     }
     Ok(summary)
 }
@@ -373,6 +391,9 @@ fn save(
         progress.fragments_bytes = fragments.length_bytes();
     }
     progress.frame_times_s = files.frames.times_s().to_vec();
+    if let Some(pictures) = &files.pictures {
+        progress.pictures = pictures.taken();
+    }
     let measures = gauges.iter().map(|gauge| gauge.history).collect();
     let snapshot = Snapshot::taken(
         state,

@@ -10,6 +10,7 @@ mod corpus;
 mod disk;
 mod interrupted;
 mod laboratory;
+mod pictures;
 mod random;
 mod results;
 mod resume;
@@ -129,7 +130,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 /// All files of a results folder by their names, but for what time and place put into the summary.
 fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
-    for part in ["", "frames", "plots"] {
+    for part in ["", "frames", "pictures", "plots"] {
         if !folder.join(part).is_dir() {
             continue;
         }

@@ -11,6 +11,9 @@ use crate::{Diagnostic, Result};
 
 const FRAMES: &str = "frames";
 const PLOTS: &str = "plots";
+const PICTURES: &str = "pictures";
+const FILM_STRIP: &str = "film-strip.png";
+const FILM: &str = "film.png";
 const INDEX: &str = "frames.pvd";
 const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
@@ -68,7 +71,7 @@ impl ResultsFolder {
             Existing::Replace => folder.remove_results()?,
             Existing::Continue => {
                 // What a killed write has left.
-                for part in ["", FRAMES, PLOTS] {
+                for part in ["", FRAMES, PICTURES, PLOTS] {
                     folder.remove_files(part, |_| false)?;
                 }
             }
@@ -91,6 +94,23 @@ impl ResultsFolder {
     /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
     pub fn frames_index(&self) -> PathBuf {
         self.path.join(INDEX)
+    }
+
+    /// Picture `number`, counted from 0: `pictures/picture-00123.png`.
+    pub fn picture(&self, number: usize) -> PathBuf {
+        self.path
+            .join(PICTURES)
+            .join(format!("picture-{number:05}.png"))
+    }
+
+    /// Some pictures side by side: `film-strip.png`.
+    pub fn film_strip(&self) -> PathBuf {
+        self.path.join(FILM_STRIP)
+    }
+
+    /// The pictures one after the other: `film.png`.
+    pub fn film(&self) -> PathBuf {
+        self.path.join(FILM)
     }
 
     /// Time series: `series.csv`.
@@ -163,6 +183,24 @@ impl ResultsFolder {
         make_folder(&self.path.join(FRAMES))
     }
 
+    /// Makes the folder of the pictures, unless it is there.
+    ///
+    /// # Errors
+    /// No permission, a file has its name (exit code 1).
+    pub(super) fn make_pictures_folder(&self) -> Result<()> {
+        make_folder(&self.path.join(PICTURES))
+    }
+
+    /// Removes picture `number` and all after it.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_pictures_from(&self, number: usize) -> Result<()> {
+        self.remove_files(PICTURES, |name| {
+            picture_number(name).is_some_and(|found| found >= number)
+        })
+    }
+
     /// Writes a plot to `plots/NAME.svg`, replacing an earlier one.
     ///
     /// # Errors
@@ -195,7 +233,7 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        const OTHERS: [&str; 7] = [
+        const OTHERS: [&str; 9] = [
             INDEX,
             SERIES,
             EVENTS,
@@ -203,9 +241,12 @@ impl ResultsFolder {
             FRAGMENT_TREE,
             SUMMARY,
             TEST_PAGE,
+            FILM_STRIP,
+            FILM,
         ];
         self.remove_files("", |name| OTHERS.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
+        self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
             name.ends_with(".svg") && plots::is_ours(&plots.join(name))
@@ -270,8 +311,18 @@ pub(super) fn frame_name(number: usize) -> String {
 
 /// 123 of `frame_000123.vtp`.
 fn frame_number(name: &str) -> Option<usize> {
-    let digits = name.strip_prefix("frame_")?.strip_suffix(".vtp")?;
-    let is_number = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
+    number_of(name, "frame_", ".vtp", 6)
+}
+
+/// 123 of `picture-00123.png`.
+fn picture_number(name: &str) -> Option<usize> {
+    number_of(name, "picture-", ".png", 5)
+}
+
+/// The number of at least so many digits between the two.
+fn number_of(name: &str, before: &str, after: &str, least: usize) -> Option<usize> {
+    let digits = name.strip_prefix(before)?.strip_suffix(after)?;
+    let is_number = digits.len() >= least && digits.bytes().all(|byte| byte.is_ascii_digit());
     is_number.then(|| digits.parse().ok()).flatten()
 }
 

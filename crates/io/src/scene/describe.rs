@@ -326,6 +326,14 @@ impl Lines {
             "output.series",
             optional(output.series_s, "s", "a thousandth of the run"),
         );
+        self.add("output.pictures", optional(output.pictures_s, "s", "none"));
+        self.add(
+            "output.view.from",
+            output.view_from.map_or_else(
+                || "front, right and above".to_owned(),
+                |from| vector(from, ""),
+            ),
+        );
         self.add(
             "output.checkpoint",
             optional(output.checkpoint_s, "s", "at the end"),

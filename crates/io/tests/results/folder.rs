@@ -15,6 +15,10 @@ fn names_in_the_folder() {
     assert_eq!(folder.frame(123), at("frames/frame_000123.vtp"));
     assert_eq!(folder.frame(1_234_567), at("frames/frame_1234567.vtp"));
     assert_eq!(folder.frames_index(), at("frames.pvd"));
+    assert_eq!(folder.picture(123), at("pictures/picture-00123.png"));
+    assert_eq!(folder.picture(123_456), at("pictures/picture-123456.png"));
+    assert_eq!(folder.film_strip(), at("film-strip.png"));
+    assert_eq!(folder.film(), at("film.png"));
     assert_eq!(folder.series(), at("series.csv"));
     assert_eq!(folder.events(), at("events.csv"));
     assert_eq!(folder.fragments(), at("fragments.csv"));
@@ -45,12 +49,18 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     let path = folder.path();
     folder.write_plot("energy", &Plot::default()).unwrap();
     fs::create_dir(path.join("frames")).unwrap();
+    fs::create_dir(path.join("pictures")).unwrap();
     fs::create_dir(path.join("frames/frame_000009.vtp")).unwrap();
     let ours = [
         "frames/frame_000000.vtp",
         "frames/frame_1000000.vtp",
         "frames/.unfinished-x1",
         "frames.pvd",
+        "pictures/picture-00000.png",
+        "pictures/picture-123456.png",
+        "pictures/.unfinished-x2",
+        "film-strip.png",
+        "film.png",
         "series.csv",
         "events.csv",
         "fragments.csv",
@@ -62,6 +72,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "frames/frame_1.vtp",
         "frames/frame_000001.vtp.bak",
         "frames/view.pvsm",
+        "pictures/picture-1.png",
+        "pictures/poster.png",
         "plots/mine.svg",
         "plots/notes.md",
         "scene.toml",
@@ -73,8 +85,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     let path = &path.to_owned();
     drop(folder);
     ResultsFolder::create(path, Existing::Continue).unwrap();
-    // Only what a killed write has left is gone.
-    assert_eq!(contents(path).len(), ours.len() + foreign.len());
+    // Only what two killed writes have left is gone, and there is a plot.
+    assert_eq!(contents(path).len(), ours.len() - 2 + foreign.len() + 1);
     ResultsFolder::create(path, Existing::Replace).unwrap();
     let mut left: Vec<_> = foreign.iter().map(|name| path.join(name)).collect();
     left.sort();

@@ -5,6 +5,7 @@ mod checkpoints;
 mod folder;
 mod fragments;
 mod frames;
+mod pictures;
 mod plots;
 mod stored_frame;
 mod tables;

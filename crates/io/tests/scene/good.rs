@@ -462,6 +462,9 @@ fn measures_and_output() {
     assert_eq!(output.folder, Some(folder().join("results")));
     assert_eq!(output.frames_s, Some(0.005));
     assert_eq!(output.series_s, Some(0.0005));
+    assert_eq!(output.pictures_s, Some(0.01));
+    let from = output.view_from.unwrap();
+    (0..3).for_each(|k| assert_near(from[k], [0.6, -0.8, 0.0][k]));
     assert_eq!(output.checkpoint_s, Some(0.1));
 }
 
@@ -610,6 +613,8 @@ fn values_in_words() {
         "loads.press.force [100000, 0, -0.001] N",
         "measures.bending.reference 0.0015 m",
         "output.frames 0.005 s",
+        "output.pictures 0.01 s",
+        "output.view.from [0.6, -0.8, 0]",
     ] {
         let (key, value) = line.split_once(' ').unwrap();
         assert!(

@@ -105,6 +105,16 @@ impl Cylinder {
             .normalize()
     }
 
+    /// The middles of its two ends, m. Shape 2 x 3.
+    pub fn ends_m(&self) -> [[f64; 3]; 2] {
+        [self.start, self.start + self.length_m * self.axis].map(Into::into)
+    }
+
+    /// Radius, m.
+    pub fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
     /// The smallest box around it.
     pub fn bounds(&self) -> Bounds {
         let end = self.start + self.length_m * self.axis;

@@ -123,6 +123,11 @@ impl Mesh {
         })
     }
 
+    /// The corners of all triangles, m. Shape n x 3 x 3.
+    pub fn corners_m(&self) -> impl Iterator<Item = [[f64; 3]; 3]> {
+        self.triangles.iter().map(|t| t.corners.map(Into::into))
+    }
+
     /// The smallest box around it.
     pub fn bounds(&self) -> Bounds {
         self.tree.bounds()

@@ -39,6 +39,16 @@ impl Plane {
         Touch::under(c, self.normal, -height, 0)
     }
 
+    /// A point of it, m. Length 3.
+    pub fn point_m(&self) -> [f64; 3] {
+        self.point.into()
+    }
+
+    /// Unit vector out of the wall. Length 3.
+    pub fn normal(&self) -> [f64; 3] {
+        self.normal.into()
+    }
+
     /// All of space: a plane has no end.
     pub fn bounds(&self) -> Bounds {
         Bounds {

@@ -4,6 +4,7 @@ use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
+use super::pictures::Taken;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::record::Record;
 use crate::plan::time_step::StepChoice;
@@ -30,6 +31,7 @@ pub struct Progress {
     /// Number of fragments when they were written last.
     pub(super) fragments_written: u64,
     pub(super) frame_times_s: Vec<f64>,
+    pub(super) pictures: Taken,
     /// Largest errors of energy, momentum and angular momentum so far: J, N s, N m s.
     largest_errors: [f64; 3],
     /// Largest stable step when it was last looked for, s.
@@ -69,7 +71,8 @@ pub(super) fn next(state: &State, every_s: f64) -> u64 {
     first_after(state.time_s + 0.5 * state.time_step_s, every_s)
 }
 
-fn first_after(time_s: f64, every_s: f64) -> u64 {
+/// Number of the first of the times 0, `every_s`, 2 `every_s`, ... after this one, s.
+pub(super) fn first_after(time_s: f64, every_s: f64) -> u64 {
     ((time_s / every_s).floor() as u64).saturating_add(1)
 }
 

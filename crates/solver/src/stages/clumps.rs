@@ -22,11 +22,9 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
             let [fx, fy, fz, _] = wrench.force_n;
             let [tx, ty, tz, _] = wrench.torque_n_m;
             let on_sphere = Vector3::new(fx, fy, fz);
-            if on_sphere != Vector3::zeros() || wrench.torque_n_m != [0.0; 4] {
-                force += on_sphere;
-                torque +=
-                    Vector3::new(tx, ty, tz) + (known.poses[i].place() - centre).cross(&on_sphere);
-            }
+            force += on_sphere;
+            torque +=
+                Vector3::new(tx, ty, tz) + (known.poses[i].place() - centre).cross(&on_sphere);
         }
         let power =
             force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&clump.spin_rad_s(template));

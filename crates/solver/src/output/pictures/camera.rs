@@ -1,0 +1,179 @@
+//! From where the scene is seen: without perspective, so that one scale holds in the whole picture.
+
+use super::image::MAX_SIDE_PX;
+use super::vector::{are_finite, cross, dot, minus, plus, unit};
+use crate::geometry::Bounds;
+
+/// Free margin at the left and the right, as a share of the width.
+const SIDE: f64 = 0.04;
+/// Free margin at the top, for the time, as a share of the height.
+const TOP: f64 = 0.10;
+/// Free margin at the bottom, for the scale bar, as a share of the height.
+const BOTTOM: f64 = 0.12;
+
+/// Where the three-quarter view looks when x lies across the picture: from the front, the right and above.
+const THREE_QUARTER: [f64; 3] = [-0.42, 0.80, -0.43];
+
+/// Points farther away than this are taken for nonsense, m.
+const FARTHEST_M: f64 = 1e12;
+
+/// A camera without perspective.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Unit vectors of the picture: to the right, up, and towards the viewer.
+    axes: [[f64; 3]; 3],
+    /// The point in the middle of the picture, m.
+    middle_m: [f64; 3],
+    px_per_m: f64,
+    size_px: [u32; 2],
+    /// Depths of the nearest and the farthest point that it was fitted to, px.
+    depth_px: [f64; 2],
+}
+
+impl Camera {
+    /// The camera that looks in this direction and shows all of a box, with `up` upwards in the picture.
+    ///
+    /// Directions may have any length. Where they say nothing, the three-quarter view is taken. `size_px`: width and height.
+    pub fn looking(direction: [f64; 3], up: [f64; 3], at: &Bounds, size_px: [u32; 2]) -> Self {
+        Self::around(direction, up, &at.corners(), size_px)
+    }
+
+    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box where walls are tilted.
+    pub fn around(
+        direction: [f64; 3],
+        up: [f64; 3],
+        points_m: &[[f64; 3]],
+        size_px: [u32; 2],
+    ) -> Self {
+        let size_px = size_px.map(|side| side.min(MAX_SIDE_PX));
+        let axes = axes(direction, up);
+        let seen = sane(points_m).map(|p| axes.map(|axis| dot(axis, p)));
+        let mut view = Bounds::of(seen);
+        if !are_finite(view.low) {
+            view = Bounds {
+                low: [-0.5; 3],
+                high: [0.5; 3],
+            };
+        }
+        let [width, height] = size_px.map(|side| f64::from(side.max(1)));
+        let extent = [0, 1].map(|k| view.high[k] - view.low[k]);
+        let fits =
+            (width * (1.0 - 2.0 * SIDE) / extent[0]).min(height * (1.0 - TOP - BOTTOM) / extent[1]);
+        let px_per_m = if fits.is_normal() { fits } else { height };
+        let [x, y, z] = [0, 1, 2].map(|k| 0.5 * (view.low[k] + view.high[k]));
+        let y = y - 0.5 * (BOTTOM - TOP) * height / px_per_m;
+        let [right, up, back] = axes;
+        let middle_m = plus(plus(right.map(|c| c * x), y, up), z, back);
+        let depth_px = [view.low[2], view.high[2]].map(|depth| (depth - z) * px_per_m);
+        Self {
+            axes,
+            middle_m,
+            px_per_m,
+            size_px,
+            depth_px,
+        }
+    }
+
+    /// The default view around points, m, shape n x 3: from the front, the right and above, the longer horizontal axis across the picture.
+    pub fn three_quarter(points_m: &[[f64; 3]], size_px: [u32; 2]) -> Self {
+        let bounds = Bounds::of(sane(points_m));
+        let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
+        Self::around(three_quarter(y > x), [0.0, 0.0, 1.0], points_m, size_px)
+    }
+
+    /// Width and height of the picture, px.
+    pub fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// The scale of the picture, px/m.
+    pub fn px_per_m(&self) -> f64 {
+        self.px_per_m
+    }
+
+    /// Where a point, m, lies in the picture, px: from the left, from the top, and from the middle of the scene towards the viewer. Length 3.
+    pub fn project(&self, point_m: [f64; 3]) -> [f64; 3] {
+        let from = minus(point_m, self.middle_m);
+        let [x, y, z] = self.axes.map(|axis| dot(axis, from) * self.px_per_m);
+        let [width, height] = self.size_px.map(f64::from);
+        [0.5 * width + x, 0.5 * height - y, z]
+    }
+
+    /// Depths of the farthest and the nearest point that it was fitted to, px.
+    pub(crate) fn depth_px(&self) -> [f64; 2] {
+        self.depth_px
+    }
+}
+
+fn sane(points_m: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
+    let is_sane = |point: &[f64; 3]| point.iter().all(|x| x.abs() < FARTHEST_M);
+    points_m.iter().copied().filter(is_sane)
+}
+
+fn three_quarter(is_y_longer: bool) -> [f64; 3] {
+    let [x, y, z] = THREE_QUARTER;
+    if is_y_longer {
+        [-y, x, z]
+    } else {
+        THREE_QUARTER
+    }
+}
+
+fn axes(direction: [f64; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
+    let ahead = unit(direction)
+        .or(unit(THREE_QUARTER))
+        .unwrap_or([0.0, 1.0, 0.0]);
+    let ups = [up, [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+    let right = ups
+        .into_iter()
+        .filter_map(unit)
+        .map(|up| cross(ahead, up))
+        .find(|right| dot(*right, *right) > 1e-12)
+        .and_then(unit)
+        .unwrap_or([1.0, 0.0, 0.0]);
+    [right, cross(right, ahead), ahead.map(|c| -c)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_box_is_inside_the_picture() {
+        let at = Bounds {
+            low: [-2.0, 1.0, 0.0],
+            high: [5.0, 3.0, 2.5],
+        };
+        let camera = Camera::looking([1.0, 2.0, -1.0], [0.0, 0.0, 1.0], &at, [960, 540]);
+        for corner in at.corners() {
+            let [x, y, _] = camera.project(corner);
+            assert!((30.0..930.0).contains(&x) && (50.0..480.0).contains(&y));
+        }
+    }
+
+    #[test]
+    fn longer_horizontal_axis_runs_to_the_right() {
+        for (points, far) in [
+            ([[0.0; 3], [4.0, 1.0, 1.0]], [4.0, 0.0, 0.0]),
+            ([[0.0; 3], [1.0, 4.0, 1.0]], [0.0, 4.0, 0.0]),
+        ] {
+            let camera = Camera::three_quarter(&points, [960, 540]);
+            let [from, to] = [[0.0; 3], far].map(|point| camera.project(point));
+            assert!(to[0] - from[0] > 2.0 * (to[1] - from[1]).abs());
+            let above = camera.project([0.0, 0.0, 1.0]);
+            assert!(above[1] < from[1] && (above[0] - from[0]).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn nonsense_gives_a_camera_all_the_same() {
+        let points = [[f64::NAN; 3], [f64::INFINITY, 0.0, 0.0], [1e300; 3]];
+        let nothing = [[f64::NAN; 3], [0.0; 3]];
+        for direction in nothing.into_iter().chain([[0.0, 0.0, -1.0]]) {
+            for shown in [&points[..], &[], &[[3.0; 3]]] {
+                let camera = Camera::around(direction, [0.0, 0.0, 1.0], shown, [0, 540]);
+                assert!(are_finite(camera.project([3.0; 3])));
+            }
+        }
+    }
+}

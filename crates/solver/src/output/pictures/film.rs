@@ -1,0 +1,187 @@
+//! Pictures side by side, and one after the other.
+
+use png::{BlendOp, DisposeOp, EncodingError, Writer};
+
+use super::image::{Image, MAX_SIDE_PX};
+use super::png_file::{encoder, fault};
+
+/// Pictures of a film strip, at most.
+pub const OF_STRIP: usize = 8;
+/// Pictures in a row of it.
+pub const COLUMNS: usize = 4;
+/// How much smaller than the pictures those of the strip are.
+pub const SMALLER: u32 = 2;
+
+/// Pictures of a film, at most and but for the last one.
+pub const OF_FILM: usize = 200;
+/// How long a film takes, if that is neither too fast nor too slow for a picture, ms.
+const FILM_MS: usize = 8000;
+const PICTURE_MS: [usize; 2] = [40, 400];
+
+/// Lines between the frames of a film strip.
+const RULE: [u8; 3] = [222, 225, 229];
+
+/// At most [`OF_STRIP`] of so many pictures: the first, the last and others evenly between them.
+pub fn chosen_for_strip(count: usize) -> Vec<usize> {
+    match count {
+        0..=OF_STRIP => (0..count).collect(),
+        more => (0..OF_STRIP)
+            .map(|k| k * (more - 1) / (OF_STRIP - 1))
+            .collect(),
+    }
+}
+
+/// Every one or every second, third, ... of so many pictures, and the last one.
+pub fn chosen_for_film(count: usize) -> Vec<usize> {
+    let every = count.div_ceil(OF_FILM).max(1);
+    let mut chosen: Vec<usize> = (0..count).step_by(every).collect();
+    if let (Some(&shown), Some(last)) = (chosen.last(), count.checked_sub(1))
+        && shown != last
+    {
+        chosen.push(last);
+    }
+    chosen
+}
+
+/// How long each of so many pictures is seen, ms.
+pub fn delay_ms(count: usize) -> u16 {
+    let [least, most] = PICTURE_MS;
+    (FILM_MS / count.max(1)).clamp(least, most) as u16
+}
+
+/// The pictures in rows of so many columns, thin lines between them. All as large as the first one: the others are cut off or have a white margin.
+///
+/// Where it would be larger than a picture may be, the frames are reduced by a whole factor. Without frames it has no pixels.
+pub fn film_strip(frames: &[Image], columns: usize) -> Image {
+    let Some(first) = frames.first() else {
+        return Image::new(0, 0, RULE);
+    };
+    let columns = columns.clamp(1, frames.len());
+    let rows = frames.len().div_ceil(columns);
+    let sides = |factor: u32| [first.width(), first.height()].map(|side| side / factor);
+    let fits = |factor: &u32| {
+        let [wide, high] = sides(*factor).map(|side| side as usize + 1);
+        wide * columns <= MAX_SIDE_PX as usize && high * rows <= MAX_SIDE_PX as usize
+    };
+    let factor = (1..MAX_SIDE_PX).find(fits).unwrap_or(MAX_SIDE_PX);
+    let [wide, high] = sides(factor);
+    let side = |one: u32, count: usize| (one + 1).saturating_mul(count as u32) - 1;
+    let mut strip = Image::new(side(wide, columns), side(high, rows), RULE);
+    for at in 0..rows * columns {
+        let mut cell = Image::new(wide, high, [255; 3]);
+        if let Some(frame) = frames.get(at) {
+            cell.paste(&frame.reduced(factor), 0, 0);
+        }
+        let [x, y] = [at % columns, at / columns].map(|k| k as u32);
+        strip.paste(&cell, x * (wide + 1), y * (high + 1));
+    }
+    strip
+}
+
+/// Pictures as the bytes of an animated PNG file, which browsers play over and over again. `delay_ms`: how long each is seen.
+///
+/// `frame` gives each of the `count` pictures in turn. All as large as the first one: the others are cut off or have a white margin. Of each only what differs from
+/// the one before is stored.
+///
+/// # Errors
+/// Those of `frame`; no frames, or frames without pixels.
+pub fn animation(
+    count: u32,
+    delay_ms: u16,
+    mut frame: impl FnMut(u32) -> dem_io::Result<Image>,
+) -> dem_io::Result<Vec<u8>> {
+    let mut shown = if count == 0 {
+        Image::new(0, 0, [255; 3])
+    } else {
+        frame(0)?
+    };
+    let mut bytes = Vec::new();
+    let mut writer = begun(&mut bytes, &shown, count, delay_ms).map_err(|error| fault(&error))?;
+    for number in 1..count {
+        let mut next = Image::new(shown.width(), shown.height(), [255; 3]);
+        next.paste(&frame(number)?, 0, 0);
+        let place = difference(&shown, &next);
+        add(&mut writer, &next, place).map_err(|error| fault(&error))?;
+        shown = next;
+    }
+    writer.finish().map_err(|error| fault(&error))?;
+    Ok(bytes)
+}
+
+/// A film with its first picture.
+fn begun<'a>(
+    bytes: &'a mut Vec<u8>,
+    first: &Image,
+    count: u32,
+    delay_ms: u16,
+) -> Result<Writer<&'a mut Vec<u8>>, EncodingError> {
+    let mut encoder = encoder(bytes, first);
+    // Without frames as well, so that the header is what is refused.
+    encoder.set_animated(count.max(1), 0)?;
+    encoder.set_frame_delay(delay_ms, 1000)?;
+    encoder.set_blend_op(BlendOp::Source)?;
+    encoder.set_dispose_op(DisposeOp::None)?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(first.rgb())?;
+    Ok(writer)
+}
+
+/// Adds a rectangle of the next picture: left, top, width, height.
+fn add(
+    writer: &mut Writer<&mut Vec<u8>>,
+    next: &Image,
+    [x, y, width, height]: [u32; 4],
+) -> Result<(), EncodingError> {
+    writer.reset_frame_position()?;
+    writer.set_frame_dimension(width, height)?;
+    writer.set_frame_position(x, y)?;
+    writer.write_image_data(next.part([x, y], [width, height]).rgb())
+}
+
+/// The smallest rectangle that holds all pixels that differ, or one pixel: left, top, width, height. The pictures are of one size.
+fn difference(a: &Image, b: &Image) -> [u32; 4] {
+    let wide = a.width().max(1);
+    let mut low = [u32::MAX; 2];
+    let mut high = [0; 2];
+    let pixels = a.rgb().chunks_exact(3).zip(b.rgb().chunks_exact(3));
+    for (at, _) in (0u32..).zip(pixels).filter(|(_, (a, b))| a != b) {
+        let place = [at % wide, at / wide];
+        low = [0, 1].map(|k| low[k].min(place[k]));
+        high = [0, 1].map(|k| high[k].max(place[k]));
+    }
+    if low[0] > high[0] {
+        return [0, 0, 1, 1];
+    }
+    [low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chosen_are_the_first_the_last_and_some_between() {
+        assert!(chosen_for_strip(0).is_empty() && chosen_for_film(0).is_empty());
+        assert_eq!(chosen_for_strip(3), [0, 1, 2]);
+        assert_eq!(chosen_for_strip(9), [0, 1, 2, 3, 4, 5, 6, 8]);
+        assert_eq!(
+            chosen_for_strip(701),
+            [0, 100, 200, 300, 400, 500, 600, 700]
+        );
+        assert_eq!(chosen_for_film(1), [0]);
+        assert_eq!(chosen_for_film(200).len(), 200);
+        assert_eq!(chosen_for_film(201).len(), 101);
+        assert_eq!(chosen_for_film(402)[132..], [396, 399, 401]);
+        assert_eq!([0, 10, 100, 1000].map(delay_ms), [400, 400, 80, 40]);
+    }
+
+    #[test]
+    fn difference_is_the_smallest_rectangle() {
+        let a = Image::new(9, 9, [0; 3]);
+        let mut b = a.clone();
+        assert_eq!(difference(&a, &b), [0, 0, 1, 1]);
+        b.blend(2, 3, [9; 3], 1.0);
+        b.blend(5, 4, [9; 3], 1.0);
+        assert_eq!(difference(&a, &b), [2, 3, 4, 2]);
+    }
+}

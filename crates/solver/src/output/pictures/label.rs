@@ -1,0 +1,119 @@
+//! Labels: the time and a scale.
+
+mod font;
+
+use super::image::Image;
+
+/// Colour of labels.
+const INK: [u8; 3] = [38, 42, 48];
+
+/// Height of digits, as a share of the height of the picture, and the least, px.
+const TEXT: f64 = 0.030;
+const LEAST_TEXT_PX: f64 = 10.0;
+
+/// Length of the scale bar at most, as a share of the width of the picture.
+const BAR: f64 = 0.20;
+
+/// Units of length with their size, m.
+const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
+
+/// A time as a label: `t = 0.125 s`, with as many decimals as frames that are `step_s` apart need. Both in s.
+pub fn time_text(time_s: f64, step_s: f64) -> String {
+    let mut decimals = 0;
+    let mut rest = step_s.abs();
+    // Up to the first step that is whole but for rounding, and three digits of it.
+    while decimals < 9
+        && rest.is_normal()
+        && (rest < 1.0 || (rest - rest.round()).abs() > 1e-6 * rest)
+    {
+        if rest >= 100.0 {
+            break;
+        }
+        rest *= 10.0;
+        decimals += 1;
+    }
+    format!("t = {time_s:.decimals$} s")
+}
+
+/// Writes a label into the top left corner. Signs without a glyph are blanks.
+pub fn label(image: &mut Image, text: &str) {
+    let size = text_px(image);
+    font::write(image, text, [1.1 * size, 1.0 * size], size, INK);
+}
+
+/// Draws a bar of a round length with its label into the bottom right corner. `px_per_m`: the scale of the picture.
+///
+/// Nothing is drawn where the scale is not a positive number.
+pub fn scale_bar(image: &mut Image, px_per_m: f64) {
+    let most_m = BAR * f64::from(image.width()) / px_per_m;
+    let Some((length_m, text)) = round_length(most_m) else {
+        return;
+    };
+    let size = text_px(image);
+    let length = length_m * px_per_m;
+    let right = f64::from(image.width()) - 1.4 * size;
+    let bottom = f64::from(image.height()) - 1.3 * size;
+    let left = right - length;
+    let tick = 0.32 * size;
+    let bar = [
+        [[left, bottom], [right, bottom]],
+        [[left, bottom - tick], [left, bottom + tick]],
+        [[right, bottom - tick], [right, bottom + tick]],
+    ];
+    font::stroke(image, &bar, (0.12 * size).max(1.2), INK);
+    let middle = 0.5 * (left + right - font::width(&text, size));
+    font::write(image, &text, [middle, bottom - 1.75 * size], size, INK);
+}
+
+fn text_px(image: &Image) -> f64 {
+    (TEXT * f64::from(image.height())).max(LEAST_TEXT_PX)
+}
+
+/// The longest of 1, 2 and 5 times a power of ten up to a length, m, and how it is written.
+fn round_length(most_m: f64) -> Option<(f64, String)> {
+    let decade = (-9..=9).rev().find(|k| 10f64.powi(*k) <= most_m)?;
+    if most_m > 1e10 {
+        return None;
+    }
+    let digit = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|digit| digit * 10f64.powi(decade) <= most_m)?;
+    let length_m = digit * 10f64.powi(decade);
+    let (unit, size) = LENGTHS
+        .into_iter()
+        .find(|(_, size)| length_m > 0.999 * size)
+        .unwrap_or(LENGTHS[3]);
+    let value = (length_m / size * 1e6).round() / 1e6;
+    Some((length_m, format!("{value} {unit}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_has_the_decimals_of_its_steps() {
+        assert_eq!(time_text(0.125, 0.025), "t = 0.125 s");
+        assert_eq!(time_text(3.0, 0.5), "t = 3.0 s");
+        assert_eq!(time_text(20.0, 10.0), "t = 20 s");
+        assert_eq!(time_text(0.1 + 0.2, 0.1), "t = 0.3 s");
+        assert_eq!(time_text(1.0, 1.0 / 3.0), "t = 1.000 s");
+        assert_eq!(time_text(1e-5, 1e-5), "t = 0.00001 s");
+        for odd in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e300, 1e-300] {
+            let _ = [time_text(odd, odd), time_text(1.0, odd)];
+        }
+    }
+
+    #[test]
+    fn lengths_are_round() {
+        let text = |most_m| round_length(most_m).map(|(_, text)| text);
+        assert_eq!(text(0.12).as_deref(), Some("100 mm"));
+        assert_eq!(text(0.00099).as_deref(), Some("500 µm"));
+        assert_eq!(text(2.1).as_deref(), Some("2 m"));
+        assert_eq!(text(1.0).as_deref(), Some("1 m"));
+        assert_eq!(text(7e3).as_deref(), Some("5 km"));
+        for none in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e300] {
+            assert_eq!(text(none), None);
+        }
+    }
+}

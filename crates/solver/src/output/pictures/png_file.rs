@@ -1,0 +1,73 @@
+//! Pictures as PNG files.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use dem_io::{Diagnostic, Result};
+use png::{BitDepth, ColorType, Compression, Decoder, Encoder, EncodingError, Filter};
+
+use super::image::Image;
+
+/// A picture as the bytes of a PNG file, RGB.
+///
+/// # Errors
+/// A picture without pixels.
+pub fn to_png(image: &Image) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let written = encoder(&mut bytes, image)
+        .write_header()
+        .and_then(|mut writer| {
+            writer.write_image_data(image.rgb())?;
+            writer.finish()
+        });
+    written.map_err(|error| fault(&error))?;
+    Ok(bytes)
+}
+
+/// The picture in a file that [`to_png`] has made the bytes of.
+///
+/// # Errors
+/// There is no such file, or it holds something else (exit code 1).
+pub fn read_png(path: &Path) -> Result<Image> {
+    let refuse = |problem: String| {
+        Diagnostic::failed(
+            path.display().to_string(),
+            format!("this picture of the run cannot be read: {problem}"),
+            "start the run again, without --resume",
+        )
+    };
+    let file = File::open(path).map_err(|error| refuse(error.to_string()))?;
+    let mut reader = Decoder::new(BufReader::new(file))
+        .read_info()
+        .map_err(|error| refuse(error.to_string()))?;
+    let size = reader.output_buffer_size().unwrap_or_default();
+    let mut pixels = vec![0; size];
+    let info = reader
+        .next_frame(&mut pixels)
+        .map_err(|error| refuse(error.to_string()))?;
+    let is_ours = info.color_type == ColorType::Rgb && info.bit_depth == BitDepth::Eight;
+    is_ours
+        .then(|| Image::of_rgb(info.width, info.height, pixels))
+        .flatten()
+        .ok_or_else(|| refuse("it is not of this program".to_owned()))
+}
+
+/// Writes pictures as large as this one, RGB.
+pub(super) fn encoder<'a>(bytes: &'a mut Vec<u8>, image: &Image) -> Encoder<'a, &'a mut Vec<u8>> {
+    let mut encoder = Encoder::new(bytes, image.width(), image.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Balanced);
+    encoder.set_filter(Filter::Adaptive);
+    encoder
+}
+
+/// What went wrong while a picture was put into bytes.
+pub(super) fn fault(error: &EncodingError) -> Diagnostic {
+    Diagnostic::failed(
+        "picture",
+        error.to_string(),
+        "this is a fault of the program",
+    )
+}

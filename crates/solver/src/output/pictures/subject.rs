@@ -1,0 +1,142 @@
+//! What is to be seen of a state: its particles, coloured by the piece that they belong to, and its walls.
+
+use super::colours::{SINGLE, of_fragment};
+use super::render::Ball;
+use super::surface::{HalfSpace, Surface};
+use crate::clusters::Cluster;
+use crate::geometry::Bounds;
+use crate::plan::bodies::PlacedBody;
+use crate::state::State;
+use crate::state::walls::Wall;
+
+/// All particles: by cluster, or where there are none by body.
+pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
+    let (of_particle, colours) = match &state.clusters {
+        Some(clusters) => (clusters.of_particle.clone(), of_clusters(&clusters.history)),
+        None => by_body(state.particles.len(), bodies),
+    };
+    let colour_of = |i: usize| colours.get(*of_particle.get(i)? as usize).copied();
+    (state.particles.poses.iter().enumerate())
+        .map(|(i, pose)| Ball {
+            centre_m: pose.place().into(),
+            radius_m: pose.radius_m(),
+            colour: colour_of(i).unwrap_or(SINGLE),
+        })
+        .collect()
+}
+
+/// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where others begin.
+pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
+    let plane_of = |wall: &Wall| HalfSpace::of_wall(&wall.shape, &wall.frame);
+    let planes: Vec<HalfSpace> = walls.iter().filter_map(plane_of).collect();
+    let surface = |wall: &Wall| match plane_of(wall) {
+        Some(plane) => Some(Surface::plane(&plane, around, &planes)),
+        None => Surface::of_finite(&wall.shape, &wall.frame),
+    };
+    walls.iter().filter_map(surface).collect()
+}
+
+/// The colour of each cluster. The largest piece of one that broke keeps its colour, so that a body which loses a crumb does not flicker.
+fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
+    let mut heirs: Vec<Option<usize>> = vec![None; history.len()];
+    for (id, cluster) in history.iter().enumerate() {
+        let Some(heir) = (cluster.parent).and_then(|parent| heirs.get_mut(parent as usize)) else {
+            continue;
+        };
+        if heir.is_none_or(|heir| history[heir].particles < cluster.particles) {
+            *heir = Some(id);
+        }
+    }
+    // Number of the colour, and particles of the body that it comes from. A parent comes before its pieces.
+    let mut known: Vec<(u32, u32)> = Vec::with_capacity(history.len());
+    for (id, cluster) in history.iter().enumerate() {
+        let parent = cluster.parent.map(|parent| parent as usize);
+        let of_parent = parent.and_then(|parent| known.get(parent)).copied();
+        let is_heir = parent.is_some_and(|parent| heirs[parent] == Some(id));
+        known.push(match of_parent {
+            Some((number, whole)) if is_heir => (number, whole),
+            Some((_, whole)) => (id as u32, whole),
+            None => (id as u32, cluster.particles),
+        });
+    }
+    let pieces = history.iter().zip(known);
+    pieces
+        .map(|(cluster, (number, whole))| colour(number, cluster.particles, whole))
+        .collect()
+}
+
+/// The body of each particle, and the colour of each body.
+fn by_body(particles: usize, bodies: &[PlacedBody]) -> (Vec<u32>, Vec<[u8; 3]>) {
+    let mut of_particle = vec![u32::MAX; particles];
+    for (number, body) in (0..).zip(bodies) {
+        for &i in &body.particles {
+            if let Some(of_this) = of_particle.get_mut(i as usize) {
+                *of_this = number;
+            }
+        }
+    }
+    let count = |body: &PlacedBody| body.particles.len() as u32;
+    let colours = (0..)
+        .zip(bodies)
+        .map(|(number, body)| colour(number, count(body), count(body)));
+    (of_particle, colours.collect())
+}
+
+/// The colour of a piece of so many of the particles of its body.
+fn colour(number: u32, particles: u32, whole: u32) -> [u8; 3] {
+    if particles == 1 {
+        SINGLE
+    } else {
+        of_fragment(number, f64::from(particles) / f64::from(whole.max(1)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
+        Cluster {
+            parent,
+            born_s: 0.0,
+            ended_s: None,
+            particles,
+        }
+    }
+
+    #[test]
+    fn the_largest_piece_keeps_the_colour_and_singles_are_grey() {
+        let history = [
+            cluster(None, 100),
+            cluster(None, 100),
+            cluster(Some(0), 30),
+            cluster(Some(0), 69),
+            cluster(Some(0), 1),
+            cluster(Some(3), 40),
+            cluster(Some(3), 29),
+        ];
+        let found = of_clusters(&history);
+        assert_eq!(found[0], of_fragment(0, 1.0));
+        assert_eq!(found[1], of_fragment(1, 1.0));
+        assert_eq!(found[2], of_fragment(2, 0.3));
+        assert_eq!(found[3], of_fragment(0, 0.69));
+        assert_eq!(found[4], SINGLE);
+        assert_eq!(found[5], of_fragment(0, 0.4));
+        assert_eq!(found[6], of_fragment(6, 0.29));
+    }
+
+    #[test]
+    fn without_clusters_bodies_have_colours() {
+        let body = |particles: Vec<u32>| PlacedBody {
+            name: String::new(),
+            first_particle: 0,
+            particles,
+            first_bond: 0,
+            bonds: Vec::new(),
+        };
+        let (of_particle, colours) = by_body(4, &[body(vec![2, 0]), body(vec![1]), body(vec![9])]);
+        assert_eq!(of_particle, [0, 1, 0, u32::MAX]);
+        assert_eq!(colours[0], of_fragment(0, 1.0));
+        assert_eq!(colours[1], SINGLE);
+    }
+}

@@ -1,0 +1,130 @@
+//! When pictures are taken, and the film of them at the end.
+
+use dem_io::Result;
+use dem_io::results::{PictureFiles, ResultsFolder};
+use dem_io::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use super::progress::{due, first_after, next};
+use crate::output::pictures::film::{
+    COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
+};
+use crate::output::pictures::png_file::{read_png, to_png};
+use crate::output::pictures::{Image, View};
+use crate::plan::bodies::PlacedBody;
+use crate::state::State;
+
+/// What a checkpoint keeps of the pictures.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Taken {
+    every_s: f64,
+    next: u64,
+    count: usize,
+}
+
+/// How the pictures of a run are taken, and how often.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Order {
+    view: View,
+    every_s: f64,
+}
+
+impl Order {
+    /// Of a state at its start. None: no pictures are wanted.
+    pub(super) fn of(scene: &Scene, start: &State) -> Option<Self> {
+        let output = scene.output.as_ref()?;
+        Some(Self {
+            every_s: output.pictures_s?,
+            view: View::of(start, output.view_from),
+        })
+    }
+}
+
+/// The pictures of a run.
+#[derive(Debug)]
+pub(super) struct Pictures {
+    folder: ResultsFolder,
+    files: PictureFiles,
+    order: Order,
+    taken: Taken,
+}
+
+impl Pictures {
+    /// None yet, or those of a run that goes on at this state.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn open(
+        folder: &ResultsFolder,
+        order: Order,
+        continued: Option<(&State, Taken)>,
+    ) -> Result<Self> {
+        let every_s = order.every_s;
+        let (files, next) = match continued {
+            None => (PictureFiles::create(folder), 0),
+            Some((state, before)) => {
+                let files = PictureFiles::continue_at(folder, before.count)?;
+                let stood_s = state.time_s - 0.5 * state.previous_time_step_s;
+                let next = if before.every_s == every_s {
+                    before.next
+                } else {
+                    first_after(stood_s, every_s)
+                };
+                (files, next)
+            }
+        };
+        let taken = Taken {
+            every_s,
+            next,
+            count: files.count(),
+        };
+        Ok(Self {
+            folder: folder.clone(),
+            files,
+            order,
+            taken,
+        })
+    }
+
+    /// What a checkpoint keeps of them.
+    pub(super) fn taken(&self) -> Taken {
+        self.taken
+    }
+
+    /// Whether it is time for the next one.
+    pub(super) fn are_due(&self, state: &State) -> bool {
+        due(state, self.order.every_s, self.taken.next)
+    }
+
+    /// Takes one.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn take(&mut self, state: &State, bodies: &[PlacedBody]) -> Result<()> {
+        self.taken.next = next(state, self.order.every_s);
+        let image = self.order.view.picture(state, bodies, self.order.every_s);
+        self.files.append(&to_png(&image)?)?;
+        self.taken.count = self.files.count();
+        Ok(())
+    }
+
+    /// Writes some of them side by side, and all or many one after the other.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn finish(&self) -> Result<()> {
+        let read = |number: usize| read_png(&self.folder.picture(number));
+        let small = |number: usize| read(number).map(|image| image.reduced(SMALLER));
+        let chosen = chosen_for_strip(self.taken.count);
+        let frames = chosen
+            .into_iter()
+            .map(small)
+            .collect::<Result<Vec<Image>>>()?;
+        let strip = to_png(&film_strip(&frames, COLUMNS))?;
+        let chosen = chosen_for_film(self.taken.count);
+        let film = animation(chosen.len() as u32, delay_ms(chosen.len()), |k| {
+            read(chosen[k as usize])
+        })?;
+        self.files.write_film(&strip, &film)
+    }
+}
