@@ -149,7 +149,7 @@ pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], 
             for by in by {
                 gauge.particles.retain_mut(|particle| {
                     *particle = by.particles[*particle as usize];
-                    *particle != GONE
+                    *particle < by.free
                 });
             }
         }

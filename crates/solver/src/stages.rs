@@ -13,5 +13,6 @@ pub mod motion;
 pub mod neighbours;
 pub mod population;
 pub mod replacement;
+pub mod restoring;
 pub mod supports;
 pub mod walls;

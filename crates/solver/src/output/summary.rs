@@ -31,7 +31,7 @@ pub struct Summary {
     pub threads: usize,
     /// Number of particles.
     pub particles: usize,
-    /// Number of bonds at the start.
+    /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
     pub bonds: usize,
     /// Bonds that broke.
     pub broken_bonds: u64,
@@ -86,6 +86,8 @@ pub struct PopulationSummary {
     pub clumps: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
+    /// Clusters and fragments that became rigid clumps again.
+    pub restored: u32,
     /// Bodies that came through inlets.
     pub came: u32,
     /// Their mass, kg.
@@ -119,6 +121,7 @@ impl PopulationSummary {
         Some(Self {
             clumps: clumps.all.len(),
             replaced: rules.replaced,
+            restored: rules.restored,
             came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
             came_kg: rules.inlets.iter().map(|inlet| inlet.come.mass_kg).sum(),
             delayed: rules.inlets.iter().map(|inlet| inlet.come.delayed).sum(),
@@ -218,7 +221,9 @@ impl fmt::Display for Summary {
             .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
             .collect();
         writeln!(f, "time         {}", shares.join("   "))?;
-        if self.bonds > 0 {
+        if self.population.is_some() {
+            writeln!(f, "broken       {} bonds", self.broken_bonds)?;
+        } else if self.bonds > 0 {
             writeln!(
                 f,
                 "broken       {} of {} bonds",
@@ -228,10 +233,11 @@ impl fmt::Display for Summary {
         if let Some(p) = &self.population {
             writeln!(
                 f,
-                "bodies       {} came ({} kg), {} replaced, {} left ({} kg), {} clumps at the end",
+                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps at the end",
                 p.came,
                 significant(p.came_kg, 4),
                 p.replaced,
+                p.restored,
                 p.left,
                 significant(p.left_kg, 4),
                 p.clumps,

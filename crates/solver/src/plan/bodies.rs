@@ -68,6 +68,9 @@ pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbered) {
     bodies.retain_mut(|body| {
         for particle in body.particles.iter_mut().filter(|p| **p != GONE) {
             *particle = by.particles[*particle as usize];
+            if *particle >= by.free {
+                *particle = GONE;
+            }
         }
         let mut first_bond = None;
         let mut at = body.first_bond;

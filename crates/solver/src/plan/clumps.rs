@@ -10,14 +10,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::bodies::place_body;
 use super::contacts::Kinds;
 use crate::shape::inertia::{MassProperties, of_spheres, of_union};
-use crate::shape::outer_layer::outer_layer;
+use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::stages::replacement::angular_momentum;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, SubSphere, Template, numbers, rotation};
 use crate::state::particles::Particles;
-
-/// A sphere of a clump is left out if it is hidden even when it grows by this share of its radius: what touches the clump overlaps it by less.
-const HIDDEN: f64 = 0.05;
 
 /// Names of the bodies that are templates: those that start as clumps or come through inlets.
 pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {

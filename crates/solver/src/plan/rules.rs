@@ -11,7 +11,7 @@ use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::clumps::{Template, numbers};
 use crate::state::regions::Region;
-use crate::state::rules::{Come, Feed, Inlet, Outlet, Rules, Start, Trigger};
+use crate::state::rules::{Come, Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
 
 /// What the scene says of when bodies come, go, and become others.
 ///
@@ -33,6 +33,15 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
             impact_energy_j: rule.impact_energy_j,
             time_s: rule.time_s,
             needs_all: rule.needs_all,
+        })
+    });
+    let restores = templates.iter().map(|template| {
+        let back = scene.replacement.get(&template.body)?.back.as_ref()?;
+        Some(Restore {
+            leaves: number(&back.leaves)?,
+            min_particles: back.min_particles,
+            strain_energy_j_kg: back.strain_energy_j_kg,
+            inner_speed_m_s: back.inner_speed_m_s,
         })
     });
     let starts = templates.iter().map(|template| {
@@ -72,6 +81,7 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
     });
     Ok(Rules {
         triggers: triggers.collect(),
+        restores: restores.collect(),
         starts: starts.collect(),
         inlets: inlets.collect(),
         outlets: outlets.collect(),

@@ -84,6 +84,19 @@ pub(super) fn write_happened(
                     "cluster {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
                 ),
             ),
+            Happened::Restored {
+                cluster,
+                body,
+                particles,
+                lost_j,
+                place_m,
+            } => (
+                "restored",
+                "quiet",
+                place_m,
+                Some(*lost_j),
+                format!("cluster {cluster} ({body}): {particles} particles"),
+            ),
             Happened::Came {
                 cluster,
                 body,

@@ -5,6 +5,9 @@ use nalgebra::Vector3;
 use super::caps::{Arc, Cap, Hidden, free_arcs, hidden, prune};
 use super::cells::Cells;
 
+/// A sphere of a clump is left out if it is hidden even when it grows by this share of its radius: what touches the clump overlaps it by less.
+pub const HIDDEN: f64 = 0.05;
+
 /// Free arcs narrower than this, rad, are rounding: circles of three spheres through one point leave some.
 const LEAST_ARC_RAD: f64 = 1e-12;
 

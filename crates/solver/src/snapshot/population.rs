@@ -1,12 +1,15 @@
 //! What a checkpoint holds of a scene in which bodies come, go, and become others: all particles, bonds, clumps and bodies, as no plan knows them.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use crate::plan::bodies::PlacedBody;
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::Clump;
+use crate::state::clumps::{Clump, Template};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::rules::Come;
 use crate::state::shares::divide;
@@ -19,6 +22,10 @@ pub(super) struct Population {
     free: usize,
     bonds: Bonds,
     clumps: Vec<Clump>,
+    /// Templates of fragments, and the templates of the scene that they come from.
+    fragments: Vec<(Template, u32)>,
+    base_of_cluster: BTreeMap<u32, (u32, u32)>,
+    restored: u32,
     bodies: Vec<PlacedBody>,
     materials: Vec<u8>,
     lost_by_gone_j: [f64; 2],
@@ -45,6 +52,12 @@ impl Population {
                 ..state.bonds.clone()
             },
             clumps: state.clumps.all.clone(),
+            fragments: (state.rules.base_of_fragment.iter())
+                .zip(&state.clumps.templates[state.rules.restores.len()..])
+                .map(|(base, template)| ((**template).clone(), *base))
+                .collect(),
+            base_of_cluster: state.rules.base_of_cluster.clone(),
+            restored: state.rules.restored,
             bodies: bodies.to_vec(),
             materials: contacts.map_or(Vec::new(), |c| c.materials.clone()),
             lost_by_gone_j: contacts.map_or([0.0; 2], |c| c.lost_by_gone_j),
@@ -68,12 +81,14 @@ impl Population {
     pub(super) fn restore(&self, state: &mut State, bodies: &mut Vec<PlacedBody>) -> Result<()> {
         let count = self.poses.len();
         let rules = state.bonds.rules.len();
+        let templates = state.clumps.templates.len() + self.fragments.len();
         let fits = self.motions.len() == count
             && self.free <= count
             && self.inlets.len() == state.rules.inlets.len()
             && self.outlets.len() == state.rules.outlets.len()
-            && (self.clumps.iter())
-                .all(|clump| (clump.template as usize) < state.clumps.templates.len())
+            && (self.clumps.iter()).all(|clump| (clump.template as usize) < templates)
+            && (self.fragments.iter())
+                .all(|(_, base)| (*base as usize) < state.clumps.templates.len())
             && (self.bonds.ends.iter().flatten()).all(|&end| (end as usize) < self.free)
             && self.bonds.stretches.iter().all(|&(_, rule)| rule < rules);
         if !fits {
@@ -95,6 +110,17 @@ impl Population {
             ..self.bonds.clone()
         };
         state.clumps.all.clone_from(&self.clumps);
+        for (template, base) in &self.fragments {
+            let mut template = template.clone();
+            template.bonds.rules.clone_from(&state.bonds.rules);
+            state.clumps.templates.push(Arc::new(template));
+            state.rules.add_fragment(*base as usize);
+        }
+        state
+            .rules
+            .base_of_cluster
+            .clone_from(&self.base_of_cluster);
+        state.rules.restored = self.restored;
         state.shares = divide(&state.bonds, self.free, state.threads);
         let damped = state.bonds.rules.iter().any(|rule| rule.damped);
         state.bond_resistance = if damped {

@@ -21,6 +21,8 @@ pub const GONE: u32 = u32::MAX;
 pub struct Changes {
     /// Clumps that become bonded clusters: numbers, rising.
     pub to_clusters: Vec<usize>,
+    /// Clusters that become clumps: their numbers, rising, and the clumps.
+    pub to_clumps: Vec<(u32, Clump)>,
     /// Clumps that come.
     pub coming: Vec<Clump>,
     /// Clusters that leave, be they clumps or not: their numbers, rising.
@@ -47,6 +49,8 @@ pub struct Renumbered {
     pub particles: Vec<u32>,
     /// For each bond before, its number now, or [`GONE`].
     pub bonds: Vec<u32>,
+    /// Particles from this number on are carried by clumps.
+    pub free: u32,
     /// Clusters that clumps have become.
     pub born: Vec<Born>,
 }
@@ -56,10 +60,12 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     let pressed_before_j = pressed_j(state);
     let Changes {
         to_clusters,
+        to_clumps,
         coming,
         leaving,
     } = changes;
     let leaves = |id: u32| leaving.binary_search(&id).is_ok();
+    let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let old = std::mem::take(&mut state.particles);
     let of_particle = state.clusters.as_ref().map(|c| c.of_particle.clone());
     let of_particle = of_particle.unwrap_or_else(|| vec![0; old.len()]);
@@ -70,7 +76,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     let mut ids: Vec<u32> = Vec::new();
     let mut is_new = Vec::new();
     for i in 0..old.free {
-        if !leaves(of_particle[i]) {
+        if !leaves(of_particle[i]) && !stiffens(of_particle[i]) {
             particles[i] = keep(&old, i, &mut new);
             ids.push(of_particle[i]);
         }
@@ -115,6 +121,23 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     });
     is_new.resize(new.len(), None);
 
+    let known = state.clusters.take();
+    for (id, mut clump) in to_clumps {
+        let template = Arc::clone(clumps.template(&clump));
+        crate::state::clumps::Clumps::push_spheres(&template, &mut clump, &mut new);
+        // The spheres of its template stand in the order of its particles.
+        let members = known
+            .as_ref()
+            .map_or(&[][..], |clusters| clusters.members(id));
+        for (n, &sphere) in template.outer.iter().enumerate() {
+            particles[members[sphere as usize] as usize] = clump.first + n as u32;
+        }
+        ids.resize(new.len(), id);
+        is_new.resize(new.len(), Some(template.material));
+        clumps.all.push(clump);
+    }
+    state.clusters = known;
+
     let mut history = state
         .clusters
         .as_ref()
@@ -136,6 +159,9 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     for born in &born {
         history[born.clump.cluster as usize].particles = born.template.spheres.len() as u32;
     }
+    for clump in &clumps.all {
+        history[clump.cluster as usize].particles = clumps.template(clump).outer.len() as u32;
+    }
     for &id in &leaving {
         history[id as usize].ended_s = Some(state.time_s);
     }
@@ -151,11 +177,25 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         }
         clusters.visited = visited;
     }
+    for born in &born {
+        // A fragment brings the strain that it had when it became a clump.
+        let bonds = born.first_bond..born.first_bond + born.template.bonds.len();
+        let strain_j = |at| {
+            state
+                .bonds
+                .forces(at, &state.particles.poses)
+                .energy
+                .total()
+        };
+        let strain_j: f64 = bonds.map(strain_j).sum();
+        state.ledger.gain(strain_j);
+    }
     let pressed_j = pressed_j(state);
     state.ledger.gain(pressed_j - pressed_before_j);
     Renumbered {
         particles,
         bonds,
+        free: state.particles.free as u32,
         born,
     }
 }
@@ -191,11 +231,13 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
 
 /// Bonds of particles that are still there, and those of the clusters born. Returns how they are counted now.
 fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<u32> {
+    let free = state.particles.free as u32;
+    // Those of clumps and of what has gone are beyond.
     let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
     let mut count = 0;
     let bonds: Vec<u32> = (state.bonds.ends.iter())
         .map(|&ends| {
-            if now(ends).contains(&GONE) {
+            if now(ends).iter().any(|&end| end >= free) {
                 return GONE;
             }
             count += 1;

@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::population::{Changes, Renumbered, change};
+use super::restoring::restore;
 use crate::check::ledger::synchronous_motions;
 use crate::clusters::{Fragment, fragments};
 use crate::physics::random::uniform;
@@ -36,6 +37,19 @@ pub enum Happened {
         momentum_n_s: [f64; 2],
         /// Kinetic energy before and after, J.
         kinetic_j: [f64; 2],
+        /// Centre of mass, m. Length 3.
+        place_m: [f64; 3],
+    },
+    /// A cluster has become a clump again.
+    Restored {
+        /// Its number among the clusters.
+        cluster: u32,
+        /// Name of its body.
+        body: String,
+        /// Number of its particles.
+        particles: u32,
+        /// Strain and inner motion that it had, J.
+        lost_j: f64,
         /// Centre of mass, m. Length 3.
         place_m: [f64; 3],
     },
@@ -84,6 +98,11 @@ pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
             ..Changes::default()
         };
         renumbered.push(change(state, changes));
+    }
+    if let Some((by, restored)) = restore(state) {
+        state.rules.restored += restored.len() as u32;
+        renumbered.push(by);
+        happened.extend(restored);
     }
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = triggered(state).unzip();
     if !to_clusters.is_empty() {
@@ -147,6 +166,14 @@ fn swap(
         ..Changes::default()
     };
     let renumbered = change(state, changes);
+    for born in &renumbered.born {
+        let base = state.rules.base(born.clump.template);
+        let of_scene = (base, born.clump.instance);
+        state
+            .rules
+            .base_of_cluster
+            .insert(born.clump.cluster, of_scene);
+    }
     for (born, cause) in renumbered.born.iter().zip(causes) {
         let (clump, template) = (&born.clump, &born.template);
         let p = &state.particles;

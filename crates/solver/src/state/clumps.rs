@@ -25,7 +25,7 @@ pub struct SubSphere {
 }
 
 /// Strengths that vary from bond to bond.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
     /// Of the scene.
     pub seed: u64,
@@ -36,7 +36,7 @@ pub struct Scatter {
 }
 
 /// What clumps of one shape have in common. Kept once, however many there are.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// Name of the body in the scene.
     pub body: String,

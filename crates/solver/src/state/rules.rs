@@ -1,5 +1,7 @@
 //! When bodies come, go, and become others: what the scene says of regions, replacement, inlets and outlets, and how far that has come.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::regions::Region;
@@ -17,6 +19,19 @@ pub struct Trigger {
     pub time_s: Option<f64>,
     /// All of these have to be true at once; else one is enough.
     pub needs_all: bool,
+}
+
+/// When a cluster becomes a clump again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Restore {
+    /// Its centre of mass is outside of this region: number in [`Rules::regions`].
+    pub leaves: usize,
+    /// It has so many particles at least.
+    pub min_particles: u32,
+    /// Its bonds hold less than this per mass, J/kg.
+    pub strain_energy_j_kg: f64,
+    /// Its particles move against each other more slowly than this, root mean square, m/s.
+    pub inner_speed_m_s: f64,
 }
 
 /// How fast bodies come.
@@ -106,6 +121,14 @@ pub struct Rules {
     pub regions: Vec<Region>,
     /// For each template, when its clumps become clusters. None: never.
     pub triggers: Vec<Option<Trigger>>,
+    /// For each template of the scene, when clusters that come from it become clumps again. None: never.
+    pub restores: Vec<Option<Restore>>,
+    /// For each cluster that was a clump, the template of the scene that it comes from, and its [instance](super::clumps::Clump::instance).
+    pub base_of_cluster: BTreeMap<u32, (u32, u32)>,
+    /// For each template that is a fragment, after those of the scene: the template of the scene that it comes from.
+    pub base_of_fragment: Vec<u32>,
+    /// Clusters that became clumps again so far.
+    pub restored: u32,
     /// For each template, whether bodies of it start as bonded clusters; and how they stand.
     pub starts: Vec<Start>,
     /// Inlets, in the order of their names.
@@ -132,6 +155,31 @@ pub struct Start {
 }
 
 impl Rules {
+    /// Takes a new template of a fragment of the template `base` of the scene. It is replaced as that is, but not by the time, which has come already.
+    pub fn add_fragment(&mut self, base: usize) {
+        let trigger = self.triggers[base].clone().map(|trigger| Trigger {
+            time_s: None,
+            ..trigger
+        });
+        let asks =
+            |t: &Trigger| t.enters.is_some() || t.force_n.is_some() || t.impact_energy_j.is_some();
+        self.triggers.push(trigger.filter(asks));
+        self.starts.push(Start {
+            bonded: false,
+            turned: [0.0, 0.0, 0.0, 1.0],
+        });
+        self.base_of_fragment.push(base as u32);
+    }
+
+    /// The template of the scene that a template comes from.
+    pub fn base(&self, template: u32) -> u32 {
+        let of_scene = self.restores.len() as u32;
+        match template.checked_sub(of_scene) {
+            Some(fragment) => self.base_of_fragment[fragment as usize],
+            None => template,
+        }
+    }
+
     /// Whether there is anything to be done.
     pub fn are_none(&self) -> bool {
         self.inlets.is_empty()

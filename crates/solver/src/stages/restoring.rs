@@ -1,0 +1,260 @@
+//! Clusters that become rigid clumps again: whole ones and fragments that have left a region and have come to rest within themselves. Not in Platzer 2022.
+//!
+//! What is between the particles is lost or frozen: motion against each other is lost; the strain of a fragment is kept in its template and comes back if the
+//! fragment becomes a cluster again; that of a whole body is lost, as it takes the shape of its file. All of it is booked.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::population::{Changes, Renumbered, change};
+use super::replacement::Happened;
+use crate::clusters::{Fragment, fragments};
+use crate::shape::fit::best_rotation;
+use crate::shape::inertia::{MassProperties, of_spheres};
+use crate::shape::outer_layer::{HIDDEN, outer_layer};
+use crate::state::State;
+use crate::state::bonds::Bonds;
+use crate::state::clumps::{Clump, SubSphere, Template, numbers, rotation};
+use crate::state::rules::Restore;
+
+/// Clusters are looked at once in so many steps.
+const EVERY: u64 = 200;
+
+/// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it. None: of none.
+pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
+    let rules = &state.rules;
+    if rules.restores.iter().all(Option::is_none) || !state.steps.is_multiple_of(EVERY) {
+        return None;
+    }
+    let clusters = state.clusters.as_ref()?;
+    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, None);
+    let strains_j = strain_energies_j(state);
+    let mut to_clumps = Vec::new();
+    let mut happened = Vec::new();
+    let mut gained_j = 0.0;
+    for fragment in &all {
+        let members = clusters.members(fragment.id);
+        let is_clump = members
+            .first()
+            .is_none_or(|&i| i as usize >= state.particles.free);
+        if is_clump {
+            continue;
+        }
+        let Some((base, instance)) = base_of(fragment.id, state) else {
+            continue;
+        };
+        let Some(rule) = &state.rules.restores[base] else {
+            continue;
+        };
+        let inner_j = inner_kinetic_j(fragment, members, state);
+        let strain_j = strains_j[fragment.id as usize];
+        if !is_quiet(rule, fragment, inner_j, strain_j, state) {
+            continue;
+        }
+        gained_j -= inner_j.max(0.0) + strain_j;
+        happened.push(Happened::Restored {
+            cluster: fragment.id,
+            body: state.clumps.templates[base].body.clone(),
+            particles: fragment.particles,
+            lost_j: inner_j.max(0.0) + strain_j,
+            place_m: fragment.centre_m,
+        });
+        to_clumps.push((fragment.id, base, instance));
+    }
+    if to_clumps.is_empty() {
+        return None;
+    }
+    let to_clumps = to_clumps
+        .into_iter()
+        .map(|(id, base, instance)| {
+            let members = state
+                .clusters
+                .as_ref()
+                .map_or(Vec::new(), |c| c.members(id).to_vec());
+            let clump = as_clump(id, base, &members, state);
+            (id, Clump { instance, ..clump })
+        })
+        .collect();
+    state.ledger.gain(gained_j);
+    let changes = Changes {
+        to_clumps,
+        ..Changes::default()
+    };
+    Some((change(state, changes), happened))
+}
+
+/// The template of the body that a cluster comes from, and its instance. None: it never was a clump.
+fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
+    let history = &state.clusters.as_ref()?.history;
+    let mut id = id;
+    loop {
+        if let Some(&(base, instance)) = state.rules.base_of_cluster.get(&id) {
+            return Some((base as usize, instance));
+        }
+        id = history[id as usize].parent?;
+    }
+}
+
+fn is_quiet(
+    rule: &Restore,
+    fragment: &Fragment,
+    inner_j: f64,
+    strain_j: f64,
+    state: &State,
+) -> bool {
+    fragment.particles >= rule.min_particles
+        && !state.rules.regions[rule.leaves].contains(fragment.centre_m)
+        && strain_j < rule.strain_energy_j_kg * fragment.mass_kg
+        && 2.0 * inner_j < rule.inner_speed_m_s.powi(2) * fragment.mass_kg
+}
+
+/// Elastic energy of the bonds of each cluster, J.
+fn strain_energies_j(state: &State) -> Vec<f64> {
+    let Some(clusters) = &state.clusters else {
+        return Vec::new();
+    };
+    let mut energies = vec![0.0; clusters.history.len()];
+    let (bonds, poses) = (&state.bonds, &state.particles.poses);
+    for (at, ends) in bonds.ends.iter().enumerate() {
+        if !bonds.is_broken(at) {
+            let id = clusters.of_particle[ends[0] as usize];
+            energies[id as usize] += bonds.forces(at, poses).energy.total();
+        }
+    }
+    energies
+}
+
+/// Kinetic energy that a cluster has beyond that of a rigid body with its momenta, J.
+fn inner_kinetic_j(fragment: &Fragment, members: &[u32], state: &State) -> f64 {
+    let p = &state.particles;
+    let all: f64 = (members.iter())
+        .map(|&i| p.kinetic_j(i as usize, &p.motions[i as usize]))
+        .sum();
+    let velocity = Vector3::from(fragment.velocity_m_s);
+    let spin = Vector3::from(fragment.angular_velocity_rad_s);
+    let turning = spin.dot(&Vector3::from(fragment.angular_momentum_kg_m2_s));
+    all - 0.5 * (fragment.mass_kg * velocity.norm_squared() + turning)
+}
+
+/// The clump that takes the place of a cluster; adds its template where it is not that of the whole body.
+fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
+    let p = &state.particles;
+    let of = |i: &u32| *i as usize;
+    let centres: Vec<[f64; 3]> = members
+        .iter()
+        .map(|i| p.poses[of(i)].place().into())
+        .collect();
+    let masses: Vec<f64> = members
+        .iter()
+        .map(|i| 1.0 / p.motions[of(i)].inverse_mass)
+        .collect();
+    let inertias: Vec<f64> = members
+        .iter()
+        .map(|i| 1.0 / p.motions[of(i)].inverse_inertia)
+        .collect();
+    let properties = of_spheres(&centres, &masses, &inertias);
+    let centre = Vector3::from(properties.centre_m);
+    let mut momentum = Vector3::zeros();
+    let mut angular = Vector3::zeros();
+    for (n, i) in members.iter().enumerate() {
+        let motion = &p.motions[of(i)];
+        let one = masses[n] * Vector3::from(motion.velocity_m_s);
+        momentum += one;
+        angular += (Vector3::from(centres[n]) - centre).cross(&one)
+            + inertias[n] * Vector3::from(motion.spin_rad_s);
+    }
+    let whole = Arc::clone(&state.clumps.templates[base]);
+    let bonds: Vec<usize> = own_bonds(members, state);
+    let is_whole = members.len() == whole.spheres.len() && bonds.len() == whole.bonds.len();
+    let (template, turned) = if is_whole {
+        let arms: Vec<[f64; 3]> = centres
+            .iter()
+            .map(|place| (Vector3::from(*place) - centre).into())
+            .collect();
+        let from: Vec<[f64; 3]> = whole.spheres.iter().map(|s| s.place_m).collect();
+        (base as u32, best_rotation(&from, &arms, &masses))
+    } else {
+        let template = fragment_template(&whole, members, &bonds, &properties, state);
+        state.clumps.templates.push(Arc::new(template));
+        state.rules.add_fragment(base);
+        (state.clumps.templates.len() as u32 - 1, properties.axes)
+    };
+    Clump {
+        template,
+        cluster: id,
+        place_m: properties.centre_m,
+        turned,
+        velocity_m_s: (momentum / properties.mass_kg).into(),
+        angular_momentum: angular.into(),
+        ..Clump::default()
+    }
+}
+
+/// Bonds between members of a cluster (rising) that hold, in order.
+fn own_bonds(members: &[u32], state: &State) -> Vec<usize> {
+    let ends = &state.bonds.ends;
+    let mut found = Vec::new();
+    for &i in members {
+        let from = ends.partition_point(|[a, _]| *a < i);
+        let own = ends[from..].iter().take_while(|[a, _]| *a == i).count();
+        found.extend((from..from + own).filter(|&at| {
+            !state.bonds.is_broken(at) && members.binary_search(&ends[at][1]).is_ok()
+        }));
+    }
+    found
+}
+
+fn fragment_template(
+    whole: &Template,
+    members: &[u32],
+    bonds: &[usize],
+    properties: &MassProperties,
+    state: &State,
+) -> Template {
+    let to_principal = rotation(properties.axes).inverse();
+    let centre = Vector3::from(properties.centre_m);
+    let p = &state.particles;
+    let spheres: Vec<SubSphere> = members
+        .iter()
+        .map(|&i| {
+            let (pose, motion) = (&p.poses[i as usize], &p.motions[i as usize]);
+            SubSphere {
+                place_m: (to_principal * (pose.place() - centre)).into(),
+                turned: numbers(&(to_principal * pose.rotation())),
+                radius_m: pose.radius_m(),
+                mass_kg: 1.0 / motion.inverse_mass,
+                inertia_kg_m2: 1.0 / motion.inverse_inertia,
+            }
+        })
+        .collect();
+    let mut own = Bonds {
+        rules: state.bonds.rules.clone(),
+        ..Bonds::default()
+    };
+    for &at in bonds {
+        let ends = state.bonds.ends[at].map(|end| members.partition_point(|&m| m < end) as u32);
+        own.push_copy(&state.bonds, at, ends, 1.0);
+    }
+    let centres: Vec<[f64; 3]> = spheres.iter().map(|s| s.place_m).collect();
+    let radii: Vec<f64> = spheres.iter().map(|s| s.radius_m).collect();
+    let reach = spheres
+        .iter()
+        .map(|sphere| Vector3::from(sphere.place_m).norm() + sphere.radius_m);
+    Template {
+        body: whole.body.clone(),
+        mass_kg: properties.mass_kg,
+        moments_kg_m2: properties.moments_kg_m2,
+        axes: [0.0, 0.0, 0.0, 1.0],
+        centre_m: [0.0; 3],
+        reach_m: reach.fold(0.0, f64::max),
+        outer: outer_layer(&centres, &radii, HIDDEN),
+        scale: 1.0,
+        material: whole.material,
+        file_number: (0..spheres.len() as u32).collect(),
+        scatter: None,
+        bonds_of_file: (0..own.len() as u32).collect(),
+        bonds: own,
+        spheres,
+    }
+}
