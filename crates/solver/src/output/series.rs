@@ -5,7 +5,7 @@ use crate::measure::Gauge;
 use crate::state::State;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 11] = [
+pub(super) const ENERGIES: [&str; 12] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -17,6 +17,7 @@ pub(super) const ENERGIES: [&str; 11] = [
     "contact_damping_j",
     "friction_j",
     "released_j",
+    "brought_j",
 ];
 /// Names of the columns after those.
 const OTHERS: [&str; 5] = [
@@ -69,6 +70,7 @@ pub fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
         balance.contact_damping_j,
         balance.friction_j,
         balance.released_j,
+        balance.brought_j,
         balance.energy_error,
         balance.momentum_error,
         balance.angular_momentum_error,

@@ -123,13 +123,13 @@ impl PopulationSummary {
             replaced: rules.replaced,
             restored: rules.restored,
             came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
-            came_kg: rules.inlets.iter().map(|inlet| inlet.come.mass_kg).sum(),
+            came_kg: (rules.inlets.iter()).fold(0.0, |sum, inlet| sum + inlet.come.mass_kg),
             delayed: rules.inlets.iter().map(|inlet| inlet.come.delayed).sum(),
             waiting: (rules.inlets.iter())
                 .map(|inlet| inlet.owed(state.time_s))
                 .sum(),
             left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
-            left_kg: rules.outlets.iter().map(|outlet| outlet.gone.1).sum(),
+            left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
             bonds_left_out: over(left_out, done + left_out),
             inner_spheres: over(inner, clumps.templates.len() as f64),
         })
@@ -242,11 +242,16 @@ impl fmt::Display for Summary {
                 significant(p.left_kg, 4),
                 p.clumps,
             )?;
+            let hidden = match 100.0 * p.inner_spheres {
+                share if share >= 0.5 => {
+                    format!("; {share:.0} % of the spheres of clumps, which nothing can touch")
+                }
+                _ => String::new(),
+            };
             writeln!(
                 f,
-                "saved        {:.0} % of bonds times steps, as their bodies were rigid; {:.0} % of the spheres of clumps, which nothing can touch",
+                "saved        {:.0} % of bonds times steps, as their bodies were rigid{hidden}",
                 100.0 * p.bonds_left_out,
-                100.0 * p.inner_spheres,
             )?;
         }
         if let Some(fragments) = &self.fragments {
