@@ -31,8 +31,8 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
     found
 }
 
-/// Every command runs, in order, in a folder that holds a copy of the shapes. So that it takes little time, spheres are larger, and
-/// a shape with few facets stands in for the rock.
+/// Every command runs, in order, in a folder that holds a copy of the shapes, scenes and bodies. So that it takes little time, spheres are larger, the chute
+/// ends sooner, and a shape with few facets stands in for the rock.
 #[test]
 fn commands_run_as_pasted() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,11 +49,13 @@ fn commands_run_as_pasted() {
         )
         .unwrap();
     }
-    let scenes = folder.path().join("data/scenes");
-    fs::create_dir_all(&scenes).unwrap();
-    for scene in fs::read_dir(root().join("data/scenes")).unwrap() {
-        let scene = scene.unwrap();
-        fs::copy(scene.path(), scenes.join(scene.file_name())).unwrap();
+    for name in ["data/scenes", "data/bodies"] {
+        let copies = folder.path().join(name);
+        fs::create_dir_all(&copies).unwrap();
+        for file in fs::read_dir(root().join(name)).unwrap() {
+            let file = file.unwrap();
+            fs::copy(file.path(), copies.join(file.file_name())).unwrap();
+        }
     }
     let programs = ["dem-pack", "dem-run"].map(|name| PathBuf::from(program(name).get_program()));
     let path = std::env::join_paths(
@@ -67,10 +69,13 @@ fn commands_run_as_pasted() {
     let mut commands = 0;
     for line in blocks(&readme, "sh") {
         let line = line.replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
+        let line = line.replace("cargo run --release --bin dem-run -- ", "dem-run ");
         if line.starts_with("cargo ") || line.starts_with("export ") {
             continue;
         }
-        let small = line.replace(" 2mm..3mm", " 4mm..5mm");
+        let small = line
+            .replace(" 2mm..3mm", " 4mm..5mm")
+            .replace("/chute.toml", "/chute.toml --set run.end_time=0.2");
         let output = Command::new("bash")
             .args(["-o", "pipefail", "-c", &small])
             .env("PATH", &path)

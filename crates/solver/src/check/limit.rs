@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use crate::check::linear::{LinearContact, Weights, linear_contacts, linear_wrenches};
+use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::damping::damping_wrenches;
@@ -58,7 +58,7 @@ pub fn limit(state: &mut State) -> Limit {
     } else {
         largest_eigenvalue(state, contacts, Weights::DAMPING).0
     };
-    Limit {
+    let of_particles = Limit {
         step_s: if c > 0.0 {
             damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
         } else {
@@ -68,6 +68,10 @@ pub fn limit(state: &mut State) -> Limit {
         omega_rad_s: k.sqrt(),
         damping_1_s: c,
         iterations,
+    };
+    Limit {
+        step_s: of_particles.with_more(clump_rates(state, contacts)),
+        ..of_particles
     }
 }
 

@@ -69,6 +69,37 @@ fn at_wall(
     }
 }
 
+/// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over mass, 1/s, of clumps: all contacts of a clump together, each
+/// pushing where the clump is turned most easily. 0 where no clump touches anything.
+pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
+    let clumps = &state.clumps;
+    let mut sums = vec![[0.0; 2]; clumps.all.len()];
+    for contact in contacts {
+        for end in contact.ends.into_iter().flatten() {
+            let after = clumps.all.partition_point(|clump| clump.first <= end);
+            if let (true, Some(at)) = (end as usize >= state.particles.free, after.checked_sub(1)) {
+                let answer = &contact.answer;
+                sums[at][0] += answer.normal_n_m.max(answer.tangential_n_m);
+                sums[at][1] += (answer.normal_damping_n_s_m).max(answer.tangential_damping_n_s_m);
+            }
+        }
+    }
+    let mut rates = [0.0_f64; 2];
+    for (clump, sum) in clumps.all.iter().zip(sums) {
+        let template = clumps.template(clump);
+        let least = template
+            .moments_kg_m2
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let easy = 1.0 / template.mass_kg + template.reach_m.powi(2) / least;
+        for (rate, sum) in rates.iter_mut().zip(sum) {
+            // Two clumps may push each other: what one takes the other takes as well.
+            *rate = rate.max(2.0 * sum * easy);
+        }
+    }
+    rates
+}
+
 /// A particle at rest against a wall at rest.
 fn wall_touch(particles: &Particles, i: usize, normal: &Vector3<f64>, overlap_m: f64) -> Touch {
     let foot = Foot {

@@ -155,6 +155,14 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
                 scene.run.end_time_s
             ));
         }
+        let away = trigger
+            .enters
+            .filter(|&region| is_away(&state.rules.regions[region], state));
+        if away.is_some() {
+            doubts.push(format!(
+                "replacement of '{body}': its region lies away from all bodies, inlets and walls"
+            ));
+        }
         let needs_contact = trigger.force_n.is_some() || trigger.impact_energy_j.is_some();
         if needs_contact && state.contacts.is_none() {
             doubts.push(format!(
@@ -162,5 +170,53 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             ));
         }
     }
+    for inlet in &state.rules.inlets {
+        if let Some(most_per_s) = most_per_s(inlet, state) {
+            let wanted = match inlet.feed {
+                Feed::Number(per_s) => per_s,
+                Feed::Mass(kg_s) => {
+                    let mean = inlet.templates.iter();
+                    let mean =
+                        mean.map(|(t, share)| share * state.clumps.templates[*t as usize].mass_kg);
+                    kg_s / mean.sum::<f64>()
+                }
+            };
+            if wanted > most_per_s {
+                doubts.push(format!(
+                    "inlet '{}': {wanted:.3} bodies per second are wanted, and at its velocity places for about {most_per_s:.3} become free: some will wait",
+                    inlet.name
+                ));
+            }
+        }
+    }
     doubts
+}
+
+/// Whether a region has nothing in common with the box around all bodies, inlets and walls.
+fn is_away(region: &Region, state: &State) -> bool {
+    let places = state.particles.poses.iter().map(|pose| pose.place().into());
+    let inlets = state.rules.inlets.iter();
+    let inlets = inlets.map(|inlet| state.rules.regions[inlet.region].bounds());
+    let walls = state.walls.iter().map(|wall| wall.bounds_in_space());
+    let all = inlets
+        .chain(walls)
+        .fold(Bounds::of(places), |all, one| all.with(&one));
+    let common = region.bounds().common(&all);
+    (0..3).any(|k| common.low[k] > common.high[k])
+}
+
+/// About how many bodies per second can leave the region of an inlet. None: they do not move of themselves.
+fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
+    let speed = Vector3::from(inlet.velocity_m_s).norm();
+    let reaches = inlet.templates.iter();
+    let reaches = reaches.map(|(t, _)| 2.0 * state.clumps.templates[*t as usize].reach_m);
+    let wide_m = reaches.fold(0.0, f64::max);
+    if speed == 0.0 || wide_m == 0.0 {
+        return None;
+    }
+    let Bounds { low, high } = state.rules.regions[inlet.region].bounds();
+    let places: f64 = (0..3)
+        .map(|k| ((high[k] - low[k]) / wide_m).floor() + 1.0)
+        .product();
+    Some(places * speed / wide_m)
 }
