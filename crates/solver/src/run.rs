@@ -28,6 +28,7 @@ use crate::output::summary::{PopulationSummary, Summary};
 use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
+use crate::stages::clumps::place_all;
 use crate::stages::replacement::replace;
 use crate::state::State;
 use crate::step::{act, move_on};
@@ -210,6 +211,12 @@ pub fn run(
         let checkpoint_due = rhythm
             .checkpoint_s
             .is_some_and(|s| due(&state, s, progress.next_checkpoint));
+        let picture_due = (files.as_ref())
+            .and_then(|files| files.pictures.as_ref())
+            .is_some_and(|pictures| pictures.are_due(&state));
+        if row_due || frame_due || checkpoint_due || picture_due || watchdog.is_due(&state) {
+            place_all(&state.clumps, &mut state.particles);
+        }
         let mut rests = false;
         let mut balanced = None;
         // A checkpoint of a run that has gone unstable would be worth nothing.

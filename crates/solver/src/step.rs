@@ -36,9 +36,13 @@ pub fn act(state: &mut State) {
     state.clock.book(Stage::Bonds);
     if let Some(contacts) = &mut state.contacts {
         if contacts.room_m < 0.0 {
+            clumps::place_all(&state.clumps, p);
             list_near(&mut state.walls, p, contacts.skin_m);
             let clusters = state.clusters.as_ref();
             list_contacts(contacts, clusters.map_or(&[], |c| &c.of_particle), p);
+            let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
+            let near = contacts.pairs.iter().flatten().chain(at_walls).copied();
+            clumps::list_near(&mut state.clumps, p, near);
         }
         contact_wrenches(contacts, p, before_s);
         wall_wrenches(&mut state.walls, contacts, p, before_s);

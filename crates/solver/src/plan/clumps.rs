@@ -163,6 +163,7 @@ pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump>
                 force_n: [0.0; 3],
                 torque_n_m: [0.0; 3],
                 first: 0,
+                near: [0; 2],
                 impact_energy_j: 0.0,
             }
         })

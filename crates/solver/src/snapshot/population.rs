@@ -22,6 +22,7 @@ pub(super) struct Population {
     free: usize,
     bonds: Bonds,
     clumps: Vec<Clump>,
+    near: Vec<u32>,
     /// Templates of fragments, and the templates of the scene that they come from.
     fragments: Vec<(Template, u32)>,
     base_of_cluster: BTreeMap<u32, (u32, u32)>,
@@ -52,6 +53,7 @@ impl Population {
                 ..state.bonds.clone()
             },
             clumps: state.clumps.all.clone(),
+            near: state.clumps.near.clone(),
             fragments: (state.rules.base_of_fragment.iter())
                 .zip(&state.clumps.templates[state.rules.restores.len()..])
                 .map(|(base, template)| ((**template).clone(), *base))
@@ -110,6 +112,7 @@ impl Population {
             ..self.bonds.clone()
         };
         state.clumps.all.clone_from(&self.clumps);
+        state.clumps.near.clone_from(&self.near);
         for (template, base) in &self.fragments {
             let mut template = template.clone();
             template.bonds.rules.clone_from(&state.bonds.rules);

@@ -1,43 +1,87 @@
 //! Rigid clumps in the time step: what acts on their spheres acts on them, and their spheres go where they go.
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 
 use crate::physics::rigid::rotation_vector;
 use crate::physics::rotation;
-use crate::state::clumps::{Clump, Clumps, Template, numbers, rotation as rotation_of};
-use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::clumps::{Clump, Clumps, numbers, rotation as rotation_of};
+use crate::state::particles::{Particles, Wrench};
+
+/// Takes down which spheres of clumps are near something, after pairs and walls have been looked through. `near`: particles that are, in any order, some twice.
+pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iterator<Item = u32>) {
+    let free = particles.free as u32;
+    let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
+    now.sort_unstable();
+    now.dedup();
+    let Clumps {
+        templates,
+        all,
+        near,
+    } = clumps;
+    for clump in all {
+        let template = &templates[clump.template as usize];
+        let end = clump.first + template.outer.len() as u32;
+        let [from, to] = [clump.first, end].map(|i| now.partition_point(|&sphere| sphere < i));
+        clump.near = [from as u32, to as u32];
+        for &i in &now[from..to] {
+            // Those that followed know how they moved.
+            if near.binary_search(&i).is_err() {
+                let i = i as usize;
+                let place = particles.poses[i].place();
+                particles.motions[i] = clump.motion_at(template, &place);
+            }
+        }
+    }
+    *near = now;
+}
+
+/// Puts all spheres of all clumps where they are.
+pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
+    for clump in &clumps.all {
+        let template = clumps.template(clump);
+        let turned = rotation_of(clump.turned);
+        let (centre, to_space) = (Vector3::from(clump.place_m), turned.to_rotation_matrix());
+        let spheres = &mut particles.poses[clump.first as usize..][..template.outer.len()];
+        for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
+            let sphere = &template.spheres[sphere as usize];
+            pose.put_at((centre + to_space * Vector3::from(sphere.place_m)).into());
+            pose.turned = numbers(&(turned * rotation_of(sphere.turned)));
+        }
+    }
+}
 
 /// Sums up what acts on the spheres of each clump, and the energy that this takes from its motion in a step of `dt`, s. Nothing is left on the spheres.
 pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
-    let Clumps { templates, all } = clumps;
-    let known = &*particles;
-    all.par_iter_mut().for_each(|clump| {
-        let template = &templates[clump.template as usize];
+    let Clumps {
+        templates,
+        all,
+        near,
+    } = clumps;
+    for clump in all {
         let centre = Vector3::from(clump.place_m);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
-        let first = clump.first as usize;
-        for i in first..first + template.outer.len() {
-            let wrench = &known.wrenches[i];
+        let [from, to] = clump.near.map(|n| n as usize);
+        for &i in &near[from..to] {
+            let wrench = &mut particles.wrenches[i as usize];
             let [fx, fy, fz, _] = wrench.force_n;
             let [tx, ty, tz, _] = wrench.torque_n_m;
             let on_sphere = Vector3::new(fx, fy, fz);
+            let arm = particles.poses[i as usize].place() - centre;
             force += on_sphere;
-            torque +=
-                Vector3::new(tx, ty, tz) + (known.poses[i].place() - centre).cross(&on_sphere);
+            torque += Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
+            *wrench = Wrench::default();
         }
-        let power =
-            force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&clump.spin_rad_s(template));
+        let spin = clump.spin_rad_s(&templates[clump.template as usize]);
+        let power = force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&spin);
         clump.impact_energy_j += (-power * dt).max(0.0);
         clump.force_n = force.into();
         clump.torque_n_m = torque.into();
-    });
-    particles.wrenches[particles.free..].fill(Wrench::default());
+    }
 }
 
 /// Velocities and angular momenta changed by what acts on the clumps and by gravity, over the time `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
-    let Clumps { templates, all } = clumps;
+    let Clumps { templates, all, .. } = clumps;
     for clump in all {
         let per_mass = kick_s / templates[clump.template as usize].mass_kg;
         for k in 0..3 {
@@ -47,64 +91,45 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     }
 }
 
-/// Places and orientations after moving on for `time_step_s`, of clumps and of their spheres. Returns the largest speed of a sphere, m/s.
+/// Places and orientations after moving on for `time_step_s`, of clumps and of those of their spheres that are near something. Returns a speed that no sphere
+/// exceeds, m/s.
 pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -> f64 {
-    let Clumps { templates, all } = clumps;
-    let Some(first) = all.first().map(|clump| clump.first as usize) else {
-        return 0.0;
-    };
-    let mut poses = &mut particles.poses[first..];
-    let mut motions = &mut particles.motions[first..];
-    let mut work: Vec<(&mut Clump, &Template, &mut [Pose], &mut [Motion])> = Vec::new();
-    for clump in all {
-        let template = &*templates[clump.template as usize];
-        let (own_poses, other_poses) = poses.split_at_mut(template.outer.len());
-        let (own_motions, other_motions) = motions.split_at_mut(template.outer.len());
-        work.push((clump, template, own_poses, own_motions));
-        (poses, motions) = (other_poses, other_motions);
-    }
-    work.into_par_iter()
-        .map(|(clump, template, poses, motions)| {
-            drift_one(clump, template, poses, motions, time_step_s)
-        })
-        .reduce(|| 0.0, f64::max)
-        .sqrt()
-}
-
-/// Moves a clump and its spheres. Returns the square of the largest speed of a sphere.
-fn drift_one(
-    clump: &mut Clump,
-    template: &Template,
-    poses: &mut [Pose],
-    motions: &mut [Motion],
-    dt: f64,
-) -> f64 {
-    let before = rotation_of(clump.turned);
-    for k in 0..3 {
-        clump.place_m[k] += dt * clump.velocity_m_s[k];
-    }
-    rotation::drift(
-        &mut clump.turned,
-        clump.angular_momentum,
-        template.moments_kg_m2,
-        dt,
-    );
-    let now = rotation_of(clump.turned);
-    let spin_rad_s = rotation_vector(numbers(&(now * before.inverse()))).map(|angle| angle / dt);
-    let centre = Vector3::from(clump.place_m);
-    let to_space = now.to_rotation_matrix();
-    let per_s = 1.0 / dt;
+    let Clumps {
+        templates,
+        all,
+        near,
+    } = clumps;
     let mut fastest = 0.0_f64;
-    for ((&sphere, pose), motion) in template.outer.iter().zip(poses).zip(motions) {
-        let sphere = &template.spheres[sphere as usize];
-        let place = centre + to_space * Vector3::from(sphere.place_m);
-        // What contacts ask for: the way made in the step.
-        let velocity = (place - pose.place()) * per_s;
-        pose.put_at(place.into());
-        pose.turned = numbers(&(now * rotation_of(sphere.turned)));
-        motion.velocity_m_s = velocity.into();
-        motion.spin_rad_s = spin_rad_s;
-        fastest = fastest.max(velocity.norm_squared());
+    for clump in all {
+        let template = &templates[clump.template as usize];
+        let before = rotation_of(clump.turned);
+        for k in 0..3 {
+            clump.place_m[k] += time_step_s * clump.velocity_m_s[k];
+        }
+        rotation::drift(
+            &mut clump.turned,
+            clump.angular_momentum,
+            template.moments_kg_m2,
+            time_step_s,
+        );
+        let now = rotation_of(clump.turned);
+        let turn = rotation_vector(numbers(&(now * before.inverse())));
+        let spin_rad_s = turn.map(|angle| angle / time_step_s);
+        let speed = Vector3::from(clump.velocity_m_s).norm();
+        fastest = fastest.max(speed + Vector3::from(spin_rad_s).norm() * template.reach_m);
+        let (centre, to_space) = (Vector3::from(clump.place_m), now.to_rotation_matrix());
+        let per_s = 1.0 / time_step_s;
+        let [from, to] = clump.near.map(|n| n as usize);
+        for &i in &near[from..to] {
+            let sphere = template.outer[(i - clump.first) as usize] as usize;
+            let pose = &mut particles.poses[i as usize];
+            let motion = &mut particles.motions[i as usize];
+            let place = centre + to_space * Vector3::from(template.spheres[sphere].place_m);
+            // What contacts ask for: the way made in the step.
+            motion.velocity_m_s = ((place - pose.place()) * per_s).into();
+            motion.spin_rad_s = spin_rad_s;
+            pose.put_at(place.into());
+        }
     }
     fastest
 }

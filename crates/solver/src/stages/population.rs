@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::clusters::{Cluster, Clusters};
 use crate::physics::bond::scatter::strength_factor;
+use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
@@ -57,6 +58,7 @@ pub struct Renumbered {
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.
 pub fn change(state: &mut State, changes: Changes) -> Renumbered {
+    place_all(&state.clumps, &mut state.particles);
     let pressed_before_j = pressed_j(state);
     let Changes {
         to_clusters,
@@ -105,6 +107,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
 
     let mut at = 0;
     let clumps = &mut state.clumps;
+    let mut near = std::mem::take(&mut clumps.near);
     let templates = &clumps.templates;
     clumps.all.retain_mut(|clump| {
         at += 1;
@@ -166,6 +169,18 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         history[id as usize].ended_s = Some(state.time_s);
     }
 
+    // Those that followed still do, under their new numbers; which they are is looked for in the next step.
+    near.retain_mut(|sphere| {
+        *sphere = particles[*sphere as usize];
+        *sphere != GONE && *sphere as usize >= new.free
+    });
+    near.sort_unstable();
+    for clump in &mut clumps.all {
+        let template = &clumps.templates[clump.template as usize];
+        let ends = [clump.first, clump.first + template.outer.len() as u32];
+        clump.near = ends.map(|end| near.partition_point(|&sphere| sphere < end) as u32);
+    }
+    clumps.near = near;
     state.particles = new;
     let bonds = change_bonds(state, &particles, &mut born);
     count_anew(state, &particles, &bonds, &is_new);

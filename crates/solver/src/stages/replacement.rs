@@ -8,7 +8,7 @@ use crate::check::ledger::synchronous_motions;
 use crate::clusters::{Fragment, fragments};
 use crate::physics::random::uniform;
 use crate::physics::rotation::spin_rad_s;
-use crate::stages::clumps::synchronous;
+use crate::stages::clumps::{place_all, synchronous};
 use crate::state::State;
 use crate::state::clumps::{Clump, Template, numbers, rotation};
 use crate::state::rules::{Feed, Inlet, Trigger};
@@ -203,6 +203,11 @@ fn swap(
 /// Bodies that come through inlets in this step.
 fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
     let mut coming: Vec<Clump> = Vec::new();
+    let asks = |inlet: &Inlet| state.steps >= inlet.come.next_try && is_due(inlet, state.time_s);
+    if !state.rules.inlets.iter().any(asks) {
+        return coming;
+    }
+    place_all(&state.clumps, &mut state.particles);
     let mut inlets = std::mem::take(&mut state.rules.inlets);
     let mut next_cluster = state
         .clusters
@@ -313,6 +318,7 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
             force_n: [0.0; 3],
             torque_n_m: [0.0; 3],
             first: 0,
+            near: [0; 2],
             impact_energy_j: 0.0,
         });
     }

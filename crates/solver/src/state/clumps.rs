@@ -91,6 +91,8 @@ pub struct Clump {
     pub torque_n_m: [f64; 3],
     /// First of its spheres among the particles.
     pub first: u32,
+    /// Which of [`Clumps::near`] are its own: from the first of these numbers to before the second.
+    pub near: [u32; 2],
     /// Energy that contacts have taken from its motion so far, J: the sum over all times at which they slowed it down.
     pub impact_energy_j: f64,
 }
@@ -102,6 +104,8 @@ pub struct Clumps {
     pub templates: Vec<Arc<Template>>,
     /// Those that are there.
     pub all: Vec<Clump>,
+    /// Their spheres that are near a wall or a particle, rising, as particles are counted: only these follow in every step. The others do when somebody asks.
+    pub near: Vec<u32>,
 }
 
 /// A rotation from its numbers x, y, z, w.
