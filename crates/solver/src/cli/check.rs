@@ -27,7 +27,8 @@ pub(super) fn check(
     let plan = plan(scene, bodies, threads, force_step)?;
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
-    let per_step_s = trial_s(&plan.state);
+    // What the first steps take says nothing where bodies come, go, or become others.
+    let per_step_s = (plan.state.rules.are_none()).then(|| trial_s(&plan.state));
     write_standard_output(|out| {
         if as_json {
             let value = json!({
@@ -46,7 +47,7 @@ pub(super) fn check(
                 "stages": plan.stages.iter().filter(|s| s.needed).map(|s| s.name).collect::<Vec<_>>(),
                 "left_out": plan.stages.iter().filter(|s| !s.needed).map(|s| s.name).collect::<Vec<_>>(),
                 "memory_bytes": bytes,
-                "predicted_run_time_s": steps * per_step_s,
+                "predicted_run_time_s": per_step_s.map(|s| steps * s),
             });
             serde_json::to_writer_pretty(&mut *out, &value)?;
             writeln!(out)
@@ -61,7 +62,7 @@ pub(super) fn check(
     })
 }
 
-fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
+fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> String {
     let state = &plan.state;
     let choice = &plan.step;
     let mut text = String::new();
@@ -149,9 +150,12 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
     );
     line(
         "run time",
-        format!(
-            "about {} s, if this machine stays as it is",
-            significant(steps * per_step_s, 2)
+        per_step_s.map_or(
+            "not foreseen: bodies come, go, or become others".to_owned(),
+            |s| {
+                let run_s = significant(steps * s, 2);
+                format!("about {run_s} s, if this machine stays as it is")
+            },
         ),
     );
     text
@@ -161,17 +165,22 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: f64) -> String {
 fn memory_bytes(state: &State) -> usize {
     let p = &state.particles;
     let b = &state.bonds;
+    let templates = state.clumps.templates.iter();
+    let of_templates: usize = templates
+        .map(|t| 112 * t.spheres.len() + (8 + 8 * 8 + 32 + 4) * t.bonds.len())
+        .sum();
     let per_particle = 3 * 64 + 8;
     let per_bond = 8 + 8 * 8;
     p.len() * per_particle
         + b.len() * per_bond
+        + of_templates
         + 64 * (state.bond_resistance.len() + state.particle_resistance.len())
         + 8 * b.strength_factors.len()
         + 32 * b.damping.len()
         + 48 * b.histories.len()
         + state.contacts.as_ref().map_or(0, |contacts| {
             // Every particle may come to touch a few others.
-            (64 + 16 + 5 + 3 * (8 + 64)) * contacts.materials.len()
+            (16 + 5 + 3 * (8 + 128)) * contacts.materials.len()
         })
         + state.clusters.as_ref().map_or(0, |_| 24 * p.len())
 }
