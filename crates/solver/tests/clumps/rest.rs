@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use dem_run::check::ledger::balance;
-use dem_run::step::{act, step};
+use dem_run::step::{act, move_on, step};
 use nalgebra::Vector3;
 
 use crate::{HEAD, planned};
@@ -54,7 +54,15 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     // The contacts are springs of 3/2 F/d each: they swing at about sqrt(3/2 g/d), damped by more than a half of the critical damping.
     let swing_rad_s = (1.5 * GRAVITY_M_S2 / depth_m).sqrt();
     while state.time_s < 100.0 / swing_rad_s {
-        step(&mut state);
+        if state.steps % 50 == 0 {
+            // Against the momentum of the fall.
+            act(&mut state);
+            let balance = balance(&mut state);
+            assert!(balance.momentum_error < 1e-10);
+            move_on(&mut state);
+        } else {
+            step(&mut state);
+        }
     }
     act(&mut state);
     let wall = &state.walls[0];
@@ -75,10 +83,7 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     let pushed = Vector3::from(clump.force_n);
     assert!((pushed - Vector3::z() * weight_n).norm() < 1e-6 * weight_n);
     assert!(Vector3::from(clump.torque_n_m).norm() < 1e-6 * weight_n * RADIUS_M);
-    assert!(
-        (wall.push.force_n[2] / weight_n - 1.0).abs() < 1e-6
-            || (wall.push.force_n[2] / weight_n + 1.0).abs() < 1e-6
-    );
+    assert!((wall.push.force_n[2] / weight_n - 1.0).abs() < 1e-6);
     let balance = balance(&mut state);
     eprintln!(
         "{count} spheres: {depth_m:.3e} m, energy error {:.1e}, {} steps",
@@ -88,7 +93,6 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     // Elastic: 2/5 F d each.
     let stored_j = 0.4 * weight_n * depth_m;
     assert!((balance.contact_elastic_j / stored_j - 1.0).abs() < 3e-6);
-    assert!(balance.momentum_error < 1e-10);
 }
 
 #[test]
