@@ -215,6 +215,8 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<
         })
         .collect();
     if (count as usize) < bonds.len() {
+        let gone = (0..bonds.len()).filter(|&at| bonds[at] == GONE);
+        state.broken_gone += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
         let old = std::mem::take(&mut state.bonds);
         state.bonds.rules.clone_from(&old.rules);
         for at in (0..old.len()).filter(|&at| bonds[at] != GONE) {
