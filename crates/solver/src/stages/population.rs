@@ -109,8 +109,9 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         }
         let first = clump.first as usize;
         clump.first = new.len() as u32;
-        for i in first..first + templates[clump.template as usize].outer.len() {
-            particles[i] = keep(&old, i, &mut new);
+        let own = first..first + templates[clump.template as usize].outer.len();
+        for (i, now) in own.clone().zip(&mut particles[own]) {
+            *now = keep(&old, i, &mut new);
         }
         ids.resize(new.len(), clump.cluster);
         true

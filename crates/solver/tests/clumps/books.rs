@@ -53,7 +53,7 @@ fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
     };
     while state.time_s < end_s {
         act(&mut state);
-        if state.steps % 20 == 0 {
+        if state.steps.is_multiple_of(20) {
             let balance = balance(&mut state);
             let errors = [
                 balance.energy_error,

@@ -74,7 +74,7 @@ fn a_tumbling_clump_keeps_its_energy_over_a_hundred_thousand_steps() {
     for _ in 0..100_000 {
         act(&mut state);
         worst = worst.max(((turning(&state) - start) / (start - moving)).abs());
-        if state.steps % 1000 == 0 {
+        if state.steps.is_multiple_of(1000) {
             let balance = balance(&mut state);
             ledger = ledger.max(balance.energy_error.abs());
             assert!(balance.momentum_error < 1e-12 && balance.angular_momentum_error < 1e-12);

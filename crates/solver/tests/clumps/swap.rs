@@ -242,7 +242,7 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
         let clump = rigid.clumps.all[0];
         if !elastic.clumps.all.is_empty() {
             assert_eq!(clump, elastic.clumps.all[0]);
-        } else if rigid.steps % 100 == 0 {
+        } else if rigid.steps.is_multiple_of(100) {
             let about = Vector3::from(clump.place_m);
             let whole = Whole::of(&elastic.particles, 0..count, &about);
             // Each step rounds places and velocities of all spheres once.
