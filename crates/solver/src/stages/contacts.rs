@@ -9,7 +9,7 @@ use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use crate::physics::contact::touch::{Ball, torques, touch};
+use crate::physics::contact::touch::{Ball, Touch, torques, touch};
 use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
@@ -108,11 +108,21 @@ fn stored_j(
     let balls = ends.map(|i| particles.ball_at_rest(i));
     let mut touch = touch((b - a).into(), balls, 0.0);
     touch.overlap_m = memory.overlap_m();
-    let grip = law.grip(&touch, touch.overlap_m);
+    stored_energy_j(law, rolling, &touch, memory)
+}
+
+/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.
+pub(super) fn stored_energy_j(
+    law: &impl NormalLaw<f64>,
+    rolling: &Rolling,
+    touch: &Touch,
+    memory: &Memory,
+) -> f64 {
+    let grip = law.grip(touch, touch.overlap_m);
     let stiffness = match rolling {
         Rolling::Free => 0.0,
-        Rolling::Constant(rolling) => rolling.linearised(&grip, &touch)[0],
-        Rolling::Spring(rolling) => rolling.linearised(&grip, &touch)[0],
+        Rolling::Constant(rolling) => rolling.linearised(&grip, touch)[0],
+        Rolling::Spring(rolling) => rolling.linearised(&grip, touch)[0],
     };
     let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
     grip.energy_j

@@ -7,11 +7,13 @@ use std::sync::Arc;
 use crate::clusters::{Cluster, Clusters};
 use crate::physics::bond::scatter::strength_factor;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
 use crate::state::contacts::Memory;
-use crate::state::particles::{Motion, Particles, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::shares::divide;
+use crate::state::walls::Wall;
 
 /// What is no more.
 pub const GONE: u32 = u32::MAX;
@@ -142,7 +144,8 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
 
     state.particles = new;
     let bonds = change_bonds(state, &particles, &mut born);
-    count_anew(state, &particles, &bonds, &is_new);
+    let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
+    count_anew(state, &particles, &radii_m, &bonds, &is_new);
     if let Some(clusters) = &mut state.clusters {
         let visited = clusters.visited;
         // The two are made to belong together above.
@@ -160,10 +163,19 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     }
 }
 
-/// Elastic energy of contacts between particles, J.
+/// Elastic energy of contacts between particles and with walls, J.
 fn pressed_j(state: &State) -> f64 {
-    let contacts = state.contacts.as_ref();
-    contacts.map_or(0.0, |contacts| elastic_energy_j(contacts, &state.particles))
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let of_wall = |wall: &Wall| {
+        let touching = wall.touching.iter();
+        let energies =
+            touching.map(|touch| touch_energy_j(wall, contacts, &state.particles, touch));
+        energies.sum::<f64>()
+    };
+    let of_walls: f64 = state.walls.iter().map(of_wall).sum();
+    elastic_energy_j(contacts, &state.particles) + of_walls
 }
 
 fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
@@ -230,8 +242,14 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<
     bonds
 }
 
-/// Everything else that counts particles and bonds. `is_new`: the material of those that have come.
-fn count_anew(state: &mut State, particles: &[u32], bonds: &[u32], is_new: &[Option<u8>]) {
+/// Everything else that counts particles and bonds. `old_radii_m`: of the particles before; `is_new`: the material of those that have come.
+fn count_anew(
+    state: &mut State,
+    particles: &[u32],
+    old_radii_m: &[f64],
+    bonds: &[u32],
+    is_new: &[Option<u8>],
+) {
     let count = state.particles.len();
     // The next step computes them before it needs them.
     if state.bonds.rules.iter().any(|rule| rule.damped) {
@@ -257,8 +275,17 @@ fn count_anew(state: &mut State, particles: &[u32], bonds: &[u32], is_new: &[Opt
     for wall in &mut state.walls {
         wall.near.clear();
         wall.touching.retain_mut(|touch| {
-            touch.particle = particles[touch.particle as usize];
-            touch.particle != GONE
+            let before = touch.particle as usize;
+            touch.particle = particles[before];
+            let Some(pose) = state.particles.poses.get(touch.particle as usize) else {
+                return false;
+            };
+            // Contact spheres of clumps may be larger than those of clusters.
+            let less_m = old_radii_m[before] - pose.radius_m();
+            if less_m > 0.0 {
+                touch.memory.slid[3] = (touch.memory.overlap_m() - less_m).max(0.0);
+            }
+            true
         });
         wall.touching.sort_by_key(|touch| touch.particle);
     }

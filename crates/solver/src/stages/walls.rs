@@ -13,6 +13,7 @@ use crate::physics::contact::touch::{Ball, Foot, Touch as Contact, torques, touc
 use crate::physics::contact::{History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::physics::rigid::turn;
+use crate::stages::contacts::stored_energy_j;
 use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
 use crate::state::particles::Particles;
 use crate::state::walls::{Push, Wall, WallTouch};
@@ -299,6 +300,42 @@ fn meet_at(
             || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
         stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.radius_m),
     }
+}
+
+/// Elastic energy of something that touches a wall, as it was taken down, J.
+pub fn touch_energy_j(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    touch: &WallTouch,
+) -> f64 {
+    let kind = wall.kind(contacts.materials[touch.particle as usize]);
+    match &kind.law {
+        Law::HertzMindlin(law) => stored_j(law, &kind.rolling, particles, touch),
+        Law::Linear(law) => stored_j(law, &kind.rolling, particles, touch),
+    }
+}
+
+/// Elastic energy of a contact with a wall as it was taken down, J.
+fn stored_j(
+    law: &impl NormalLaw<f64>,
+    rolling: &Rolling,
+    particles: &Particles,
+    old: &WallTouch,
+) -> f64 {
+    let (ball, memory) = (particles.ball_at_rest(old.particle as usize), &old.memory);
+    let none = Triple(0.0, 0.0, 0.0);
+    let normal = Vector3::from(old.normal).into();
+    let foot = Foot {
+        normal,
+        normal_before: normal,
+        distance_m: ball.radius_m - memory.overlap_m(),
+        velocity_m_s: none,
+        spin_rad_s: none,
+    };
+    let mut touch = touch_at_wall(&foot, ball, 0.0);
+    touch.overlap_m = memory.overlap_m();
+    stored_energy_j(law, rolling, &touch, memory)
 }
 
 /// The laws of a kind of contact.
