@@ -200,6 +200,8 @@ impl Snapshot {
         state.time_step_s = self.time_step_s;
         state.previous_time_step_s = self.previous_time_step_s;
         state.broken_count = self.broken_count;
+        let there = (0..state.bonds.len()).filter(|&at| state.bonds.is_broken(at));
+        state.broken_gone = self.broken_count.saturating_sub(there.count() as u64);
         Ok(())
     }
 

@@ -78,6 +78,8 @@ pub struct State {
     pub broken: Vec<Break>,
     /// Bonds broken so far.
     pub broken_count: u64,
+    /// Those of them that have gone with their bodies.
+    pub broken_gone: u64,
     /// Energy and momentum that went in and out.
     pub ledger: Ledger,
     /// Where the time goes.
@@ -120,6 +122,7 @@ impl State {
             fastest_m_s: 0.0,
             broken: Vec::new(),
             broken_count: 0,
+            broken_gone: 0,
             clock: StageClock::default(),
         };
         state.ledger = Ledger::opened(&state);

@@ -149,7 +149,8 @@ fn find_pieces(state: &mut State) {
 /// Divides the work anew once enough bonds have broken since it was divided last.
 fn leave_out_broken(state: &mut State) {
     let computed: usize = state.shares.iter().map(Share::own_bonds).sum();
-    let whole = state.bonds.len() as u64 - state.broken_count;
+    let broken = state.broken_count - state.broken_gone;
+    let whole = state.bonds.len() as u64 - broken;
     if (computed as u64 - whole) * STALE >= computed as u64 {
         divide_anew(&state.bonds, &mut state.shares);
     }

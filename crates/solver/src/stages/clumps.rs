@@ -42,8 +42,8 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all } = clumps;
     for clump in all {
         let per_mass = kick_s / templates[clump.template as usize].mass_kg;
-        for k in 0..3 {
-            clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity_m_s2[k];
+        for (k, gravity) in gravity_m_s2.iter().enumerate() {
+            clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity;
             clump.angular_momentum[k] += kick_s * clump.torque_n_m[k];
         }
     }

@@ -109,8 +109,9 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         }
         let first = clump.first as usize;
         clump.first = new.len() as u32;
-        for i in first..first + templates[clump.template as usize].outer.len() {
-            particles[i] = keep(&old, i, &mut new);
+        let own = first..first + templates[clump.template as usize].outer.len();
+        for (i, now) in own.clone().zip(&mut particles[own]) {
+            *now = keep(&old, i, &mut new);
         }
         ids.resize(new.len(), clump.cluster);
         true
@@ -215,6 +216,8 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<
         })
         .collect();
     if (count as usize) < bonds.len() {
+        let gone = (0..bonds.len()).filter(|&at| bonds[at] == GONE);
+        state.broken_gone += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
         let old = std::mem::take(&mut state.bonds);
         state.bonds.rules.clone_from(&old.rules);
         for at in (0..old.len()).filter(|&at| bonds[at] != GONE) {
