@@ -310,14 +310,27 @@ fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
 
 fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) -> bool {
     let place = Vector3::from(place_m);
-    let mut poses = state.particles.poses.iter();
     let near = |other: Vector3<f64>, reach: f64| {
         (other - place).norm_squared() < (reach_m + reach).powi(2)
     };
-    poses.any(|pose| near(pose.place(), pose.radius_m()))
-        || coming
-            .iter()
-            .any(|clump| near(clump.place_m.into(), state.clumps.template(clump).reach_m))
+    let around = |clump: &Clump| {
+        let template = state.clumps.template(clump);
+        let reach = template.reach_m * template.scale.max(1.0);
+        near(clump.place_m.into(), reach)
+    };
+    // Those in the middle of a clump are not in the scene.
+    let in_clump = |clump: &Clump| {
+        let template = state.clumps.template(clump);
+        let touches = |sphere: usize| {
+            let pose = template.pose(sphere, clump);
+            near(pose.place(), template.scale * pose.radius_m())
+        };
+        around(clump) && (0..template.spheres.len()).any(touches)
+    };
+    let mut free = state.particles.poses[..state.particles.free].iter();
+    free.any(|pose| near(pose.place(), pose.radius_m()))
+        || state.clumps.all.iter().any(in_clump)
+        || coming.iter().any(around)
 }
 
 /// Clusters that have come to an outlet, and books that they go. Their numbers, rising.
