@@ -18,6 +18,7 @@ use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness
 use crate::physics::bond::total::direction;
 use crate::stages::population::{Born, GONE, Renumbered};
 use crate::state::bonds::{BondRule, Bonds};
+use crate::state::clumps::Clumps;
 use crate::state::order::spatial_order;
 use crate::state::particles::Particles;
 
@@ -97,11 +98,21 @@ pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u3
 }
 
 /// A particle of the state as its body's file knows it, for a person.
-pub fn called(bodies: &[PlacedBody], particle: u32) -> String {
-    let found = bodies.iter().find_map(|body| {
+pub fn called(bodies: &[PlacedBody], clumps: &Clumps, particle: u32) -> String {
+    let of_bodies = bodies.iter().find_map(|body| {
         let number = body.number_of(particle)?;
-        Some(format!("particle {number} of the body '{}'", body.name))
+        Some((number, &body.name))
     });
+    let of_clumps = || {
+        clumps.all.iter().find_map(|clump| {
+            let template = clumps.template(clump);
+            let own = particle.checked_sub(clump.first)?;
+            let sphere = *template.outer.get(own as usize)?;
+            Some((template.file_number[sphere as usize], &template.body))
+        })
+    };
+    let found = of_bodies.or_else(of_clumps);
+    let found = found.map(|(number, body)| format!("particle {number} of the body '{body}'"));
     found.unwrap_or_else(|| format!("particle {particle}"))
 }
 

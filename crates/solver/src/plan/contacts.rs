@@ -240,7 +240,7 @@ fn refuse_same_place(
     let Some(pair) = contacts.pairs.iter().find(is_same) else {
         return Ok(());
     };
-    let [a, b] = pair.map(|i| called(bodies, i));
+    let [a, b] = pair.map(|i| called(bodies, &state.clumps, i));
     Err(Diagnostic::input(
         &scene.source,
         format!("{a} and {b} stand at the same place"),
@@ -268,7 +268,7 @@ fn refuse_overlaps(
     let Some((overlap, pair)) = overlapping.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Ok(());
     };
-    let [a, b] = pair.map(|i| called(bodies, i));
+    let [a, b] = pair.map(|i| called(bodies, &state.clumps, i));
     let more = match overlapping.len() {
         1 => String::new(),
         count => format!(", the deepest of {count} such pairs"),

@@ -7,7 +7,7 @@ use dem_io::surface::read_open_surface;
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, Mesh};
 use crate::state::State;
 use crate::state::clumps::{Template, numbers};
 use crate::state::regions::Region;
@@ -110,6 +110,14 @@ fn region(entry: &SceneRegion) -> Result<Region> {
                 )
             })?;
             let surface = read_open_surface(&bytes, &name, *unit_m)?;
+            let open_edges = Mesh::from_surface(&surface)?.content.open_edges;
+            if open_edges > 0 {
+                return Err(Diagnostic::input(
+                    name,
+                    format!("the surface is open: {open_edges} edges of one triangle only"),
+                    "close it: a region is the inside of a closed surface",
+                ));
+            }
             let corners = |t: &[u32; 3]| t.map(|v| surface.vertices_m[v as usize]);
             let triangles: Vec<_> = surface.triangles.iter().map(corners).collect();
             let bounds = Bounds::of(surface.vertices_m.iter().copied());

@@ -218,7 +218,7 @@ fn refuse_touches(
         return Ok(());
     };
     let (i, touch) = deepest;
-    let who = called(bodies, *i);
+    let who = called(bodies, &state.clumps, *i);
     let more = match touches.len() {
         1 => String::new(),
         count => format!(", the deepest of {count} places"),

@@ -144,7 +144,7 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
         format!(
             "at {:.6e} s {} moves by {:.3e} m in a step, more than {FARTHEST} of its radius of {:.3e} m: contacts would miss it",
             state.time_s,
-            called(bodies, i as u32),
+            called(bodies, &state.clumps, i as u32),
             moved_m(i),
             p.poses[i].radius_m()
         ),
@@ -165,7 +165,7 @@ pub(super) fn went_through(
         format!(
             "at {:.6e} s the centre of {} has gone through the wall '{}'",
             state.time_s,
-            called(bodies, particle),
+            called(bodies, &state.clumps, particle),
             scene.walls.keys().nth(n).map_or("", String::as_str),
         ),
         "make its contact stiffer, push less hard, or take a smaller run.time_step",
