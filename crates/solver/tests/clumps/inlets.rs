@@ -1,0 +1,255 @@
+//! Bodies come as often, in such shares and so turned as the scene says, and where there is place.
+
+use dem_run::stages::replacement::Happened;
+use dem_run::state::State;
+use dem_run::state::clumps::{Clump, rotation};
+use nalgebra::Vector3;
+
+use crate::{HEAD, MEETS, block, happens, lump, planned};
+
+const BALL: &str = "[bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-3]]\n";
+/// Wide enough that nobody waits.
+const WIDE: &str = "[regions.gate]\nbox = { min = [-50, -50, -50], max = [50, 50, 50] }\n";
+
+/// A scene without contacts, in which time passes quickly.
+fn fed(bodies: &str, inlet: &str) -> State {
+    let text = format!("{HEAD}{bodies}[inlets.feed]\nregion = \"gate\"\n{inlet}");
+    let mut plan = planned(&text);
+    plan.state.time_step_s = 1e-4;
+    plan.state
+}
+
+fn run_to(state: &mut State, end_s: f64) -> Vec<Happened> {
+    let mut all = Vec::new();
+    while state.time_s < end_s - 0.5 * state.time_step_s {
+        all.extend(happens(state));
+    }
+    all
+}
+
+#[test]
+fn a_rate_by_number_is_kept_between_start_and_end() {
+    let inlet = "bodies = [\"ball\"]\nrate = 500\nstart = 0.01\nend = 0.05\n";
+    let mut state = fed(&format!("{BALL}{WIDE}"), inlet);
+    for n in 0..800 {
+        let now_s = state.time_s;
+        happens(&mut state);
+        let since_s = now_s.min(0.05) - 0.01;
+        // The first at once, and one every 2 ms: at the end itself none.
+        let due = if n < 100 {
+            0.0
+        } else {
+            (since_s / 2e-3 - 1e-9).floor() + 1.0
+        };
+        let exact = (since_s / 2e-3).round();
+        let is_edge = (since_s / 2e-3 - exact).abs() < 1e-6;
+        let come = f64::from(state.rules.inlets[0].come.bodies);
+        assert!(
+            come == due || (is_edge && (come - due).abs() < 1.5),
+            "{now_s}: {come} {due}"
+        );
+    }
+    assert_eq!(state.rules.inlets[0].come.bodies, 20);
+    assert_eq!(state.clumps.all.len(), 20);
+    assert_eq!(state.rules.inlets[0].come.delayed, 0);
+    // No more than so many.
+    let mut state = fed(&format!("{BALL}{WIDE}"), &format!("{inlet}count = 7\n"));
+    run_to(&mut state, 0.08);
+    assert_eq!(state.rules.inlets[0].come.bodies, 7);
+}
+
+#[test]
+fn a_rate_by_mass_is_kept_to_a_body() {
+    let bodies = format!("{BALL}{}{WIDE}", lump("lump", "start_as = \"clump\""));
+    let inlet = "bodies = [\"ball\", \"lump\"]\nmass_rate = \"0.05 kg/s\"\n";
+    let mut state = fed(&bodies, inlet);
+    let heaviest = state
+        .clumps
+        .templates
+        .iter()
+        .map(|t| t.mass_kg)
+        .fold(0.0, f64::max);
+    for _ in 0..2000 {
+        let now_s = state.time_s;
+        happens(&mut state);
+        let come_kg = state.rules.inlets[0].come.mass_kg;
+        assert!(come_kg > 0.05 * now_s && come_kg <= 0.05 * now_s + heaviest * (1.0 + 1e-12));
+        let there: f64 = state.clumps.mass_kg();
+        assert!((there / come_kg - 1.0).abs() < 1e-12);
+    }
+    assert!(state.clumps.all.len() > 100, "{}", state.clumps.all.len());
+}
+
+#[test]
+fn a_mix_has_its_shares() {
+    let pair = block(
+        "pair",
+        [2, 1, 1],
+        2e-3,
+        |_| Some(1e-3),
+        "start_as = \"clump\"",
+    );
+    let bodies = format!("{BALL}{pair}{WIDE}");
+    let mut state = fed(&bodies, "bodies = { ball = 6, pair = 2 }\nrate = 10000\n");
+    run_to(&mut state, 0.2);
+    let count = state.clumps.all.len() as f64;
+    assert!((count - 2000.0).abs() < 1.5);
+    let is_pair = |clump: &&Clump| state.clumps.template(clump).body == "pair";
+    let pairs = state.clumps.all.iter().filter(is_pair).count() as f64;
+    let sigma = (count * 0.25 * 0.75).sqrt();
+    eprintln!(
+        "{pairs} of {count}, expected {} +- {sigma:.0}",
+        0.25 * count
+    );
+    assert!((pairs - 0.25 * count).abs() < 4.0 * sigma);
+}
+
+/// Places, orientations and kinds.
+fn told(state: &State) -> Vec<(u32, [f64; 3], [f64; 4])> {
+    let all = state.clumps.all.iter();
+    all.map(|clump| (clump.template, clump.place_m, clump.turned))
+        .collect()
+}
+
+#[test]
+fn the_seed_says_what_is_random_and_orientations_are_uniform() {
+    let bodies = |seed: u32| {
+        format!(
+            "run.seed = {seed}\n{}{WIDE}",
+            lump("lump", "start_as = \"clump\"")
+        )
+    };
+    let inlet = "bodies = [\"lump\"]\nrate = 10000\norientation = \"random\"\nvelocity = [1, 2, 3]\nangular_velocity = [4, 5, 6]\n";
+    let run = |seed: u32| {
+        let mut state = fed(&bodies(seed), inlet);
+        run_to(&mut state, 0.02);
+        state
+    };
+    let (one, same, other) = (run(1), run(1), run(2));
+    assert!(told(&one) == told(&same));
+    for (a, b) in told(&one).iter().zip(&told(&other)) {
+        assert!(a.1 != b.1 && a.2 != b.2);
+    }
+
+    // When they come, before they have turned: of each axis, each component has mean 0 and mean square 1/3.
+    let mut fresh = fed(&bodies(1), inlet);
+    let template = fresh.clumps.templates[0].clone();
+    let mut axes: Vec<[Vector3<f64>; 3]> = Vec::new();
+    let mut places: Vec<Vector3<f64>> = Vec::new();
+    while axes.len() < 2000 {
+        dem_run::step::act(&mut fresh);
+        let before = fresh.clumps.all.len();
+        dem_run::stages::replacement::replace(&mut fresh);
+        for clump in &fresh.clumps.all[before..] {
+            let as_file = rotation(clump.turned) * rotation(template.axes).inverse();
+            axes.push([Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| as_file * axis));
+            places.push(clump.place_m.into());
+            assert_eq!(clump.velocity_m_s, [1.0, 2.0, 3.0]);
+            let spin = clump.spin_rad_s(&template) - Vector3::new(4.0, 5.0, 6.0);
+            assert!(spin.norm() < 1e-13);
+        }
+        dem_run::step::move_on(&mut fresh);
+    }
+    let n = axes.len() as f64;
+    for axis in 0..3 {
+        let mean: Vector3<f64> = axes.iter().map(|a| a[axis]).sum::<Vector3<f64>>() / n;
+        let squares = axes
+            .iter()
+            .map(|a| a[axis].component_mul(&a[axis]))
+            .sum::<Vector3<f64>>()
+            / n;
+        // Variances 1/3 and 1/5 - 1/9.
+        assert!(mean.amax() < 4.0 / (3.0 * n).sqrt(), "{mean}");
+        assert!(
+            squares.add_scalar(-1.0 / 3.0).amax() < 4.0 * (4.0 / 45.0 / n).sqrt(),
+            "{squares}"
+        );
+    }
+    let mean: Vector3<f64> = places.iter().sum::<Vector3<f64>>() / n;
+    assert!(mean.amax() < 4.0 * 100.0 / (12.0 * n).sqrt(), "{mean}");
+
+    // As the scene's body is turned, and its like.
+    let turned = "start_as = \"clump\"\nrotation = { axis = [1, 2, 2], angle = 0.9 }";
+    let mut state = fed(
+        &format!("{}{WIDE}", lump("lump", turned)),
+        "bodies = [\"lump\"]\nrate = 1000\n",
+    );
+    dem_run::step::act(&mut state);
+    dem_run::stages::replacement::replace(&mut state);
+    let found = rotation(state.clumps.all[0].turned) * rotation(template.axes).inverse();
+    let wanted = Vector3::new(1.0, 2.0, 2.0) / 3.0 * 0.9;
+    assert!((found.scaled_axis() - wanted).norm() < 1e-14);
+}
+
+/// Whether no two spheres of different bodies overlap.
+fn none_overlap(state: &State) -> bool {
+    let clusters = &state.clusters.as_ref().unwrap().of_particle;
+    let poses = &state.particles.poses;
+    (0..poses.len()).all(|i| {
+        (0..i).all(|j| {
+            clusters[i] == clusters[j]
+                || dem_run::stages::contacts::overlap_m(poses, [j as u32, i as u32]) <= 0.0
+        })
+    })
+}
+
+#[test]
+fn who_finds_no_place_waits_and_is_counted_once() {
+    // Room for one ball at a time, which leaves it after 2.1 mm at 1 m/s.
+    let gate = "[regions.gate]\nsphere = { centre = [0, 0, 0], radius = 1e-5 }\n";
+    let inlet = "bodies = [\"ball\"]\nrate = 10000\nvelocity = [1, 0, 0]\ncount = 10\n";
+    let mut state = fed(&format!("{MEETS}{BALL}{gate}"), inlet);
+    state.time_step_s = 1e-5;
+    while state.time_s < 0.03 {
+        happens(&mut state);
+        assert!(none_overlap(&state));
+    }
+    let come = &state.rules.inlets[0].come;
+    assert_eq!(
+        (come.bodies, come.delayed, state.clumps.all.len()),
+        (10, 9, 10)
+    );
+}
+
+#[test]
+fn bodies_with_larger_contact_spheres_do_not_come_into_each_other() {
+    let gate = "[regions.gate]\nbox = { min = [-0.01, -0.01, -0.01], max = [0.01, 0.01, 0.01] }\n";
+    let scaled = "start_as = \"clump\"\nclump = { scale = 1.5 }";
+    let ball = format!("{BALL}{scaled}\n").replace("ball", "body");
+    for body in [lump("body", scaled), ball] {
+        // All at once, so that each has to mind those that come with it.
+        let inlet = "bodies = [\"body\"]\nrate = 1e9\ncount = 60\norientation = \"random\"\n";
+        let mut state = fed(&format!("{MEETS}{body}{gate}"), inlet);
+        for _ in 0..100 {
+            dem_run::step::act(&mut state);
+            dem_run::stages::replacement::replace(&mut state);
+            assert!(none_overlap(&state));
+            state.steps += 1;
+            state.time_s += 1e-6;
+        }
+        assert!(state.clumps.all.len() > 3);
+    }
+}
+
+#[test]
+fn nothing_comes_into_the_middle_of_a_clump() {
+    // Its inner spheres are not in the scene, but there it is.
+    let full = block(
+        "full",
+        [8, 8, 8],
+        1e-3,
+        |_| Some(1e-3),
+        "start_as = \"clump\"",
+    );
+    let pea = "[bodies.pea]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 0.2e-3]]\n";
+    let gate = "[regions.gate]\nsphere = { centre = [3.5e-3, 3.5e-3, 3.5e-3], radius = 1e-4 }\n";
+    let mut state = fed(
+        &format!("{MEETS}{full}{pea}{gate}"),
+        "bodies = [\"pea\"]\nrate = 100\n",
+    );
+    state.time_step_s = 1e-5;
+    assert!(state.particles.len() < 512);
+    run_to(&mut state, 1e-3);
+    assert_eq!(state.rules.inlets[0].come.bodies, 0);
+    assert_eq!(state.rules.inlets[0].come.delayed, 1);
+}

@@ -1,0 +1,203 @@
+//! Rigid clumps in the solver: that they move as rigid bodies do, that bonded clusters take their places and nothing is lost, and that bodies come and go as the
+//! scene says.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops where it fails, and says what it measured"
+)]
+
+mod again;
+mod books;
+mod carried;
+mod inlets;
+mod outer;
+mod refused;
+mod regions;
+mod rest;
+mod rigid;
+mod swap;
+mod triggers;
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use dem_io::scene::{BodySource, Scene};
+use dem_io::{Body, Result, scene_from_text};
+use dem_run::plan::bodies::{PlacedBody, renumber};
+use dem_run::plan::{Plan, plan};
+use dem_run::stages::population::Renumbered;
+use dem_run::stages::replacement::{Happened, replace};
+use dem_run::state::State;
+use dem_run::state::particles::Particles;
+use dem_run::step::{act, move_on};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// The head of a scene: one material, which meets itself in this way, and bonds.
+pub(crate) const HEAD: &str = "version = 1
+run.end_time = 1
+materials.stuff = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }
+bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25 }
+";
+
+/// How the material meets itself.
+pub(crate) const MEETS: &str = "contacts.stuff-stuff = { restitution = 0.5, friction = 0.5 }\n";
+
+/// A body of a block of spheres whose neighbours in it are bonded. `radius_m`: of the sphere there, or none.
+pub(crate) fn block(
+    name: &str,
+    counts: [i32; 3],
+    apart_m: f64,
+    radius_m: impl Fn([i32; 3]) -> Option<f64>,
+    more: &str,
+) -> String {
+    let mut text = format!("[bodies.{name}]\nmaterial = \"stuff\"\nbonds = \"stiff\"\n{more}\n");
+    let mut there: Vec<[i32; 3]> = Vec::new();
+    let (mut particles, mut bonds) = (String::new(), String::new());
+    for n in 0..counts.iter().product() {
+        let at = [
+            n % counts[0],
+            n / counts[0] % counts[1],
+            n / counts[0] / counts[1],
+        ];
+        let Some(radius_m) = radius_m(at) else {
+            continue;
+        };
+        let [x, y, z] = at.map(|k| apart_m * f64::from(k));
+        write!(particles, "[{x:e}, {y:e}, {z:e}, {radius_m:e}],").unwrap();
+        for (other, place) in there.iter().enumerate() {
+            let steps: i32 = (0..3).map(|k| (place[k] - at[k]).abs()).sum();
+            if steps == 1 {
+                write!(bonds, "[{other}, {}],", there.len()).unwrap();
+            }
+        }
+        there.push(at);
+    }
+    write!(text, "particles = [{particles}]\nbond_list = [{bonds}]\n").unwrap();
+    text
+}
+
+/// A body of 11 spheres of 2 mm without any symmetry, whose neighbours are bonded.
+pub(crate) fn lump(name: &str, more: &str) -> String {
+    let radius = |[x, y, z]: [i32; 3]| {
+        let is_there = [x, y, z] != [2, 1, 1];
+        is_there.then(|| 1e-3 * (1.0 - 0.02 * f64::from(x) - 0.04 * f64::from(y * z)))
+    };
+    block(name, [3, 2, 2], 2e-3, radius, more)
+}
+
+pub(crate) fn scene(text: &str) -> Scene {
+    scene_from_text(text, "scene.toml", &[]).unwrap()
+}
+
+fn bodies_of(scene: &Scene) -> BTreeMap<String, Body> {
+    let body = |source: &BodySource| match source {
+        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
+        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
+    };
+    let bodies = scene.bodies.iter();
+    bodies
+        .map(|(name, entry)| (name.clone(), body(&entry.source)))
+        .collect()
+}
+
+pub(crate) fn try_plan(text: &str) -> Result<Plan> {
+    let scene = scene(text);
+    plan(&scene, bodies_of(&scene), 1, false)
+}
+
+pub(crate) fn planned(text: &str) -> Plan {
+    try_plan(text).unwrap()
+}
+
+/// What a step has changed.
+pub(crate) type Changed = Option<(Vec<Renumbered>, Vec<Happened>)>;
+
+/// A step as a run takes it.
+pub(crate) fn go(state: &mut State, bodies: &mut Vec<PlacedBody>) -> Changed {
+    act(state);
+    let changed = replace(state);
+    for by in changed.iter().flat_map(|(renumbered, _)| renumbered) {
+        renumber(bodies, by);
+    }
+    move_on(state);
+    changed
+}
+
+/// A step of which only what happened is asked.
+pub(crate) fn happens(state: &mut State) -> Vec<Happened> {
+    go(state, &mut Vec::new()).map_or(Vec::new(), |(_, happened)| happened)
+}
+
+/// Mass, centre of mass, momentum, angular momentum about a place and kinetic energy of some particles.
+pub(crate) struct Whole {
+    pub(crate) mass_kg: f64,
+    pub(crate) centre: Vector3<f64>,
+    pub(crate) momentum: Vector3<f64>,
+    pub(crate) angular_momentum: Vector3<f64>,
+    pub(crate) kinetic_j: f64,
+}
+
+impl Whole {
+    pub(crate) fn of(
+        particles: &Particles,
+        some: impl IntoIterator<Item = usize>,
+        about: &Vector3<f64>,
+    ) -> Self {
+        let zero = Vector3::zeros();
+        let (mut mass_kg, mut arms, mut momentum, mut angular_momentum) = (0.0, zero, zero, zero);
+        let mut kinetic_j = 0.0;
+        for i in some {
+            let motion = &particles.motions[i];
+            let (m, j) = (1.0 / motion.inverse_mass, 1.0 / motion.inverse_inertia);
+            let (v, w) = (
+                Vector3::from(motion.velocity_m_s),
+                Vector3::from(motion.spin_rad_s),
+            );
+            let arm = particles.poses[i].place() - about;
+            mass_kg += m;
+            arms += m * arm;
+            momentum += m * v;
+            angular_momentum += m * arm.cross(&v) + j * w;
+            kinetic_j += 0.5 * (m * v.norm_squared() + j * w.norm_squared());
+        }
+        Self {
+            mass_kg,
+            centre: about + arms / mass_kg,
+            momentum,
+            angular_momentum,
+            kinetic_j,
+        }
+    }
+}
+
+/// SplitMix64.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    /// Between two bounds.
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^= z >> 31;
+        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// In a cube around the origin.
+    pub(crate) fn point(&mut self, half: f64) -> Vector3<f64> {
+        Vector3::from([0; 3].map(|_| self.within(-half, half)))
+    }
+
+    pub(crate) fn rotation(&mut self) -> UnitQuaternion<f64> {
+        loop {
+            let q = [0; 4].map(|_| self.within(-1.0, 1.0));
+            let q = nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]);
+            if q.norm() > 0.1 && q.norm() < 1.0 {
+                return UnitQuaternion::new_normalize(q);
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Spheres that cannot be touched are left out, and no bit changes.
+
+use std::sync::Arc;
+
+use dem_run::stages::population::{Changes, change};
+use dem_run::state::State;
+use dem_run::state::clumps::{Clump, Template};
+use dem_run::step::step;
+
+use crate::{HEAD, MEETS, block, planned};
+
+/// Two blocks of 64 spheres that overlap so much that the 8 in the middle are hidden: one falls onto the other, and both onto a plane.
+fn falling() -> State {
+    let cube = |name: &str, more: &str| {
+        let spheres = block(name, [4, 4, 4], 1e-3, |_| Some(1e-3), more);
+        spheres.replace("bonds = \"stiff\"\n", "start_as = \"clump\"\n")
+    };
+    let text = [
+        HEAD.to_owned(),
+        MEETS.to_owned(),
+        "run.gravity = [0, 0, -9.81]\n".to_owned(),
+        cube(
+            "low",
+            "position = [0, 0, 1.5e-3]\nrotation = { axis = [1, 2, 1], angle = 0.2 }\nvelocity = [0, 0, -0.3]",
+        ),
+        cube(
+            "up",
+            "position = [1e-3, -0.5e-3, 8.5e-3]\nrotation = { axis = [1, -1, 0], angle = 0.4 }\n\
+             velocity = [0, 0, -0.6]\nangular_velocity = [20, 5, -30]",
+        ),
+        "[walls.ground]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n"
+            .to_owned(),
+    ];
+    let text = text.concat();
+    let bonds = text.find("bond_list");
+    assert!(bonds.is_some());
+    let text: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.starts_with("bond_list"))
+        .collect();
+    planned(&text.join("\n")).state
+}
+
+/// The same with all spheres in the scene.
+fn with_all_spheres(state: &State) -> State {
+    let mut state = state.clone();
+    let coming: Vec<Clump> = state.clumps.all.clone();
+    let leaving = coming.iter().map(|clump| clump.cluster).collect();
+    let changes = Changes {
+        leaving,
+        ..Changes::default()
+    };
+    change(&mut state, changes);
+    assert!(state.particles.is_empty() && state.clumps.all.is_empty());
+    for template in &mut state.clumps.templates {
+        let outer = (0..template.spheres.len() as u32).collect();
+        *template = Arc::new(Template {
+            outer,
+            ..(**template).clone()
+        });
+    }
+    let changes = Changes {
+        coming,
+        ..Changes::default()
+    };
+    change(&mut state, changes);
+    state
+}
+
+#[test]
+fn hidden_spheres_make_no_difference_to_the_last_bit() {
+    let mut few = falling();
+    let mut all = with_all_spheres(&few);
+    assert_eq!((few.particles.len(), all.particles.len()), (2 * 56, 2 * 64));
+    assert_eq!(few.time_step_s, all.time_step_s);
+    let same = |few: &State, all: &State| {
+        few.clumps.all.iter().zip(&all.clumps.all).all(|(a, b)| {
+            let bits = |c: &Clump| {
+                (
+                    c.place_m,
+                    c.turned,
+                    c.velocity_m_s,
+                    c.angular_momentum,
+                    c.force_n,
+                    c.torque_n_m,
+                    c.impact_energy_j,
+                )
+            };
+            bits(a) == bits(b)
+        })
+    };
+    let (mut on_ground, mut on_each_other) = (0, 0);
+    while few.time_s < 0.03 {
+        step(&mut few);
+        step(&mut all);
+        assert!(same(&few, &all), "at {} s", few.time_s);
+        on_ground += u32::from(!few.walls[0].touching.is_empty());
+        let contacts = few.contacts.as_ref().unwrap();
+        on_each_other += u32::from(contacts.memories.iter().any(|m| m.overlap_m() > 0.0));
+    }
+    eprintln!(
+        "{} steps: {on_ground} with the ground, {on_each_other} with each other",
+        few.steps
+    );
+    assert!(on_ground > 100 && on_each_other > 100);
+}
