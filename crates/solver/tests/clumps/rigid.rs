@@ -2,6 +2,7 @@
 
 use dem_run::check::ledger::balance;
 use dem_run::physics::rotation::{drift, kinetic_j};
+use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
 use dem_run::state::clumps::{Template, rotation};
 use dem_run::step::{act, move_on, step};
@@ -45,6 +46,7 @@ fn two_and_three_spheres_turn_as_free_rotation_says_to_the_last_bit() {
             assert_eq!(clump.turned, turned);
             assert_eq!(clump.angular_momentum, start.angular_momentum);
             assert_eq!(clump.velocity_m_s, start.velocity_m_s);
+            place_all(&state.clumps, &mut state.particles);
             for (pose, sphere) in state.particles.poses.iter().zip(&template.spheres) {
                 let arm = rotation(turned) * Vector3::from(sphere.place_m);
                 let wanted = Vector3::from(start.place_m)
