@@ -9,7 +9,7 @@ use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
 use dem_run::state::order::spatial_order;
-use dem_run::state::particles::{Particles, Wrench};
+use dem_run::state::particles::Particles;
 
 /// Cubes of a face-centred lattice along each side: with four sites each, of which some are left empty, about 20,000 spheres.
 const CUBES: usize = 18;
