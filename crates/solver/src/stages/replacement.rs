@@ -135,7 +135,10 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
     let energy = trigger
         .impact_energy_j
         .map(|limit| clump.impact_energy_j > limit);
-    let time = trigger.time_s.map(|from| state.time_s >= from);
+    // The time has come for good: what has become rigid again waits for something else.
+    let is_again = state.rules.base_of_cluster.contains_key(&clump.cluster);
+    let time = trigger.time_s.filter(|_| !is_again);
+    let time = time.map(|from| state.time_s >= from);
     let all = [
         ("enters", enters),
         ("force", force),

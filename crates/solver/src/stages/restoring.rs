@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::population::{Changes, Renumbered, change};
 use super::replacement::Happened;
+use crate::check::ledger::synchronous_motions;
 use crate::clusters::{Fragment, fragments};
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
@@ -16,6 +17,7 @@ use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, SubSphere, Template, numbers, rotation};
+use crate::state::particles::Motion;
 use crate::state::rules::Restore;
 
 /// Clusters are looked at once in so many steps.
@@ -28,7 +30,10 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
         return None;
     }
     let clusters = state.clusters.as_ref()?;
-    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, None);
+    // Energies are those of the moment of the places: between particles they change within a step.
+    let motions = synchronous_motions(state);
+    let now = Some((&motions[..], &state.clumps.all[..]));
+    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, now);
     let strains_j = strain_energies_j(state);
     let mut to_clumps = Vec::new();
     let mut happened = Vec::new();
@@ -47,7 +52,7 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
         let Some(rule) = &state.rules.restores[base] else {
             continue;
         };
-        let inner_j = inner_kinetic_j(fragment, members, state);
+        let inner_j = inner_kinetic_j(fragment, members, &motions, state);
         let strain_j = strains_j[fragment.id as usize];
         if !is_quiet(rule, fragment, inner_j, strain_j, state) {
             continue;
@@ -126,10 +131,10 @@ fn strain_energies_j(state: &State) -> Vec<f64> {
 }
 
 /// Kinetic energy that a cluster has beyond that of a rigid body with its momenta, J.
-fn inner_kinetic_j(fragment: &Fragment, members: &[u32], state: &State) -> f64 {
+fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], state: &State) -> f64 {
     let p = &state.particles;
     let all: f64 = (members.iter())
-        .map(|&i| p.kinetic_j(i as usize, &p.motions[i as usize]))
+        .map(|&i| p.kinetic_j(i as usize, &motions[i as usize]))
         .sum();
     let velocity = Vector3::from(fragment.velocity_m_s);
     let spin = Vector3::from(fragment.angular_velocity_rad_s);
@@ -155,14 +160,16 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
         .collect();
     let properties = of_spheres(&centres, &masses, &inertias);
     let centre = Vector3::from(properties.centre_m);
-    let mut momentum = Vector3::zeros();
+    let velocity_of = |i: &u32| Vector3::from(p.motions[of(i)].velocity_m_s);
+    let momentum: Vector3<f64> = (members.iter().zip(&masses))
+        .map(|(i, mass)| *mass * velocity_of(i))
+        .sum();
+    let velocity = momentum / properties.mass_kg;
     let mut angular = Vector3::zeros();
     for (n, i) in members.iter().enumerate() {
-        let motion = &p.motions[of(i)];
-        let one = masses[n] * Vector3::from(motion.velocity_m_s);
-        momentum += one;
-        angular += (Vector3::from(centres[n]) - centre).cross(&one)
-            + inertias[n] * Vector3::from(motion.spin_rad_s);
+        let arm = Vector3::from(centres[n]) - centre;
+        angular += masses[n] * arm.cross(&(velocity_of(i) - velocity))
+            + inertias[n] * Vector3::from(p.motions[of(i)].spin_rad_s);
     }
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
@@ -185,7 +192,7 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
         cluster: id,
         place_m: properties.centre_m,
         turned,
-        velocity_m_s: (momentum / properties.mass_kg).into(),
+        velocity_m_s: velocity.into(),
         angular_momentum: angular.into(),
         ..Clump::default()
     }

@@ -30,14 +30,14 @@ pub(crate) fn feed(restitution: f64, outlet: &str) -> String {
     )
 }
 
-struct Books {
-    worst: [f64; 3],
-    last: Balance,
-    state: State,
-    happened: Vec<Happened>,
+pub(crate) struct Books {
+    pub(crate) worst: [f64; 3],
+    pub(crate) last: Balance,
+    pub(crate) state: State,
+    pub(crate) happened: Vec<Happened>,
 }
 
-fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
+pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
     let Plan { mut state, .. } = planned(text);
     assert!(
         time_step_s < 0.5 * state.time_step_s,

@@ -16,6 +16,7 @@ mod outer;
 mod refused;
 mod regions;
 mod rest;
+mod restored;
 mod rigid;
 mod swap;
 mod triggers;

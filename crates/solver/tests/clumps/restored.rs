@@ -1,0 +1,170 @@
+//! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
+
+use dem_run::check::ledger::elastic_energy;
+use dem_run::stages::population::{Changes, change};
+use dem_run::stages::replacement::{Happened, replace};
+use dem_run::stages::restoring::restore;
+use dem_run::state::State;
+use dem_run::step::{act, move_on};
+use nalgebra::Vector3;
+
+use crate::books::{booked, feed};
+use crate::{HEAD, Whole, lump, planned};
+
+/// A lump that flies and spins, is replaced at once, and may become rigid again wherever it is.
+fn flying() -> State {
+    let body = lump(
+        "lump",
+        "start_as = \"clump\"\nposition = [0.1, 0.2, 0.3]\nvelocity = [1, -2, 3]\nangular_velocity = [20, -30, 10]",
+    );
+    let mut state = planned(&format!(
+        "{HEAD}{body}[replacement.lump]\nwhen = {{ time = 0 }}\n\
+         back = {{ leaves = \"far\", min_particles = 2, strain_energy = 1e3, inner_speed = 10 }}\n\
+         [regions.far]\nbox = {{ min = [10, 10, 10], max = [11, 11, 11] }}\n"
+    ))
+    .state;
+    act(&mut state);
+    replace(&mut state).unwrap();
+    state.steps = 200;
+    state
+}
+
+fn whole(state: &State) -> Whole {
+    Whole::of(&state.particles, 0..state.particles.free, &Vector3::zeros())
+}
+
+#[test]
+fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
+    let mut state = flying();
+    let start = whole(&state);
+    let mut first = None;
+    for _ in 0..10 {
+        let (_, happened) = restore(&mut state).unwrap();
+        assert!(
+            matches!(&happened[..], [Happened::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
+        );
+        let clump = state.clumps.all[0];
+        // The template of the scene serves again.
+        assert_eq!((clump.template, state.clumps.templates.len()), (0, 1));
+        let first = first.get_or_insert(clump);
+        let close = |a: &[f64], b: &[f64], size: f64| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12 * size)
+        };
+        assert!(close(&clump.place_m, &first.place_m, 1.0));
+        assert!(close(&clump.turned, &first.turned, 1.0));
+        assert!(close(&clump.velocity_m_s, &first.velocity_m_s, 4.0));
+        let size = Vector3::from(first.angular_momentum).norm();
+        assert!(close(
+            &clump.angular_momentum,
+            &first.angular_momentum,
+            size
+        ));
+        let to_clusters = vec![0];
+        change(
+            &mut state,
+            Changes {
+                to_clusters,
+                ..Changes::default()
+            },
+        );
+    }
+    let end = whole(&state);
+    assert!((end.centre - start.centre).norm() < 1e-12);
+    assert!((end.momentum - start.momentum).norm() < 1e-12 * start.momentum.norm());
+    let size = start.mass_kg * 4.0 * 0.4;
+    assert!((end.angular_momentum - start.angular_momentum).norm() < 1e-12 * size);
+    assert!((end.kinetic_j / start.kinetic_j - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
+    let mut state = flying();
+    // A bond less, and a sphere out of its place: the rest still holds together.
+    state.bonds.set_broken(0);
+    let broken = state.bonds.ends[0];
+    let aside = Vector3::new(0.0, 2e-6, 0.0);
+    let place = state.particles.poses[3].place() + aside;
+    state.particles.poses[3].put_at(place.into());
+    // It moves as a part of the rigid body does there.
+    let motion = &mut state.particles.motions[3];
+    let spin = Vector3::from(motion.spin_rad_s);
+    motion.velocity_m_s = (Vector3::from(motion.velocity_m_s) + spin.cross(&aside)).into();
+    let (start, strain_j) = (whole(&state), elastic_energy(&state).total());
+    let places: Vec<Vector3<f64>> = state.particles.poses.iter().map(|p| p.place()).collect();
+    let bonds = state.bonds.len();
+    assert!(strain_j > 0.0);
+    let (_, happened) = restore(&mut state).unwrap();
+    let [Happened::Restored { lost_j, .. }] = &happened[..] else {
+        panic!("{happened:?}");
+    };
+    assert!(
+        (lost_j / strain_j - 1.0).abs() < 1e-6,
+        "{lost_j:e} {strain_j:e}"
+    );
+    assert_eq!((state.bonds.len(), state.particles.free), (0, 0));
+    assert_eq!(
+        (state.clumps.all.len(), state.clumps.templates.len()),
+        (1, 2)
+    );
+    let to_clusters = vec![0];
+    change(
+        &mut state,
+        Changes {
+            to_clusters,
+            ..Changes::default()
+        },
+    );
+    assert_eq!(state.bonds.len(), bonds - 1);
+    assert!(!state.bonds.ends.contains(&broken));
+    for (pose, place) in state.particles.poses.iter().zip(places) {
+        assert!((pose.place() - place).norm() < 1e-15);
+    }
+    let end = whole(&state);
+    assert!((end.momentum - start.momentum).norm() < 1e-12 * start.momentum.norm());
+    assert!((end.kinetic_j / start.kinetic_j - 1.0).abs() < 1e-12);
+    // Strain is a difference of places that are rounded to 1e-16 m, of 2e-6 m.
+    assert!((elastic_energy(&state).total() / strain_j - 1.0).abs() < 1e-8);
+}
+
+#[test]
+fn a_time_does_not_ask_twice() {
+    let mut state = flying();
+    state.time_step_s = 1e-9;
+    for _ in 0..300 {
+        act(&mut state);
+        replace(&mut state);
+        move_on(&mut state);
+    }
+    assert_eq!((state.rules.replaced, state.rules.restored), (1, 1));
+    assert_eq!(state.clumps.all.len(), 1);
+}
+
+#[test]
+fn books_hold_over_what_becomes_rigid_again() {
+    let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.03] }")
+        .replace(
+            "min = [-1, -1, -1], max = [1, 1, 0.014]",
+            "min = [-1, -1, 0], max = [1, 1, 0.014]",
+        )
+        .replace(
+            "when = { enters = \"low\" }",
+            "when = { enters = \"low\" }\nback = { leaves = \"low\", min_particles = 2 }",
+        );
+    let books = [4e-6, 2e-6].map(|step_s| booked(&text, step_s, 0.2));
+    for books in &books {
+        let restored = |happened: &&Happened| matches!(happened, Happened::Restored { .. });
+        let restored = books.happened.iter().filter(restored).count();
+        assert!(restored >= 2, "{restored}");
+        assert!(
+            books.worst[1] < 1e-11 && books.worst[2] < 1e-11,
+            "{:?}",
+            books.worst
+        );
+    }
+    let errors = books.each_ref().map(|books| books.worst[0]);
+    eprintln!("energy errors {errors:?}");
+    assert!(
+        errors[1] < 1e-4 && errors[0] > 3.0 * errors[1],
+        "{errors:?}"
+    );
+}
