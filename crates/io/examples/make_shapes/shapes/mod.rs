@@ -1,6 +1,7 @@
 //! The example shapes, in mm. Plain arithmetic and fixed seeds: the same bytes on every run.
 
 mod cake;
+mod jaw;
 mod mesh;
 mod noise;
 mod rock;
@@ -22,6 +23,7 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
         ("filter-cake", cake::filter_cake()),
         ("hollow-pair", hollow_pair()),
         ("infinity-knot", round::infinity_knot()),
+        ("jaw", jaw::jaw()),
         ("rock", rock::rock()),
         ("tablet", round::tablet()),
         ("torus", round::torus()),
