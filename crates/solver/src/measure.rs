@@ -139,10 +139,8 @@ pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], 
             let own = own.flat_map(|body| body.particles.iter().copied().filter(|i| *i != GONE));
             let clumps = state.clumps.all.iter();
             let clumps = clumps.filter(|clump| named(&state.clumps.template(clump).body));
-            let carried = clumps.flat_map(|clump| {
-                let count = state.clumps.template(clump).outer.len() as u32;
-                clump.first..clump.first + count
-            });
+            let carried = clumps.flat_map(|clump| state.clumps.spheres_of(clump));
+            let carried = carried.map(|i| i as u32);
             gauge.particles = own.chain(carried).collect();
             gauge.particles.sort_unstable();
         } else {

@@ -136,11 +136,7 @@ impl State {
 
     /// Density of particle `i`, kg/m3, be it carried by a clump or not.
     pub fn density_kg_m3(&self, i: usize) -> f64 {
-        let after = self
-            .clumps
-            .all
-            .partition_point(|clump| clump.first as usize <= i);
-        match after.checked_sub(1).filter(|_| i >= self.particles.free) {
+        match self.clumps.carrier_of(i) {
             Some(at) => {
                 let clump = &self.clumps.all[at];
                 let template = self.clumps.template(clump);

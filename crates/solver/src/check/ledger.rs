@@ -445,7 +445,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         .collect();
     for clump in synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s) {
         let template = state.clumps.template(&clump);
-        let spheres = &p.poses[clump.first as usize..][..template.outer.len()];
+        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
         motions.extend(
             spheres
                 .iter()

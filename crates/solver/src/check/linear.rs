@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 
 use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::touch::{Foot, Touch, torques, touch, touch_at_wall};
+use crate::physics::contact::touch::{Touch, torques, touch};
 use crate::physics::contact::{Linearised, NormalLaw, linearised};
 use crate::physics::number::Triple;
+use crate::stages::walls::wall_touch;
 use crate::state::State;
 use crate::state::contacts::{ContactKind, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Wrench};
@@ -76,8 +77,7 @@ pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
     let mut sums = vec![[0.0; 2]; clumps.all.len()];
     for contact in contacts {
         for end in contact.ends.into_iter().flatten() {
-            let after = clumps.all.partition_point(|clump| clump.first <= end);
-            if let (true, Some(at)) = (end as usize >= state.particles.free, after.checked_sub(1)) {
+            if let Some(at) = clumps.carrier_of(end as usize) {
                 let answer = &contact.answer;
                 sums[at][0] += answer.normal_n_m.max(answer.tangential_n_m);
                 sums[at][1] += (answer.normal_damping_n_s_m).max(answer.tangential_damping_n_s_m);
@@ -98,18 +98,6 @@ pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
         }
     }
     rates
-}
-
-/// A particle at rest against a wall at rest.
-fn wall_touch(particles: &Particles, i: usize, normal: &Vector3<f64>, overlap_m: f64) -> Touch {
-    let foot = Foot {
-        normal: (*normal).into(),
-        normal_before: (*normal).into(),
-        distance_m: particles.poses[i].radius_m() - overlap_m,
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
-    };
-    touch_at_wall(&foot, particles.ball_at_rest(i), 0.0)
 }
 
 fn answer(kind: &ContactKind, touch: &Touch) -> Linearised {

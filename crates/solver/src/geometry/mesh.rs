@@ -5,7 +5,8 @@
 //!
 //! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like one face, not like several, and a thin plate with one side.
 //!
-//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex than 1e-7 of the reach, a point may be off by as much.
+//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex than 1e-7 of the reach, a point may be off by as much,
+//! and nearer than 1e-9 of the reach it is passed over if beyond the vertex the surface comes nearer.
 
 mod features;
 mod tree;

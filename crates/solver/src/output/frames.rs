@@ -58,11 +58,10 @@ impl FrameOrder {
             order.bonds.extend(of_file.iter().map(|(_, at)| at));
         }
         for clump in &state.clumps.all {
-            let template = state.clumps.template(clump);
-            let number = number_of(&template.body) as u32;
-            for i in clump.first..clump.first + template.outer.len() as u32 {
-                order.place_of[i as usize] = order.particles.len() as u32;
-                order.particles.push(i);
+            let number = number_of(&state.clumps.template(clump).body) as u32;
+            for i in state.clumps.spheres_of(clump) {
+                order.place_of[i] = order.particles.len() as u32;
+                order.particles.push(i as u32);
                 order.bodies.push(number);
             }
         }

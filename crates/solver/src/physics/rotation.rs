@@ -4,6 +4,8 @@
 //!
 //! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into space.
 
+use super::rigid::turn;
+
 /// Part of the step at each end for which the error of second order is least (McLachlan 1995).
 const EDGE: f64 = 0.193_183_327_503_783_6;
 
@@ -73,23 +75,6 @@ fn spin_about(axis: usize, q: &mut [f64; 4], l: &mut [f64; 3], time_rate: f64) {
     let [b, c] = [l[next], l[last]];
     l[next] = cosine * b + sine * c;
     l[last] = cosine * c - sine * b;
-}
-
-/// An orientation after a rotation vector in space, rad, with the norm set right to first order, so that it does not drift.
-fn turn([x, y, z, w]: [f64; 4], vector: [f64; 3]) -> [f64; 4] {
-    let half = vector.map(|v| 0.5 * v);
-    let angle = half.iter().map(|h| h * h).sum::<f64>().sqrt();
-    let (sine, rw) = angle.sin_cos();
-    let per_angle = if angle > 0.0 { sine / angle } else { 1.0 };
-    let [rx, ry, rz] = half.map(|h| h * per_angle);
-    let new = [
-        rw * x + rx * w + ry * z - rz * y,
-        rw * y - rx * z + ry * w + rz * x,
-        rw * z + rx * y - ry * x + rz * w,
-        rw * w - rx * x - ry * y - rz * z,
-    ];
-    let norm = new.iter().map(|q| q * q).sum::<f64>();
-    new.map(|q| q * (1.5 - 0.5 * norm))
 }
 
 fn into_body(&[x, y, z, w]: &[f64; 4], vector: [f64; 3]) -> [f64; 3] {

@@ -9,11 +9,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::place_body;
 use super::contacts::Kinds;
-use crate::shape::inertia::{MassProperties, of_spheres, of_union};
+use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::stages::replacement::angular_momentum;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Scatter, SubSphere, Template, numbers, rotation};
+use crate::state::clumps::{Clump, Scatter, Template, numbers, reach_m, rotation, sub_spheres};
 use crate::state::particles::Particles;
 
 /// Names of the bodies that are templates: those that start as clumps or come through inlets.
@@ -73,32 +73,11 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         StartAs::Clump(settings) => settings,
         StartAs::Bonded => Default::default(),
     };
-    let MassProperties {
-        mass_kg,
-        centre_m,
-        moments_kg_m2,
-        axes,
-    } = match settings.mass {
+    let properties = match settings.mass {
         ClumpMass::Spheres => of_spheres(&centres, &masses, &inertias),
         ClumpMass::Union => of_union(&centres, &radii, particles.density_kg_m3(0)),
     };
-    let to_principal = rotation(axes).inverse();
-    let spheres: Vec<SubSphere> = (0..centres.len())
-        .map(|i| {
-            let arm = Vector3::from(centres[i]) - Vector3::from(centre_m);
-            SubSphere {
-                place_m: (to_principal * arm).into(),
-                turned: numbers(&to_principal),
-                radius_m: radii[i],
-                mass_kg: masses[i],
-                inertia_kg_m2: inertias[i],
-            }
-        })
-        .collect();
-    let reach = spheres
-        .iter()
-        .map(|sphere| Vector3::from(sphere.place_m).norm() + sphere.radius_m);
-    let reach_m = reach.fold(0.0, f64::max);
+    let spheres = sub_spheres(particles.poses.iter().zip(&particles.motions), &properties);
     let mut file_number = vec![0; spheres.len()];
     for (number, &i) in (0..).zip(&placed.particles) {
         file_number[i as usize] = number;
@@ -112,11 +91,11 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     bonds.strength_factors.clear();
     Ok(Template {
         body: name.to_owned(),
-        mass_kg,
-        moments_kg_m2,
-        axes,
-        centre_m,
-        reach_m,
+        mass_kg: properties.mass_kg,
+        moments_kg_m2: properties.moments_kg_m2,
+        axes: properties.axes,
+        centre_m: properties.centre_m,
+        reach_m: reach_m(&spheres),
         outer: outer_layer(&centres, &radii, HIDDEN),
         spheres,
         scale: settings.scale,
@@ -154,17 +133,11 @@ pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump>
                 as_file * Vector3::from(template.centre_m) + Vector3::from(entry.position_m);
             Clump {
                 template: number,
-                cluster: 0,
-                instance: 0,
                 place_m: place.into(),
                 turned,
                 velocity_m_s: entry.velocity_m_s,
                 angular_momentum: angular_momentum(template, turned, entry.angular_velocity_rad_s),
-                force_n: [0.0; 3],
-                torque_n_m: [0.0; 3],
-                first: 0,
-                near: [0; 2],
-                impact_energy_j: 0.0,
+                ..Clump::default()
             }
         })
         .collect()

@@ -152,9 +152,7 @@ pub(super) fn place_contacts(
         }
     }
     for clump in &state.clumps.all {
-        let template = state.clumps.template(clump);
-        let first = clump.first as usize;
-        materials[first..first + template.outer.len()].fill(template.material);
+        materials[state.clumps.spheres_of(clump)].fill(state.clumps.template(clump).material);
     }
     let mut contacts = Contacts {
         kinds: kinds.kinds.clone(),

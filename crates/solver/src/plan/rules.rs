@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use dem_io::scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
-use dem_io::surface::read_open_surface;
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::walls::surface_of;
 use crate::geometry::{Bounds, Mesh};
 use crate::state::State;
 use crate::state::clumps::{Template, numbers};
@@ -112,14 +112,7 @@ fn region(entry: &SceneRegion) -> Result<Region> {
         },
         SceneRegion::Stl { file, unit_m } => {
             let name = file.display().to_string();
-            let bytes = std::fs::read(file).map_err(|error| {
-                Diagnostic::input(
-                    &name,
-                    format!("cannot be read: {error}"),
-                    "check its name: it counts from the scene's folder",
-                )
-            })?;
-            let surface = read_open_surface(&bytes, &name, *unit_m)?;
+            let surface = surface_of(file, *unit_m)?;
             let open_edges = Mesh::from_surface(&surface)?.content.open_edges;
             if open_edges > 0 {
                 return Err(Diagnostic::input(

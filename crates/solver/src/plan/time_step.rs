@@ -273,26 +273,24 @@ pub fn impact_step_s(state: &State, speed_m_s: f64) -> f64 {
     SHARE_OF_IMPACT * safe_step(k, c)
 }
 
+/// How far the deepest corner of a box lies along `down`, m.
+fn deepest(bounds: &Bounds, down: &Vector3<f64>) -> f64 {
+    let depths = bounds
+        .corners()
+        .map(|corner| Vector3::from(corner).dot(down));
+    depths.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall, m.
 fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
-    let depth = |low: [f64; 3], high: [f64; 3], deepest: bool| {
-        let depths = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
-            let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] });
-            Vector3::from(corner).dot(down)
-        });
-        let pick: fn(f64, f64) -> f64 = if deepest { f64::max } else { f64::min };
-        depths.into_iter().reduce(pick).unwrap_or(0.0)
-    };
     let regions =
         (state.rules.inlets.iter()).map(|inlet| state.rules.regions[inlet.region].bounds());
-    let top = regions.map(|b| depth(b.low, b.high, false));
-    let top = top.fold(f64::INFINITY, f64::min);
+    let tops = regions.flat_map(|bounds| bounds.corners());
+    let tops = tops.map(|corner| Vector3::from(corner).dot(down));
+    let top = tops.fold(f64::INFINITY, f64::min);
     let bottom = state.walls.iter().map(|wall| match &wall.shape {
         Shape::Plane(_) => Vector3::from(wall.frame.position_m).dot(down),
-        _ => {
-            let Bounds { low, high } = wall.bounds_in_space();
-            depth(low, high, true)
-        }
+        _ => deepest(&wall.bounds_in_space(), down),
     });
     let bottom = bottom.fold(f64::NEG_INFINITY, f64::max);
     (bottom - top).max(0.0)
@@ -327,12 +325,10 @@ fn fall_m(state: &State, down: &Vector3<f64>) -> f64 {
                 state.particles.poses.iter().map(far).fold(0.0, f64::max)
             }
             other => {
-                let Bounds { low, high: top } = other.bounds();
-                let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
-                    let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { top[k] });
-                    Vector3::from(wall.frame.to_space(corner)).dot(down)
-                });
-                corners.into_iter().fold(f64::NEG_INFINITY, f64::max) - high
+                let corners = other.bounds().corners();
+                let depths =
+                    corners.map(|corner| Vector3::from(wall.frame.to_space(corner)).dot(down));
+                depths.into_iter().fold(f64::NEG_INFINITY, f64::max) - high
             }
         };
         farthest = farthest.max(to_wall);

@@ -1,7 +1,9 @@
 //! Walls of a scene, put where they start.
 
+use std::path::Path;
+
 use dem_io::scene::{Scene, StartOverlap, Wall as SceneWall, WallShape};
-use dem_io::surface::read_open_surface;
+use dem_io::surface::{OpenSurface, read_open_surface};
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 
@@ -95,15 +97,7 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
             unit_m,
             scale,
         } => {
-            let file = path.display().to_string();
-            let bytes = std::fs::read(path).map_err(|error| {
-                Diagnostic::input(
-                    &file,
-                    format!("cannot be read: {error}"),
-                    "check its name: it counts from the scene's folder",
-                )
-            })?;
-            let mut surface = read_open_surface(&bytes, &file, unit_m * scale)?;
+            let mut surface = surface_of(path, unit_m * scale)?;
             for vertex in &mut surface.vertices_m {
                 *vertex = from_pivot(*vertex);
             }
@@ -133,6 +127,19 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
             Shape::Mesh(mesh)
         }
     })
+}
+
+/// The surface of a file that a scene names, in m.
+pub(super) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
+    let file = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        Diagnostic::input(
+            &file,
+            format!("cannot be read: {error}"),
+            "check its name: it counts from the scene's folder",
+        )
+    })?;
+    read_open_surface(&bytes, &file, unit_m)
 }
 
 /// Volume that triangles enclose, m3: below 0 where they look inwards.

@@ -13,26 +13,19 @@ pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iter
     let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
     now.sort_unstable();
     now.dedup();
-    let Clumps {
-        templates,
-        all,
-        near,
-    } = clumps;
-    for clump in all {
-        let template = &templates[clump.template as usize];
-        let end = clump.first + template.outer.len() as u32;
-        let [from, to] = [clump.first, end].map(|i| now.partition_point(|&sphere| sphere < i));
-        clump.near = [from as u32, to as u32];
-        for &i in &now[from..to] {
+    let before = std::mem::take(&mut clumps.near);
+    clumps.set_near(now);
+    for clump in &clumps.all {
+        let [from, to] = clump.near.map(|n| n as usize);
+        for &i in &clumps.near[from..to] {
             // Those that followed know how they moved.
-            if near.binary_search(&i).is_err() {
+            if before.binary_search(&i).is_err() {
                 let i = i as usize;
                 let place = particles.poses[i].place();
-                particles.motions[i] = clump.motion_at(template, &place);
+                particles.motions[i] = clump.motion_at(clumps.template(clump), &place);
             }
         }
     }
-    *near = now;
 }
 
 /// Puts all spheres of all clumps where they are.
@@ -41,7 +34,7 @@ pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
         let template = clumps.template(clump);
         let turned = rotation_of(clump.turned);
         let (centre, to_space) = (Vector3::from(clump.place_m), turned.to_rotation_matrix());
-        let spheres = &mut particles.poses[clump.first as usize..][..template.outer.len()];
+        let spheres = &mut particles.poses[clumps.spheres_of(clump)];
         for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
             let sphere = &template.spheres[sphere as usize];
             pose.put_at((centre + to_space * Vector3::from(sphere.place_m)).into());

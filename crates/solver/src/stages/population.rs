@@ -10,7 +10,7 @@ use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
-use crate::state::clumps::{Clump, Template};
+use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Memory;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::shares::divide;
@@ -116,9 +116,8 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         if to_clusters.binary_search(&(at - 1)).is_ok() || leaves(clump.cluster) {
             return false;
         }
-        let first = clump.first as usize;
+        let own = templates[clump.template as usize].spheres_from(clump.first);
         clump.first = new.len() as u32;
-        let own = first..first + templates[clump.template as usize].outer.len();
         for (i, now) in own.clone().zip(&mut particles[own]) {
             *now = keep(&old, i, &mut new);
         }
@@ -130,7 +129,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     let known = state.clusters.take();
     for (id, mut clump) in to_clumps {
         let template = Arc::clone(clumps.template(&clump));
-        crate::state::clumps::Clumps::push_spheres(&template, &mut clump, &mut new);
+        Clumps::push_spheres(&template, &mut clump, &mut new);
         // The spheres of its template stand in the order of its particles.
         let members = known
             .as_ref()
@@ -157,7 +156,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
             ended_s: None,
             particles: template.outer.len() as u32,
         });
-        crate::state::clumps::Clumps::push_spheres(&template, &mut clump, &mut new);
+        Clumps::push_spheres(&template, &mut clump, &mut new);
         ids.resize(new.len(), clump.cluster);
         is_new.resize(new.len(), Some(template.material));
         clumps.all.push(clump);
@@ -173,17 +172,10 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     }
 
     // Those that followed still do, under their new numbers; which they are is looked for in the next step.
-    near.retain_mut(|sphere| {
-        *sphere = particles[*sphere as usize];
-        *sphere != GONE && *sphere as usize >= new.free
-    });
+    renumber(&mut near, &particles);
+    near.retain(|&sphere| sphere as usize >= new.free);
     near.sort_unstable();
-    for clump in &mut clumps.all {
-        let template = &clumps.templates[clump.template as usize];
-        let ends = [clump.first, clump.first + template.outer.len() as u32];
-        clump.near = ends.map(|end| near.partition_point(|&sphere| sphere < end) as u32);
-    }
-    clumps.near = near;
+    clumps.set_near(near);
     state.particles = new;
     let bonds = change_bonds(state, &particles, &mut born);
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
@@ -232,6 +224,14 @@ fn pressed_j(state: &State) -> f64 {
     };
     let of_walls: f64 = state.walls.iter().map(of_wall).sum();
     elastic_energy_j(contacts, &state.particles) + of_walls
+}
+
+/// Numbers as they are now, without those of what has gone.
+fn renumber(numbers: &mut Vec<u32>, now: &[u32]) {
+    numbers.retain_mut(|number| {
+        *number = now[*number as usize];
+        *number != GONE
+    });
 }
 
 fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
@@ -315,10 +315,7 @@ fn count_anew(
     if state.bonds.rules.iter().any(|rule| rule.damped) {
         state.bond_resistance = vec![Wrench::default(); state.particles.free];
     }
-    state.unsearched.retain_mut(|bond| {
-        *bond = bonds[*bond as usize];
-        *bond != GONE
-    });
+    renumber(&mut state.unsearched, bonds);
     for support in &mut state.supports {
         support.held.retain_mut(|held| {
             held.particle = particles[held.particle as usize];
@@ -326,10 +323,7 @@ fn count_anew(
         });
     }
     for load in &mut state.loads {
-        load.particles.retain_mut(|particle| {
-            *particle = particles[*particle as usize];
-            *particle != GONE
-        });
+        renumber(&mut load.particles, particles);
     }
     state.shares = divide(&state.bonds, state.particles.free, state.threads);
     for wall in &mut state.walls {

@@ -7,7 +7,6 @@ use super::restoring::restore;
 use crate::check::ledger::synchronous_motions;
 use crate::clusters::{Fragment, fragments};
 use crate::physics::random::uniform;
-use crate::physics::rotation::spin_rad_s;
 use crate::stages::clumps::synchronous;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template, numbers, rotation};
@@ -225,18 +224,13 @@ fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
                 break;
             };
             let template = state.clumps.template(&clump);
-            let moment = Vector3::from(clump.velocity_m_s) - half_kick(state);
-            let spin = spin_rad_s(
-                &clump.turned,
-                clump.angular_momentum,
-                template.moments_kg_m2,
-            );
-            let kinetic = 0.5
-                * (template.mass_kg * moment.norm_squared()
-                    + Vector3::from(spin).dot(&Vector3::from(clump.angular_momentum)));
+            let now = Clump {
+                velocity_m_s: inlet.velocity_m_s,
+                ..clump
+            };
             state.ledger.bring(
                 1.0,
-                [template.mass_kg, kinetic],
+                [template.mass_kg, now.kinetic_j(template)],
                 [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
                 state.gravity_m_s2,
             );
@@ -311,17 +305,12 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
         let velocity = Vector3::from(inlet.velocity_m_s) + half_kick(state);
         return Some(Clump {
             template: which,
-            cluster: 0,
             instance: state.rules.instances + 1,
             place_m,
             turned,
             velocity_m_s: velocity.into(),
             angular_momentum: angular_momentum(template, turned, inlet.spin_rad_s),
-            force_n: [0.0; 3],
-            torque_n_m: [0.0; 3],
-            first: 0,
-            near: [0; 2],
-            impact_energy_j: 0.0,
+            ..Clump::default()
         });
     }
     None

@@ -16,7 +16,7 @@ use crate::shape::inertia::{MassProperties, of_spheres};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, SubSphere, Template, numbers, rotation};
+use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
 use crate::state::particles::Motion;
 use crate::state::rules::Restore;
 
@@ -34,7 +34,6 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
     let motions = synchronous_motions(state);
     let now = Some((&motions[..], &state.clumps.all[..]));
     let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, now);
-    let strains_j = strain_energies_j(state);
     let mut to_clumps = Vec::new();
     let mut happened = Vec::new();
     let mut gained_j = 0.0;
@@ -53,7 +52,15 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
             continue;
         };
         let inner_j = inner_kinetic_j(fragment, members, &motions, state);
-        let strain_j = strains_j[fragment.id as usize];
+        let strain_j: f64 = (own_bonds(members, state).into_iter())
+            .map(|at| {
+                state
+                    .bonds
+                    .forces(at, &state.particles.poses)
+                    .energy
+                    .total()
+            })
+            .sum();
         if !is_quiet(rule, fragment, inner_j, strain_j, state) {
             continue;
         }
@@ -112,22 +119,6 @@ fn is_quiet(
         && !state.rules.regions[rule.leaves].contains(fragment.centre_m)
         && strain_j < rule.strain_energy_j_kg * fragment.mass_kg
         && 2.0 * inner_j < rule.inner_speed_m_s.powi(2) * fragment.mass_kg
-}
-
-/// Elastic energy of the bonds of each cluster, J.
-fn strain_energies_j(state: &State) -> Vec<f64> {
-    let Some(clusters) = &state.clusters else {
-        return Vec::new();
-    };
-    let mut energies = vec![0.0; clusters.history.len()];
-    let (bonds, poses) = (&state.bonds, &state.particles.poses);
-    for (at, ends) in bonds.ends.iter().enumerate() {
-        if !bonds.is_broken(at) {
-            let id = clusters.of_particle[ends[0] as usize];
-            energies[id as usize] += bonds.forces(at, poses).energy.total();
-        }
-    }
-    energies
 }
 
 /// Kinetic energy that a cluster has beyond that of a rigid body with its momenta, J.
@@ -219,22 +210,11 @@ fn fragment_template(
     properties: &MassProperties,
     state: &State,
 ) -> Template {
-    let to_principal = rotation(properties.axes).inverse();
-    let centre = Vector3::from(properties.centre_m);
     let p = &state.particles;
-    let spheres: Vec<SubSphere> = members
+    let particles = members
         .iter()
-        .map(|&i| {
-            let (pose, motion) = (&p.poses[i as usize], &p.motions[i as usize]);
-            SubSphere {
-                place_m: (to_principal * (pose.place() - centre)).into(),
-                turned: numbers(&(to_principal * pose.rotation())),
-                radius_m: pose.radius_m(),
-                mass_kg: 1.0 / motion.inverse_mass,
-                inertia_kg_m2: 1.0 / motion.inverse_inertia,
-            }
-        })
-        .collect();
+        .map(|&i| (&p.poses[i as usize], &p.motions[i as usize]));
+    let spheres = sub_spheres(particles, properties);
     let mut own = Bonds {
         rules: state.bonds.rules.clone(),
         ..Bonds::default()
@@ -245,16 +225,13 @@ fn fragment_template(
     }
     let centres: Vec<[f64; 3]> = spheres.iter().map(|s| s.place_m).collect();
     let radii: Vec<f64> = spheres.iter().map(|s| s.radius_m).collect();
-    let reach = spheres
-        .iter()
-        .map(|sphere| Vector3::from(sphere.place_m).norm() + sphere.radius_m);
     Template {
         body: whole.body.clone(),
         mass_kg: properties.mass_kg,
         moments_kg_m2: properties.moments_kg_m2,
         axes: [0.0, 0.0, 0.0, 1.0],
         centre_m: [0.0; 3],
-        reach_m: reach.fold(0.0, f64::max),
+        reach_m: reach_m(&spheres),
         outer: outer_layer(&centres, &radii, HIDDEN),
         scale: 1.0,
         material: whole.material,

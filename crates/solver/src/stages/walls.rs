@@ -161,21 +161,24 @@ fn meet(
     let before = &wall.touching[first..];
     let before = &before[..before.partition_point(|old| old.particle == particle)];
     let kind = wall.kind(materials[i]);
+    let at = |there: &Touch, old: Option<&WallTouch>| {
+        meet_at(
+            wall,
+            kind,
+            particles,
+            particle,
+            there,
+            old,
+            least_overlap,
+            dt,
+        )
+    };
     let first_found = found.len();
     for touch in &touches {
         let there = wall.frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
         let old = remembered(before, &touches, touch, &normal);
-        found.push(meet_at(
-            wall,
-            kind,
-            particles,
-            particle,
-            &there,
-            old,
-            least_overlap,
-            dt,
-        ));
+        found.push(at(&there, old));
     }
     // What has ended has its losses still to be booked.
     for old in before {
@@ -187,16 +190,7 @@ fn meet(
                 normal: old.normal.map(|n| -n),
                 distance_m: pose.radius_m(),
             };
-            found.push(meet_at(
-                wall,
-                kind,
-                particles,
-                particle,
-                &there,
-                Some(old),
-                least_overlap,
-                dt,
-            ));
+            found.push(at(&there, Some(old)));
         }
     }
 }
@@ -306,6 +300,23 @@ fn meet_at(
     }
 }
 
+/// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it overlaps by `overlap_m`.
+pub fn wall_touch(
+    particles: &Particles,
+    i: usize,
+    normal: &Vector3<f64>,
+    overlap_m: f64,
+) -> Contact {
+    let foot = Foot {
+        normal: (*normal).into(),
+        normal_before: (*normal).into(),
+        distance_m: particles.poses[i].radius_m() - overlap_m,
+        velocity_m_s: Triple(0.0, 0.0, 0.0),
+        spin_rad_s: Triple(0.0, 0.0, 0.0),
+    };
+    touch_at_wall(&foot, particles.ball_at_rest(i), 0.0)
+}
+
 /// Elastic energy of something that touches a wall, as it was taken down, J.
 pub fn touch_energy_j(
     wall: &Wall,
@@ -327,17 +338,8 @@ fn stored_j(
     particles: &Particles,
     old: &WallTouch,
 ) -> f64 {
-    let (ball, memory) = (particles.ball_at_rest(old.particle as usize), &old.memory);
-    let none = Triple(0.0, 0.0, 0.0);
-    let normal = Vector3::from(old.normal).into();
-    let foot = Foot {
-        normal,
-        normal_before: normal,
-        distance_m: ball.radius_m - memory.overlap_m(),
-        velocity_m_s: none,
-        spin_rad_s: none,
-    };
-    let mut touch = touch_at_wall(&foot, ball, 0.0);
+    let (i, memory) = (old.particle as usize, &old.memory);
+    let mut touch = wall_touch(particles, i, &old.normal.into(), memory.overlap_m());
     touch.overlap_m = memory.overlap_m();
     stored_energy_j(law, rolling, &touch, memory)
 }

@@ -1,13 +1,15 @@
 //! Rigid clumps: bodies that move as one, and what they are made of.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
-use super::particles::{Motion, Particles, Pose};
+use super::particles::{Motion, Particles, Pose, Wrench};
 use crate::physics::rotation::{kinetic_j, spin_rad_s};
+use crate::shape::inertia::MassProperties;
 
 /// A sphere of a template.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -22,6 +24,29 @@ pub struct SubSphere {
     pub mass_kg: f64,
     /// Moment of inertia, kg m2, as a particle of the bonded cluster.
     pub inertia_kg_m2: f64,
+}
+
+/// The spheres of a rigid body whose mass properties are these, from particles as they stand.
+pub fn sub_spheres<'a>(
+    particles: impl Iterator<Item = (&'a Pose, &'a Motion)>,
+    properties: &MassProperties,
+) -> Vec<SubSphere> {
+    let to_principal = rotation(properties.axes).inverse();
+    let centre = Vector3::from(properties.centre_m);
+    let sphere = |(pose, motion): (&Pose, &Motion)| SubSphere {
+        place_m: (to_principal * (pose.place() - centre)).into(),
+        turned: numbers(&(to_principal * pose.rotation())),
+        radius_m: pose.radius_m(),
+        mass_kg: 1.0 / motion.inverse_mass,
+        inertia_kg_m2: 1.0 / motion.inverse_inertia,
+    };
+    particles.map(sphere).collect()
+}
+
+/// Largest distance of a point of these spheres from the centre of mass, m.
+pub fn reach_m(spheres: &[SubSphere]) -> f64 {
+    let reach = |s: &SubSphere| Vector3::from(s.place_m).norm() + s.radius_m;
+    spheres.iter().map(reach).fold(0.0, f64::max)
 }
 
 /// Strengths that vary from bond to bond.
@@ -131,7 +156,13 @@ impl Template {
         }
     }
 
-    /// Mass over mass of the spheres that are in the scene, for contacts: as inverse mass and inverse moment of inertia of all of it.
+    /// The particles that a clump of it carries whose first is this.
+    pub fn spheres_from(&self, first: u32) -> Range<usize> {
+        let first = first as usize;
+        first..first + self.outer.len()
+    }
+
+    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): what contacts are told of each of its spheres.
     pub fn inert(&self) -> [f64; 2] {
         let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
         [1.0 / self.mass_kg, 1.0 / mean]
@@ -171,12 +202,28 @@ impl Clumps {
         &self.templates[clump.template as usize]
     }
 
-    /// Number of spheres that clumps carry.
-    pub fn spheres(&self) -> usize {
-        self.all
-            .iter()
-            .map(|clump| self.template(clump).outer.len())
-            .sum()
+    /// The particles that a clump carries.
+    pub fn spheres_of(&self, clump: &Clump) -> Range<usize> {
+        self.template(clump).spheres_from(clump.first)
+    }
+
+    /// Number of the clump that carries a particle. None: it moves by itself.
+    pub fn carrier_of(&self, particle: usize) -> Option<usize> {
+        let after = self
+            .all
+            .partition_point(|clump| clump.first as usize <= particle);
+        after.checked_sub(1)
+    }
+
+    /// Takes spheres, rising, as those that are near something, and tells each clump which are its own.
+    pub fn set_near(&mut self, near: Vec<u32>) {
+        for clump in &mut self.all {
+            let Range { start, end } =
+                self.templates[clump.template as usize].spheres_from(clump.first);
+            clump.near =
+                [start, end].map(|i| near.partition_point(|&sphere| (sphere as usize) < i) as u32);
+        }
+        self.near = near;
     }
 
     /// Mass of all, kg.
@@ -205,9 +252,7 @@ impl Clumps {
                 .motions
                 .push(clump.motion_at(template, &pose.place()));
             particles.poses.push(pose);
-            particles
-                .wrenches
-                .push(crate::state::particles::Wrench::default());
+            particles.wrenches.push(Wrench::default());
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Particles: one entry per sphere in every array.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::physics::contact::touch::Ball;
 use crate::physics::number::Triple;
+use crate::state::clumps::rotation;
 
 /// Where a particle is and how it is turned. One cache line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -39,8 +40,7 @@ impl Pose {
     /// Rotation since the start.
     #[inline(always)]
     pub fn rotation(&self) -> UnitQuaternion<f64> {
-        let [x, y, z, w] = self.turned;
-        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+        rotation(self.turned)
     }
 }
 

@@ -80,12 +80,8 @@ impl Wall {
         if matches!(self.shape, Shape::Plane(_)) {
             return self.shape.bounds();
         }
-        let Bounds { low, high } = self.shape.bounds();
-        let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|n: usize| {
-            let corner = [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] });
-            self.frame.to_space(corner)
-        });
-        Bounds::of(corners)
+        let corners = self.shape.bounds().corners();
+        Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
     }
 
     /// How it meets a material of this number, which it is known to meet.

@@ -9,8 +9,15 @@ use crate::{Surface, add_tiles, apart, mesh, touches};
 type Vector = Vector3<f64>;
 
 /// Points nearer than all surface around them, found without any tolerance: over a face; over an edge from which every triangle at it leads away; over a
-/// vertex from which every edge at it leads away. For places in general position.
-fn everything((vertices, triangles): &Surface, c: Vector, reach: f64) -> Vec<(Vector, bool)> {
+/// vertex from which every edge at it leads away.
+///
+/// None: not in general position. The foot on an edge is so near to an end of it that the least point there is none for who rounds, if beyond the end the
+/// surface comes nearer.
+fn everything(
+    (vertices, triangles): &Surface,
+    c: Vector,
+    reach: f64,
+) -> Option<Vec<(Vector, bool)>> {
     let at = |v: u32| Vector::from(vertices[v as usize]);
     let mut found: Vec<(Vector, bool)> = Vec::new();
     for [a, b, d] in triangles {
@@ -31,6 +38,10 @@ fn everything((vertices, triangles): &Surface, c: Vector, reach: f64) -> Vec<(Ve
     for [a, b] in &edges {
         let (p, q) = (at(*a), at(*b));
         let share = (c - p).dot(&(q - p)) / (q - p).norm_squared();
+        let to_ends_m = [share, 1.0 - share].map(|s| s.abs() * (q - p).norm());
+        if to_ends_m[0].min(to_ends_m[1]) < 4e-9 * reach {
+            return None;
+        }
         if share <= 0.0 || share >= 1.0 {
             continue;
         }
@@ -70,13 +81,15 @@ fn everything((vertices, triangles): &Surface, c: Vector, reach: f64) -> Vec<(Ve
             kept.push((p, is_face));
         }
     }
-    kept
+    Some(kept)
 }
 
 fn assert_finds_everything(surface: &Surface, centres: &[[f64; 3]], reach: f64) {
     let shape = Shape::Mesh(mesh(surface));
     for centre in centres {
-        let wanted = everything(surface, Vector::from(*centre), reach);
+        let Some(wanted) = everything(surface, Vector::from(*centre), reach) else {
+            continue;
+        };
         let mut found: Vec<Touch> = touches(&shape, *centre, reach);
         found.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
         assert_eq!(
@@ -129,6 +142,37 @@ proptest! {
             .collect();
         prop_assume!(!triangles.is_empty());
         assert_finds_everything(&(vertices, triangles), &centres, reach);
+    }
+}
+
+/// A ridge that rises to a peak, beyond which a slope leads to a nearer point. Over the ridge, all points nearer to the peak than rounding counts are passed
+/// over for that slope; a little farther down they are touches of their own.
+#[test]
+fn next_to_a_peak_only_what_stands_out_is_touched() {
+    let vertices = vec![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.5, 1.0, -1.0],
+        [0.5, -1.0, -1.0],
+        [-1.0, 0.5, 0.5],
+        [-1.0, -0.5, 0.5],
+    ];
+    let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 4, 5]];
+    let shape = Shape::Mesh(mesh(&(vertices.clone(), triangles.clone())));
+    let points = |x: f64| -> Vec<[f64; 3]> {
+        let found = touches(&shape, [x, 0.0, 0.5], 0.6);
+        found.iter().map(|touch| touch.point).collect()
+    };
+    for x in [1e-3, 1e-6, 1e-8, 4e-9] {
+        assert_eq!(points(x).len(), 2, "{x}: {:?}", points(x));
+        let surface = (vertices.clone(), triangles.clone());
+        assert_finds_everything(&surface, &[[x, 0.0, 0.5]], 0.6);
+    }
+    for x in [4e-10, 1e-12, 0.0, -1e-9, -1e-3] {
+        let [nearest] = points(x)[..] else {
+            panic!("{x}: {:?}", points(x));
+        };
+        assert!(apart(nearest, [-0.2, 0.0, 0.1]) < 1e-2, "{nearest:?}");
     }
 }
 
