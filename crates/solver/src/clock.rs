@@ -1,4 +1,4 @@
-//! Where the time of a run goes: one step in `EVERY` is timed stage by stage.
+//! Where the time of a run goes: one step in `EVERY` is timed stage by stage; what is written down is timed always.
 
 use std::time::{Duration, Instant};
 
@@ -20,17 +20,23 @@ pub enum Stage {
     Rest,
     /// Kick and drift.
     Motion,
+    /// Triggers, replacement, inlets and outlets.
+    Replacement,
+    /// Measures, checks, files and pictures.
+    Output,
 }
 
 impl Stage {
     /// All, in the order of the table.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Bonds,
         Self::Contacts,
         Self::Clusters,
         Self::Damping,
         Self::Motion,
+        Self::Replacement,
         Self::Rest,
+        Self::Output,
     ];
 
     /// For a person.
@@ -42,6 +48,8 @@ impl Stage {
             Self::Damping => "damping",
             Self::Rest => "rest",
             Self::Motion => "motion",
+            Self::Replacement => "replacement",
+            Self::Output => "output",
         }
     }
 }
@@ -49,7 +57,7 @@ impl Stage {
 /// Times of the stages in the steps that were timed.
 #[derive(Debug, Clone, Default)]
 pub struct StageClock {
-    times: [Duration; 6],
+    times: [Duration; 8],
     since: Option<Instant>,
 }
 
@@ -66,6 +74,11 @@ impl StageClock {
             self.times[stage as usize] += now - since;
             self.since = Some(now);
         }
+    }
+
+    /// Books a time of the whole run, not of one step in so many, as output.
+    pub fn book_output(&mut self, time: Duration) {
+        self.times[Stage::Output as usize] += time / EVERY as u32;
     }
 
     /// Share of a stage in all that was timed, 0 to 1; 0 if nothing was.

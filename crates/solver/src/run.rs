@@ -214,7 +214,10 @@ pub fn run(
         let picture_due = (files.as_ref())
             .and_then(|files| files.pictures.as_ref())
             .is_some_and(|pictures| pictures.are_due(&state));
-        if row_due || frame_due || checkpoint_due || picture_due || watchdog.is_due(&state) {
+        let output_due =
+            row_due || frame_due || checkpoint_due || picture_due || watchdog.is_due(&state);
+        let output_since = output_due.then(Instant::now);
+        if output_due {
             place_all(&state.clumps, &mut state.particles);
         }
         let mut rests = false;
@@ -268,6 +271,10 @@ pub fn run(
             };
             break (why, balance);
         }
+        if let Some(since) = output_since {
+            state.clock.book_output(since.elapsed());
+        }
+        state.clock.start(state.steps);
         if let Some((renumbered, happened)) = replace(&mut state) {
             for by in &renumbered {
                 renumber(&mut bodies, by);
@@ -278,6 +285,7 @@ pub fn run(
                 files.order = FrameOrder::new(&bodies, &state);
             }
         }
+        state.clock.book(Stage::Replacement);
         move_on(&mut state);
 
         if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {

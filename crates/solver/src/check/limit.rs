@@ -44,7 +44,7 @@ pub struct Limit {
 /// raises by its share of it: K counts 1 + gamma times.
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. Contacts count at the overlap that they have, stuck.
-/// The wrenches of the state are overwritten.
+/// The wrenches of particles that move by themselves are overwritten; spheres of clumps have none afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS);
@@ -69,10 +69,14 @@ pub fn limit(state: &mut State) -> Limit {
         damping_1_s: c,
         iterations,
     };
-    Limit {
+    let limit = Limit {
         step_s: of_particles.with_more(clump_rates(state, contacts)),
         ..of_particles
-    }
+    };
+    // Those of other particles begin anew in each step; what acts on spheres of clumps is added to what is there.
+    let free = state.particles.free;
+    state.particles.wrenches[free..].fill(Wrench::default());
+    limit
 }
 
 /// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2 + 4 k))/k, written so that nothing cancels.

@@ -207,9 +207,10 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     let p = &state.particles;
     let materials = contacts.kind_of.len().isqrt();
     let mut largest = [0.0_f64; 3];
-    let mut take = |kind: &ContactKind, i: usize, at_wall: bool| {
+    let mut take = |kind: &ContactKind, i: usize, inverse_kg: f64, at_wall: bool| {
         let n = Vector3::x();
-        let overlap_m = overlap_at_impact_m(kind, p, i, speed_m_s, at_wall);
+        let radius_m = p.poses[i].radius_m();
+        let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
         let touch = if at_wall {
             wall_touch(p, i, &n, overlap_m)
         } else {
@@ -217,7 +218,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
             touch(apart, [p.ball_at_rest(i); 2], 0.0)
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
-        let per_mass = ends * p.motions[i].inverse_mass;
+        let per_mass = ends * inverse_kg;
         let answer = answer(kind, &touch);
         let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
         let damping = answer
@@ -227,56 +228,71 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         largest[1] = largest[1].max(per_mass * damping);
         largest[2] = largest[2].max(per_mass * answer.normal_n_m);
     };
-    for i in smallest_by_material(state) {
+    for (i, inverse_kg) in first_to_hit(state) {
         let material = usize::from(contacts.materials[i]);
         let row = &contacts.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
             if let Some(kind) = contacts.kinds.get(usize::from(kind)) {
-                take(kind, i, false);
+                take(kind, i, inverse_kg, false);
             }
         }
         for wall in &state.walls {
             if let Some(kind) = wall.kinds.get(usize::from(wall.kind_of[material])) {
-                take(kind, i, true);
+                take(kind, i, inverse_kg, true);
             }
         }
     }
     largest
 }
 
-/// The smallest particle of each material, on which impacts are fastest.
-fn smallest_by_material(state: &State) -> Vec<usize> {
-    let mut smallest: Vec<Option<usize>> = Vec::new();
+/// Those on which impacts are fastest, with the inverse of the mass that each moves, 1/kg: of particles that move by themselves the smallest of each material; of
+/// the clumps of each template a largest sphere, as if it stood at the end of the longest lever.
+fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();
     };
-    let radius = |i: usize| state.particles.poses[i].radius_m();
-    for (i, &material) in contacts.materials.iter().enumerate() {
-        let material = usize::from(material);
-        if smallest.len() <= material {
-            smallest.resize(material + 1, None);
+    let p = &state.particles;
+    let radius = |i: &usize| p.poses[*i].radius_m();
+    let mut found: Vec<Option<usize>> = Vec::new();
+    for i in 0..p.free {
+        let material = usize::from(contacts.materials[i]);
+        if found.len() <= material {
+            found.resize(material + 1, None);
         }
-        if smallest[material].is_none_or(|other| radius(i) < radius(other)) {
-            smallest[material] = Some(i);
+        if found[material].is_none_or(|other| radius(&i) < radius(&other)) {
+            found[material] = Some(i);
         }
     }
-    smallest.into_iter().flatten().collect()
+    let mut found: Vec<(usize, f64)> = (found.into_iter().flatten())
+        .map(|i| (i, p.motions[i].inverse_mass))
+        .collect();
+    let mut seen = vec![false; state.clumps.templates.len()];
+    for clump in &state.clumps.all {
+        if !std::mem::replace(&mut seen[clump.template as usize], true) {
+            let spheres = state.clumps.spheres_of(clump);
+            let template = state.clumps.template(clump);
+            let [x, y, z] = template.moments_kg_m2;
+            let levers = template.spheres.iter();
+            let levers = levers.map(|sphere| Vector3::from(sphere.place_m).norm_squared());
+            let inverse_kg = 1.0 / template.mass_kg + levers.fold(0.0, f64::max) / x.min(y).min(z);
+            let largest = spheres.max_by(|a, b| radius(a).total_cmp(&radius(b)));
+            found.extend(largest.map(|i| (i, inverse_kg)));
+        }
+    }
+    found
 }
 
 fn overlap_at_impact_m(
     kind: &ContactKind,
-    particles: &Particles,
-    i: usize,
+    radius_m: f64,
+    inverse_kg: f64,
     speed_m_s: f64,
     at_wall: bool,
 ) -> f64 {
     let half = if at_wall { 1.0 } else { 0.5 };
-    let mass_kg = half / particles.motions[i].inverse_mass;
+    let mass_kg = half / inverse_kg;
     match &kind.law {
-        Law::HertzMindlin(law) => {
-            let radius_m = half * particles.poses[i].radius_m();
-            law.overlap_at_impact_m(radius_m, mass_kg, speed_m_s)
-        }
+        Law::HertzMindlin(law) => law.overlap_at_impact_m(half * radius_m, mass_kg, speed_m_s),
         Law::Linear(law) => speed_m_s * (mass_kg / law.normal_n_m).sqrt(),
     }
 }

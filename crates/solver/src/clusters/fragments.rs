@@ -71,16 +71,33 @@ fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment
     }
 }
 
-fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Motion]) -> Fragment {
+/// Mass, kg, and centre of mass, m, of some particles.
+pub fn mass_and_centre(members: &[u32], particles: &Particles) -> (f64, Vector3<f64>) {
+    let place = |i: u32| particles.poses[i as usize].place();
+    // Relative to one of them, so that a place far from the origin costs no digits.
+    let origin = members.first().map_or(Vector3::zeros(), |i| place(*i));
+    let (mut mass_kg, mut moment) = (0.0, Vector3::zeros());
+    for &i in members {
+        let own_kg = 1.0 / particles.motions[i as usize].inverse_mass;
+        mass_kg += own_kg;
+        moment += own_kg * (place(i) - origin);
+    }
+    (mass_kg, origin + moment / mass_kg)
+}
+
+/// A cluster that is no clump, with these motions of all particles. Length of `motions`: particles.
+pub fn fragment(
+    id: u32,
+    clusters: &Clusters,
+    particles: &Particles,
+    motions: &[Motion],
+) -> Fragment {
     let members = clusters.members(id);
     let place = |i: u32| particles.poses[i as usize].place();
     let mass = |i: u32| 1.0 / particles.motions[i as usize].inverse_mass;
     let velocity = |i: u32| Vector3::from(motions[i as usize].velocity_m_s);
 
-    // Relative to one of them, so that a place far from the origin costs no digits.
-    let origin = members.first().map_or(Vector3::zeros(), |i| place(*i));
-    let mut mass_kg = 0.0;
-    let mut centre = Vector3::zeros();
+    let (mass_kg, centre) = mass_and_centre(members, particles);
     let mut momentum = Vector3::zeros();
     let mut force = Vector3::zeros();
     let mut cubes = 0.0;
@@ -88,8 +105,6 @@ fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Moti
     let mut high = Vector3::repeat(f64::NEG_INFINITY);
     for &i in members {
         let radius = particles.poses[i as usize].radius_m();
-        mass_kg += mass(i);
-        centre += mass(i) * (place(i) - origin);
         momentum += mass(i) * velocity(i);
         let [x, y, z, _] = particles.wrenches[i as usize].force_n;
         force += Vector3::new(x, y, z);
@@ -97,7 +112,6 @@ fn fragment(id: u32, clusters: &Clusters, particles: &Particles, motions: &[Moti
         low = low.inf(&place(i).add_scalar(-radius));
         high = high.sup(&place(i).add_scalar(radius));
     }
-    let centre = origin + centre / mass_kg;
     let mean_velocity = momentum / mass_kg;
 
     let mut inertia = Matrix3::zeros();

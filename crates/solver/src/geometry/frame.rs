@@ -37,6 +37,13 @@ impl Frame {
             .into()
     }
 
+    /// The same for many points.
+    pub fn all_to_wall(&self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
+        let rotation = self.rotation().inverse().to_rotation_matrix();
+        let origin = Vector3::from(self.position_m);
+        move |point| (rotation * (Vector3::from(point) - origin)).into()
+    }
+
     /// A point of the wall's frame in space, m.
     pub fn to_space(&self, point: [f64; 3]) -> [f64; 3] {
         (Vector3::from(self.direction_to_space(point)) + Vector3::from(self.position_m)).into()

@@ -58,10 +58,10 @@ impl StepChoice {
 /// A given step above the limit, unless any step is allowed.
 pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
     let run = &scene.run;
-    let mut bonded = as_clusters(state);
-    let limit = match &mut bonded {
-        Some(bonded) => {
-            let (now, later) = (limit(state), limit(bonded));
+    let mut to_come = to_come(state);
+    let limit = match &mut to_come {
+        Some(to_come) => {
+            let (now, later) = (limit(state), limit(to_come));
             if later.step_s < now.step_s {
                 later
             } else {
@@ -78,7 +78,9 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         ));
     }
     let impact_speed_m_s = impact_speed(scene, state);
-    let [k, c, rate] = at_impact(bonded.as_ref().unwrap_or(state), impact_speed_m_s);
+    let now = at_impact(state, impact_speed_m_s);
+    let later = (to_come.as_ref()).map_or(now, |state| at_impact(state, impact_speed_m_s));
+    let [k, c, rate] = [0, 1, 2].map(|n| now[n].max(later[n]));
     let foreseen_s = limit.with_more([k, c]);
     let step_s = match run.time_step_s {
         Some(given) => {
@@ -116,16 +118,15 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
     })
 }
 
-/// One bonded cluster of each template, which stand where they do not touch: what the step has to be right for once clumps are replaced. None: no clump can
-/// become a cluster.
-fn as_clusters(state: &State) -> Option<State> {
+/// One body of each template, bonded if its clumps can become clusters: what the step has to be right for later. They stand where they do not touch. None:
+/// there are no templates.
+fn to_come(state: &State) -> Option<State> {
     let becomes_one = |n: usize| {
         let starts = state.rules.starts.get(n).is_some_and(|start| start.bonded);
         starts || state.rules.triggers.get(n).is_some_and(Option::is_some)
     };
     let templates = &state.clumps.templates;
     let coming: Vec<Clump> = (0..templates.len())
-        .filter(|&n| becomes_one(n))
         .map(|n| Clump {
             template: n as u32,
             turned: [0.0, 0.0, 0.0, 1.0],
@@ -151,7 +152,7 @@ fn as_clusters(state: &State) -> Option<State> {
         kind_of: contacts.kind_of.clone(),
         ..Contacts::default()
     });
-    let to_clusters = (0..coming.len()).collect();
+    let to_clusters = (0..coming.len()).filter(|n| becomes_one(*n)).collect();
     let come = Changes {
         coming,
         ..Changes::default()

@@ -5,7 +5,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::population::{Changes, Renumbered, change};
 use super::restoring::restore;
 use crate::check::ledger::synchronous_motions;
-use crate::clusters::{Fragment, fragments};
+use crate::clusters::fragments::mass_and_centre;
 use crate::physics::random::uniform;
 use crate::stages::clumps::synchronous;
 use crate::state::State;
@@ -366,24 +366,37 @@ fn leaving(state: &mut State, happened: &mut Vec<Happened>) -> Vec<u32> {
     let Some(clusters) = &state.clusters else {
         return leaving;
     };
-    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, None);
     let mut outlets = std::mem::take(&mut state.rules.outlets);
-    for fragment in &all {
+    for id in clusters.living() {
+        let members = clusters.members(id);
+        let carrier = members
+            .first()
+            .and_then(|&i| state.clumps.carrier_of(i as usize));
+        let (mass_kg, place_m) = match carrier {
+            Some(n) => {
+                let clump = &state.clumps.all[n];
+                (state.clumps.template(clump).mass_kg, clump.place_m)
+            }
+            None => {
+                let (mass_kg, centre) = mass_and_centre(members, &state.particles);
+                (mass_kg, centre.into())
+            }
+        };
         let goes = outlets.iter_mut().find(|outlet| {
-            let inside = state.rules.regions[outlet.region].contains(fragment.centre_m);
+            let inside = state.rules.regions[outlet.region].contains(place_m);
             inside != outlet.removes_outside
         });
         let Some(outlet) = goes else {
             continue;
         };
         outlet.gone.0 += 1;
-        outlet.gone.1 += fragment.mass_kg;
-        leaving.push(fragment.id);
+        outlet.gone.1 += mass_kg;
+        leaving.push(id);
         happened.push(Happened::Left {
-            cluster: fragment.id,
+            cluster: id,
             outlet: outlet.name.clone(),
-            mass_kg: fragment.mass_kg,
-            place_m: fragment.centre_m,
+            mass_kg,
+            place_m,
         });
     }
     state.rules.outlets = outlets;

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::population::{Changes, Renumbered, change};
 use super::replacement::Happened;
 use crate::check::ledger::synchronous_motions;
-use crate::clusters::{Fragment, fragments};
+use crate::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
@@ -18,7 +18,6 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
 use crate::state::particles::Motion;
-use crate::state::rules::Restore;
 
 /// Clusters are looked at once in so many steps.
 const EVERY: u64 = 200;
@@ -30,49 +29,44 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
         return None;
     }
     let clusters = state.clusters.as_ref()?;
+    let outside: Vec<(u32, usize, u32)> = (clusters.living())
+        .filter_map(|id| outside(id, state).map(|(base, instance)| (id, base, instance)))
+        .collect();
+    if outside.is_empty() {
+        return None;
+    }
     // Energies are those of the moment of the places: between particles they change within a step.
     let motions = synchronous_motions(state);
-    let now = Some((&motions[..], &state.clumps.all[..]));
-    let all: Vec<Fragment> = fragments(clusters, &state.particles, &state.clumps, now);
+    let clusters = state.clusters.as_ref()?;
     let mut to_clumps = Vec::new();
     let mut happened = Vec::new();
     let mut gained_j = 0.0;
-    for fragment in &all {
-        let members = clusters.members(fragment.id);
-        let is_clump = members
-            .first()
-            .is_none_or(|&i| i as usize >= state.particles.free);
-        if is_clump {
-            continue;
-        }
-        let Some((base, instance)) = base_of(fragment.id, state) else {
-            continue;
-        };
+    for (id, base, instance) in outside {
         let Some(rule) = &state.rules.restores[base] else {
             continue;
         };
-        let inner_j = inner_kinetic_j(fragment, members, &motions, state);
+        let fragment = fragment(id, clusters, &state.particles, &motions);
+        let members = clusters.members(id);
+        let inner_j = inner_kinetic_j(&fragment, members, &motions, state);
+        if 2.0 * inner_j >= rule.inner_speed_m_s.powi(2) * fragment.mass_kg {
+            continue;
+        }
+        let poses = &state.particles.poses;
         let strain_j: f64 = (own_bonds(members, state).into_iter())
-            .map(|at| {
-                state
-                    .bonds
-                    .forces(at, &state.particles.poses)
-                    .energy
-                    .total()
-            })
+            .map(|at| state.bonds.forces(at, poses).energy.total())
             .sum();
-        if !is_quiet(rule, fragment, inner_j, strain_j, state) {
+        if strain_j >= rule.strain_energy_j_kg * fragment.mass_kg {
             continue;
         }
         gained_j -= inner_j.max(0.0) + strain_j;
         happened.push(Happened::Restored {
-            cluster: fragment.id,
+            cluster: id,
             body: state.clumps.templates[base].body.clone(),
             particles: fragment.particles,
             lost_j: inner_j.max(0.0) + strain_j,
             place_m: fragment.centre_m,
         });
-        to_clumps.push((fragment.id, base, instance));
+        to_clumps.push((id, base, instance));
     }
     if to_clumps.is_empty() {
         return None;
@@ -108,17 +102,21 @@ fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
     }
 }
 
-fn is_quiet(
-    rule: &Restore,
-    fragment: &Fragment,
-    inner_j: f64,
-    strain_j: f64,
-    state: &State,
-) -> bool {
-    fragment.particles >= rule.min_particles
-        && !state.rules.regions[rule.leaves].contains(fragment.centre_m)
-        && strain_j < rule.strain_energy_j_kg * fragment.mass_kg
-        && 2.0 * inner_j < rule.inner_speed_m_s.powi(2) * fragment.mass_kg
+/// The template and the instance of the body that a cluster comes from, if the cluster is large enough to be a clump again and has left the region.
+fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
+    let members = state.clusters.as_ref()?.members(id);
+    let p = &state.particles;
+    if *members.first()? as usize >= p.free {
+        return None;
+    }
+    let (base, instance) = base_of(id, state)?;
+    let rule = state.rules.restores[base].as_ref()?;
+    if members.len() < rule.min_particles as usize {
+        return None;
+    }
+    let (_, centre) = mass_and_centre(members, p);
+    let has_left = !state.rules.regions[rule.leaves].contains(centre.into());
+    has_left.then_some((base, instance))
 }
 
 /// Kinetic energy that a cluster has beyond that of a rigid body with its momenta, J.

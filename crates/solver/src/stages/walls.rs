@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::loads::factor_at;
-use crate::geometry::Touch;
+use crate::geometry::{Frame, Touch};
 use crate::physics::contact::Damped;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::NoRolling;
@@ -15,7 +15,7 @@ use crate::physics::number::Triple;
 use crate::physics::rigid::turn;
 use crate::stages::contacts::stored_energy_j;
 use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
-use crate::state::particles::Particles;
+use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Push, Wall, WallTouch};
 
 /// Particles handled by one task.
@@ -30,13 +30,14 @@ pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
         let bounds = wall.shape.bounds();
         let in_space = wall.bounds_in_space();
+        let to_wall = wall.frame.all_to_wall();
         let is_near = |i: &u32| {
             let pose = &particles.poses[*i as usize];
             let reach = pose.radius_m() + skin_m;
             if !in_space.is_near(&pose.place().into(), reach) {
                 return false;
             }
-            let centre = wall.frame.to_wall(pose.place().into());
+            let centre = to_wall(pose.place().into());
             let mut found = Vec::new();
             if bounds.is_near(&centre, reach) {
                 wall.shape.touches(centre, reach, &mut found);
@@ -66,18 +67,31 @@ pub fn wall_wrenches(
     } = contacts;
     for wall in walls {
         let known = &*particles;
+        let to_wall = wall.frame.all_to_wall();
+        let bounds = wall.shape.bounds();
         let of_chunk = |some: &[u32]| {
-            let mut found = Vec::new();
+            let (mut found, mut touches) = (Vec::new(), Vec::new());
+            let first = some.first().copied().unwrap_or(0);
+            let first = wall.touching.partition_point(|old| old.particle < first);
+            let mut old = &wall.touching[first..];
             for &particle in some {
-                meet(
-                    wall,
-                    materials,
-                    known,
-                    particle,
-                    *least_overlap,
-                    dt,
-                    &mut found,
-                );
+                let passed = old.iter().take_while(|old| old.particle < particle);
+                old = &old[passed.count()..];
+                let own = old.iter().take_while(|old| old.particle == particle);
+                let before = &old[..own.count()];
+                let pose = &known.poses[particle as usize];
+                let centre = to_wall(pose.place().into());
+                touches.clear();
+                if bounds.is_near(&centre, pose.radius_m()) {
+                    wall.shape.touches(centre, pose.radius_m(), &mut touches);
+                }
+                if !touches.is_empty() || !before.is_empty() {
+                    let kind = wall.kind(materials[particle as usize]);
+                    let at = |there: &Touch, old: Option<&WallTouch>| {
+                        meet_at(wall, kind, known, particle, there, old, *least_overlap, dt)
+                    };
+                    meet(&wall.frame, pose, &touches, before, &at, &mut found);
+                }
             }
             found
         };
@@ -142,42 +156,20 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     }
 }
 
-/// Finds where a particle touches a wall, and what comes of it.
+/// What comes of the `touches` of a particle, in the wall's frame, and of those that have ended.
 fn meet(
-    wall: &Wall,
-    materials: &[u8],
-    particles: &Particles,
-    particle: u32,
-    least_overlap: f64,
-    dt: f64,
+    frame: &Frame,
+    pose: &Pose,
+    touches: &[Touch],
+    before: &[WallTouch],
+    at: &dyn Fn(&Touch, Option<&WallTouch>) -> Met,
     found: &mut Vec<Met>,
 ) {
-    let i = particle as usize;
-    let pose = &particles.poses[i];
-    let mut touches = Vec::new();
-    let centre = wall.frame.to_wall(pose.place().into());
-    wall.shape.touches(centre, pose.radius_m(), &mut touches);
-    let first = wall.touching.partition_point(|old| old.particle < particle);
-    let before = &wall.touching[first..];
-    let before = &before[..before.partition_point(|old| old.particle == particle)];
-    let kind = wall.kind(materials[i]);
-    let at = |there: &Touch, old: Option<&WallTouch>| {
-        meet_at(
-            wall,
-            kind,
-            particles,
-            particle,
-            there,
-            old,
-            least_overlap,
-            dt,
-        )
-    };
     let first_found = found.len();
-    for touch in &touches {
-        let there = wall.frame.touch_to_space(touch);
+    for touch in touches {
+        let there = frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
-        let old = remembered(before, &touches, touch, &normal);
+        let old = remembered(before, touches, touch, &normal);
         found.push(at(&there, old));
     }
     // What has ended has its losses still to be booked.

@@ -36,7 +36,7 @@ fn busy(threads: usize) -> Plan {
 }
 
 /// All that a run goes on from or tells.
-fn same(a: &State, b: &State) -> bool {
+pub(crate) fn same(a: &State, b: &State) -> bool {
     let rules = |s: &State| {
         let come: Vec<_> = s.rules.inlets.iter().map(|inlet| inlet.come).collect();
         let gone: Vec<_> = s.rules.outlets.iter().map(|outlet| outlet.gone).collect();

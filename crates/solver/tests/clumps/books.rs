@@ -39,11 +39,7 @@ pub(crate) struct Books {
 
 pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
     let Plan { mut state, .. } = planned(text);
-    assert!(
-        time_step_s < 0.5 * state.time_step_s,
-        "{:e}",
-        state.time_step_s
-    );
+    assert!(time_step_s <= state.time_step_s, "{:e}", state.time_step_s);
     state.time_step_s = time_step_s;
     let mut books = Books {
         worst: [0.0; 3],

@@ -18,6 +18,7 @@ mod regions;
 mod rest;
 mod restored;
 mod rigid;
+mod step_limit;
 mod swap;
 mod triggers;
 

@@ -9,6 +9,8 @@ mod band;
 mod light;
 mod shade;
 
+use rayon::prelude::*;
+
 use super::camera::Camera;
 use super::image::Image;
 use super::surface::{Surface, Triangle};
@@ -83,16 +85,18 @@ pub fn render(camera: &Camera, balls: &[Ball], walls: &[Surface]) -> Image {
         range(face.corners.map(|c| c[1]))
     });
     let of_lines = by_band(&scene.lines, bands, |line| range(line.map(|c| c[1])));
-    let mut band = Band::new(width as usize);
-    let rows = image.rgb_mut().chunks_mut(3 * ROWS * width as usize);
-    for (index, pixels) in rows.enumerate() {
-        band.clear(index);
-        band.add_bodies(&scene, &of_bodies[index]);
-        band.add_faces(&scene, &of_faces[index]);
-        band.resolve(&scene);
-        band.add_lines(&scene, &of_lines[index]);
-        band.write(pixels);
-    }
+    let rows = (image.rgb_mut()).par_chunks_mut(3 * ROWS * width as usize);
+    rows.enumerate().for_each_init(
+        || Band::new(width as usize),
+        |band, (index, pixels)| {
+            band.clear(index);
+            band.add_bodies(&scene, &of_bodies[index]);
+            band.add_faces(&scene, &of_faces[index]);
+            band.resolve(&scene);
+            band.add_lines(&scene, &of_lines[index]);
+            band.write(pixels);
+        },
+    );
     image
 }
 
@@ -105,9 +109,9 @@ impl Scene {
             .filter_map(|triangle| corners(camera, triangle))
             .collect();
         let lights = Lights::new(&bodies, &triangles, camera);
-        for body in &mut bodies {
-            body.sky = lights.sky_of(body);
-        }
+        bodies
+            .par_iter_mut()
+            .for_each(|body| body.sky = lights.sky_of(body));
         let lines = walls.iter().flat_map(|wall| lines(camera, wall));
         Self {
             faces: walls.iter().flat_map(|wall| faces(camera, wall)).collect(),

@@ -81,6 +81,8 @@ pub(super) fn write(image: &mut Image, text: &str, at: [f64; 2], size: f64, colo
 pub(super) fn stroke(image: &mut Image, strokes: &[Stroke], width: f64, colour: [u8; 3]) {
     let halo = (HALO * width).max(1.5);
     let reach = 0.5 * width + halo + 1.0;
+    let longest = strokes.iter().map(|[a, b]| (a[0] - b[0]).abs());
+    let far = reach + longest.fold(0.0, f64::max);
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for point in strokes.iter().flatten() {
@@ -103,8 +105,12 @@ pub(super) fn stroke(image: &mut Image, strokes: &[Stroke], width: f64, colour: 
             let here = [x as f64 + 0.5, y as f64 + 0.5];
             let square = row
                 .iter()
+                .filter(|ends| ends.iter().any(|end| (end[0] - here[0]).abs() < far))
                 .map(|ends| distance_squared(here, ends))
                 .fold(f64::INFINITY, f64::min);
+            if square > reach * reach {
+                continue;
+            }
             let off = square.sqrt() - 0.5 * width;
             let border = ((halo - off) / halo + 0.5).clamp(0.0, 1.0);
             image.blend(x, y, [255; 3], HALO_OPACITY * border);

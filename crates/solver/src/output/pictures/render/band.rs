@@ -231,6 +231,12 @@ impl Band {
         for row in 0..ROWS {
             for column in 0..self.width {
                 let samples = self.of_pixel(column, row);
+                let is_empty =
+                    |(at, _): &(usize, _)| self.body[*at] == NONE && self.count[*at] == 0;
+                if samples.iter().all(is_empty) {
+                    self.light[row * self.width + column] = [1.0; 3];
+                    continue;
+                }
                 let place = [column as f32, self.top as f32 + row as f32];
                 shaded.clear();
                 let mut sum = [0.0; 3];

@@ -2,6 +2,8 @@
 //!
 //! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the wall begins, which is fainter and falls on walls only.
 
+use rayon::prelude::*;
+
 use super::band::crossings;
 use super::{Body, range};
 use crate::output::pictures::camera::Camera;
@@ -69,6 +71,7 @@ impl Lights {
         Self {
             lamp: map(unit(LAMP), lamp, LAMP_TEXELS),
             sky: directions(zenith)
+                .into_par_iter()
                 .map(|towards| map(towards, sky, SKY_TEXELS))
                 .collect(),
             zenith,
@@ -122,10 +125,10 @@ impl Lights {
 }
 
 /// Directions around the zenith, more of them near to it.
-fn directions(zenith: [f32; 3]) -> impl Iterator<Item = [f32; 3]> {
+fn directions(zenith: [f32; 3]) -> [[f32; 3]; SKY] {
     let [right, up] = across(zenith);
     let mut turn = [1.0, 0.0];
-    (0..SKY).map(move |k| {
+    std::array::from_fn(|k| {
         // Sine squared of the angle from the zenith.
         let square = 0.96 * (k as f32 + 0.5) / SKY as f32;
         let (out, along) = (square.sqrt(), (1.0 - square).sqrt());

@@ -1,0 +1,67 @@
+//! The time step of scenes with clumps.
+
+use dem_run::check::limit::{limit, safe_step};
+use dem_run::check::linear::at_impact;
+use dem_run::plan::Plan;
+
+use crate::again::same;
+use crate::books::{booked, feed};
+use crate::{HEAD, MEETS, go, planned};
+
+/// Lumps that come through an inlet and stay clumps while they fall on a plate.
+fn unbreakable() -> String {
+    let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
+    text.split_inclusive('\n')
+        .filter(|line| !line.starts_with("[replacement") && !line.starts_with("when"))
+        .collect()
+}
+
+/// Whether clumps touch something when it is asked or not.
+#[test]
+fn to_look_for_the_limit_changes_nothing() {
+    let [mut quiet, mut asked] = [planned(&unbreakable()), planned(&unbreakable())];
+    let mut touching = 0;
+    while quiet.state.time_s < 0.2 {
+        go(&mut quiet.state, &mut quiet.bodies);
+        go(&mut asked.state, &mut asked.bodies);
+        if quiet.state.steps.is_multiple_of(10) {
+            limit(&mut asked.state);
+            touching += u32::from(!asked.state.walls[0].touching.is_empty());
+        }
+    }
+    assert!(touching > 10, "{touching}");
+    assert!(same(&quiet.state, &asked.state));
+}
+
+fn one_sphere(more: &str) -> Plan {
+    planned(&format!(
+        "{HEAD}{MEETS}run.gravity = [0, 0, -9.81]\n\
+         [bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0.1, 2e-3]]\n{more}\n\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
+    ))
+}
+
+#[test]
+fn a_clump_of_one_sphere_takes_the_step_of_the_sphere() {
+    let [sphere, clump] = ["", "start_as = \"clump\""].map(one_sphere);
+    let [a, b] = [sphere.step, clump.step].map(|s| [s.step_s, s.foreseen_s, s.impact_speed_m_s]);
+    assert!(a[1] < 1e-3 && a[0] < a[1], "{a:?}");
+    for (a, b) in a.into_iter().zip(b) {
+        assert!((a / b - 1.0).abs() < 1e-12, "{a:e} {b:e}");
+    }
+}
+
+/// At the start there is nothing, and no clump ever has bonds.
+#[test]
+fn impacts_of_clumps_that_are_to_come_are_foreseen() {
+    let Plan { state, step, .. } = planned(&unbreakable());
+    assert!(state.particles.is_empty() && step.impact_speed_m_s > 0.5);
+    assert!(step.foreseen_s < 1e-3, "{:e}", step.foreseen_s);
+    let books = booked(&unbreakable(), step.step_s, 0.25);
+    let touched = books.last.contact_damping_j > 0.0;
+    eprintln!("{:e} s: {:?}", step.step_s, books.worst);
+    assert!(touched && books.worst[0] < 1e-2 && books.worst[1] < 1e-11);
+    // What the contacts became is what was foreseen, but for several that one clump has at once.
+    let [k, c, _] = at_impact(&books.state, step.impact_speed_m_s);
+    assert!((safe_step(k, c) / step.foreseen_s - 1.0).abs() < 1e-12);
+}
