@@ -23,7 +23,7 @@ use crate::state::State;
 use crate::state::particles::Wrench;
 
 use self::bodies::{PlacedBody, place_bodies};
-use self::clumps::{need_pairs, refuse_unbreakable, standing, templates, templates_of};
+use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
@@ -62,7 +62,8 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let mut read = read;
-    let templates = templates(scene, &templates_of(scene), &mut read)?;
+    let ball_m = ball_m(scene, &read);
+    let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
@@ -80,6 +81,7 @@ pub fn plan(
     let mut notes = Vec::new();
     state.rules = rules(scene, &templates)?;
     state.clumps.templates = templates;
+    state.clumps.ball_m = ball_m;
     if !state.clumps.templates.is_empty() && state.particle_damping > 0.0 {
         return Err(Diagnostic::input(
             format!("{}: run.particle_damping", scene.source),

@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use dem_io::scene::{BodyEntry, ClumpMass, Scene, StartAs};
+use dem_io::scene::{BodyEntry, ClumpMass, Scene, StartAs, WallShape};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::place_body;
 use super::contacts::Kinds;
 use crate::shape::inertia::{of_spheres, of_union};
-use crate::shape::outer_layer::{HIDDEN, outer_layer};
+use crate::shape::outer_layer::{HIDDEN, SHARE_OF_SMALLEST, outer_layer};
 use crate::stages::replacement::angular_momentum;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, Template, numbers, reach_m, rotation, sub_spheres};
@@ -27,7 +27,7 @@ pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
         .collect()
 }
 
-/// Templates, in the order of their names, from bodies that have been read.
+/// Templates, in the order of their names, from bodies that have been read. `ball_m`: see [`ball_m`].
 ///
 /// # Errors
 /// As those of bodies that stand in the scene.
@@ -35,17 +35,39 @@ pub(super) fn templates(
     scene: &Scene,
     names: &BTreeSet<String>,
     read: &mut BTreeMap<String, Body>,
+    ball_m: f64,
 ) -> Result<Vec<Arc<Template>>> {
     let mut templates = Vec::new();
     for name in names {
         if let Some(body) = read.remove(name) {
-            templates.push(Arc::new(template(scene, name, &body)?));
+            templates.push(Arc::new(template(scene, name, &body, ball_m)?));
         }
     }
     Ok(templates)
 }
 
-fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
+/// Radius, m, of a ball for which all that clumps can meet has room where it touches them: see [`outer_layer`]. 0 where the scene has walls of triangles, whose
+/// edges may be as sharp as knives.
+pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
+    let radii = read.values().flat_map(|body| &body.radii).copied();
+    let smallest_m = radii.fold(f64::INFINITY, f64::min);
+    let room_m = scene.walls.values().map(|wall| match &wall.shape {
+        WallShape::Plane { .. } => f64::INFINITY,
+        WallShape::Box { min, max } => {
+            let sides = [0, 1, 2].map(|k| 0.5 * (max[k] - min[k]));
+            sides.into_iter().fold(f64::INFINITY, f64::min)
+        }
+        WallShape::Cylinder {
+            from_m,
+            to_m,
+            radius_m,
+        } => radius_m.min(0.5 * (Vector3::from(*to_m) - Vector3::from(*from_m)).norm()),
+        WallShape::Stl { .. } => 0.0,
+    });
+    room_m.fold(SHARE_OF_SMALLEST * smallest_m, f64::min)
+}
+
+fn template(scene: &Scene, name: &str, body: &Body, ball_m: f64) -> Result<Template> {
     let entry = &scene.bodies[name];
     // As in its file: where and how it stands is said of each clump.
     let in_file = BodyEntry {
@@ -78,6 +100,7 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         ClumpMass::Union => of_union(&centres, &radii, particles.density_kg_m3(0)),
     };
     let spheres = sub_spheres(particles.poses.iter().zip(&particles.motions), &properties);
+    let touching: Vec<f64> = radii.iter().map(|r| settings.scale * r).collect();
     let mut file_number = vec![0; spheres.len()];
     for (number, &i) in (0..).zip(&placed.particles) {
         file_number[i as usize] = number;
@@ -96,7 +119,7 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         axes: properties.axes,
         centre_m: properties.centre_m,
         reach_m: reach_m(&spheres),
-        outer: outer_layer(&centres, &radii, HIDDEN),
+        outer: outer_layer(&centres, &touching, HIDDEN, ball_m),
         spheres,
         scale: settings.scale,
         material: scene

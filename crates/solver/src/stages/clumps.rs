@@ -49,6 +49,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
         templates,
         all,
         near,
+        ..
     } = clumps;
     for clump in all {
         let centre = Vector3::from(clump.place_m);
@@ -91,6 +92,7 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
         templates,
         all,
         near,
+        ..
     } = clumps;
     let mut fastest = 0.0_f64;
     for clump in all {

@@ -230,7 +230,7 @@ fn fragment_template(
         axes: [0.0, 0.0, 0.0, 1.0],
         centre_m: [0.0; 3],
         reach_m: reach_m(&spheres),
-        outer: outer_layer(&centres, &radii, HIDDEN),
+        outer: outer_layer(&centres, &radii, HIDDEN, state.clumps.ball_m),
         scale: 1.0,
         material: whole.material,
         file_number: (0..spheres.len() as u32).collect(),

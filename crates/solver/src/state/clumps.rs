@@ -131,6 +131,8 @@ pub struct Clumps {
     pub all: Vec<Clump>,
     /// Their spheres that are near a wall or a particle, rising, as particles are counted: only these follow in every step. The others do when somebody asks.
     pub near: Vec<u32>,
+    /// What their outer spheres are for, m: see [`crate::shape::outer_layer::outer_layer`].
+    pub ball_m: f64,
 }
 
 /// A rotation from its numbers x, y, z, w.

@@ -10,6 +10,7 @@ mod fit;
 mod inertia;
 mod outer_layer;
 mod rotation;
+mod thrown;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 

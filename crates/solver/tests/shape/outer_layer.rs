@@ -11,22 +11,34 @@ const NONE: [u32; 0] = [];
 
 #[test]
 fn one_two_and_nested_spheres() {
-    assert_eq!(outer_layer(&[], &[], 0.0), NONE);
-    assert_eq!(outer_layer(&[[5.0; 3]], &[2.0], 0.0), [0]);
+    assert_eq!(outer_layer(&[], &[], 0.0, 0.0), NONE);
+    assert_eq!(outer_layer(&[[5.0; 3]], &[2.0], 0.0, 0.0), [0]);
     let at = |x: f64| [x, 0.0, 0.0];
     for gap in [0.0, 0.5, 1.9, 2.0, 2.1, 100.0] {
         for margin in [0.0, 0.05, 0.5] {
             let wanted: Vec<u32> = if gap == 0.0 { vec![0] } else { vec![0, 1] };
-            assert_eq!(outer_layer(&[at(0.0), at(gap)], &[1.0; 2], margin), wanted);
+            assert_eq!(
+                outer_layer(&[at(0.0), at(gap)], &[1.0; 2], margin, 0.0),
+                wanted
+            );
         }
     }
     // Inside, inside and touching, across the surface, and free by the growth alone.
-    assert_eq!(outer_layer(&[at(0.0), at(0.3)], &[1.0, 0.5], 0.0), [0]);
-    assert_eq!(outer_layer(&[at(0.0), at(0.5)], &[1.0, 0.5], 0.0), [0]);
-    assert_eq!(outer_layer(&[at(0.6), at(0.0)], &[0.5, 1.0], 0.0), [0, 1]);
-    assert_eq!(outer_layer(&[at(0.49), at(0.0)], &[0.5, 1.0], 0.0), [1]);
-    assert_eq!(outer_layer(&[at(0.49), at(0.0)], &[0.5, 1.0], 0.05), [0, 1]);
-    assert_eq!(outer_layer(&[at(0.3), at(0.3)], &[0.5, 1.0], 0.5), [1]);
+    assert_eq!(outer_layer(&[at(0.0), at(0.3)], &[1.0, 0.5], 0.0, 0.0), [0]);
+    assert_eq!(outer_layer(&[at(0.0), at(0.5)], &[1.0, 0.5], 0.0, 0.0), [0]);
+    assert_eq!(
+        outer_layer(&[at(0.6), at(0.0)], &[0.5, 1.0], 0.0, 0.0),
+        [0, 1]
+    );
+    assert_eq!(
+        outer_layer(&[at(0.49), at(0.0)], &[0.5, 1.0], 0.0, 0.0),
+        [1]
+    );
+    assert_eq!(
+        outer_layer(&[at(0.49), at(0.0)], &[0.5, 1.0], 0.05, 0.0),
+        [0, 1]
+    );
+    assert_eq!(outer_layer(&[at(0.3), at(0.3)], &[0.5, 1.0], 0.5, 0.0), [1]);
 }
 
 #[test]
@@ -39,9 +51,9 @@ fn of_equal_spheres_in_one_place_the_first_counts() {
         [2.0, 1.0, 1.0 + 1e-16],
     ];
     for margin in [0.0, 0.1] {
-        assert_eq!(outer_layer(&points, &[1.0; 5], margin), [0, 3]);
+        assert_eq!(outer_layer(&points, &[1.0; 5], margin, 0.0), [0, 3]);
         assert_eq!(
-            outer_layer(&points, &[1.0, 1.0, 1.0, 5.0, 5.0], margin),
+            outer_layer(&points, &[1.0, 1.0, 1.0, 5.0, 5.0], margin, 0.0),
             [3]
         );
     }
@@ -78,12 +90,12 @@ fn shells_of_12_and_42_hide_the_middle_until_one_is_gone() {
             let mut radii = vec![radius; points.len()];
             radii[0] = 1.0;
             let wanted: Vec<u32> = (1..points.len() as u32).collect();
-            assert_eq!(outer_layer(&points, &radii, 0.0), wanted);
+            assert_eq!(outer_layer(&points, &radii, 0.0, 0.0), wanted);
             // The middle one again, smaller, so that the hole of a missing one shows it or not.
             for gone in 1..points.len() {
                 let mut fewer = points.clone();
                 fewer.remove(gone);
-                let is_outer = outer_layer(&fewer, &radii[1..], 0.0).contains(&0);
+                let is_outer = outer_layer(&fewer, &radii[1..], 0.0, 0.0).contains(&0);
                 let shown = (0..200_000)
                     .map(|_| random.direction())
                     .take(if gone < 4 { 200_000 } else { 0 })
@@ -96,7 +108,7 @@ fn shells_of_12_and_42_hide_the_middle_until_one_is_gone() {
             let mut fewer = points.clone();
             fewer.remove(7);
             radii.pop();
-            assert!(outer_layer(&fewer, &radii, 0.0).contains(&0) == (shell.len() == 12));
+            assert!(outer_layer(&fewer, &radii, 0.0, 0.0).contains(&0) == (shell.len() == 12));
         }
     }
 }
@@ -127,16 +139,21 @@ fn dense_blocks_have_their_skin() {
             } else {
                 turned(&random.rotation(), &points)
             };
-            assert_eq!(outer_layer(&points, &vec![1.0; points.len()], margin), skin);
+            assert_eq!(
+                outer_layer(&points, &vec![1.0; points.len()], margin, 0.0),
+                skin
+            );
         }
         // Past 2 / sqrt 3, there are voids between eight spheres.
         let (points, _) = lattice(6, 1.16);
         let all: Vec<u32> = (0..216).collect();
-        assert_eq!(outer_layer(&points, &[1.0; 216], 0.0), all);
+        assert_eq!(outer_layer(&points, &[1.0; 216], 0.0, 0.0), all);
         // Just at it, the last points are single and count as hidden or not; nothing else may change.
         let (points, skin) = lattice(6, 2.0 / 3.0_f64.sqrt());
         let points = turned(&random.rotation(), &points);
-        let found: BTreeSet<u32> = outer_layer(&points, &[1.0; 216], 0.0).into_iter().collect();
+        let found: BTreeSet<u32> = outer_layer(&points, &[1.0; 216], 0.0, 0.0)
+            .into_iter()
+            .collect();
         assert!(skin.iter().all(|i| found.contains(i)));
         println!("at the limit: {} of {}", found.len(), skin.len());
     }
@@ -155,7 +172,7 @@ fn samples_agree() {
     ] {
         let points: Vec<[f64; 3]> = (0..count).map(|_| random.point(half)).collect();
         let radii: Vec<f64> = (0..count).map(|_| random.within(low, 1.0)).collect();
-        let outer = outer_layer(&points, &radii, margin);
+        let outer = outer_layer(&points, &radii, margin, 0.0);
         for i in 0..count {
             let (centre, r) = (Vector3::from(points[i]), radii[i] * (1.0 + margin));
             let is_free = |v: Vector3<f64>| {
@@ -184,11 +201,14 @@ fn fifty_thousand_spheres_take_little_time() {
         let points: Vec<[f64; 3]> = (0..50_000).map(|_| random.point(half)).collect();
         let radii: Vec<f64> = (0..50_000).map(|_| random.within(0.5, 1.0)).collect();
         let start = Instant::now();
-        let outer = outer_layer(&points, &radii, 0.05);
+        let outer = outer_layer(&points, &radii, 0.05, 0.0);
         println!("half {half}: {} outer, {:?}", outer.len(), start.elapsed());
     }
     let (points, skin) = lattice(37, 1.0);
     let start = Instant::now();
-    assert_eq!(outer_layer(&points, &vec![1.0; points.len()], 0.0), skin);
+    assert_eq!(
+        outer_layer(&points, &vec![1.0; points.len()], 0.0, 0.0),
+        skin
+    );
     println!("block of {}: {:?}", points.len(), start.elapsed());
 }
