@@ -9,7 +9,7 @@ use super::progress::{due, first_after, next};
 use crate::output::pictures::film::{
     COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
 };
-use crate::output::pictures::png_file::{read_png, to_png};
+use crate::output::pictures::png_file::{Compression, read_png, to_png};
 use crate::output::pictures::{Image, View};
 use crate::plan::bodies::PlacedBody;
 use crate::state::State;
@@ -103,7 +103,7 @@ impl Pictures {
     pub(super) fn take(&mut self, state: &State, bodies: &[PlacedBody]) -> Result<()> {
         self.taken.next = next(state, self.order.every_s);
         let image = self.order.view.picture(state, bodies, self.order.every_s);
-        self.files.append(&to_png(&image)?)?;
+        self.files.append(&to_png(&image, Compression::Fast)?)?;
         self.taken.count = self.files.count();
         Ok(())
     }
@@ -120,7 +120,7 @@ impl Pictures {
             .into_iter()
             .map(small)
             .collect::<Result<Vec<Image>>>()?;
-        let strip = to_png(&film_strip(&frames, COLUMNS))?;
+        let strip = to_png(&film_strip(&frames, COLUMNS), Compression::Balanced)?;
         let chosen = chosen_for_film(self.taken.count);
         let film = animation(chosen.len() as u32, delay_ms(chosen.len()), |k| {
             read(chosen[k as usize])

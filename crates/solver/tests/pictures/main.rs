@@ -7,7 +7,7 @@ use dem_io::Diagnostic;
 use dem_run::geometry::Bounds;
 use dem_run::output::pictures::film::{animation, film_strip};
 use dem_run::output::pictures::label::{label, scale_bar};
-use dem_run::output::pictures::png_file::{read_png, to_png};
+use dem_run::output::pictures::png_file::{Compression, read_png, to_png};
 use dem_run::output::pictures::surface::HalfSpace;
 use dem_run::output::pictures::{Ball, Camera, Image, Surface, render};
 
@@ -70,7 +70,7 @@ fn equal_input_gives_equal_bytes_in_any_thread() {
         let mut image = render(&camera, &balls, &walls);
         label(&mut image, "t = 0.125 s");
         scale_bar(&mut image, camera.px_per_m());
-        to_png(&image).unwrap()
+        to_png(&image, Compression::Fast).unwrap()
     };
     let first = picture();
     let others: Vec<_> = (0..3).map(|_| std::thread::spawn(picture)).collect();
@@ -209,7 +209,10 @@ fn nonsense_is_left_out() {
         for scale in [camera.px_per_m(), f64::NAN, 0.0, -1.0, 1e300, 1e-300] {
             scale_bar(&mut image, scale);
         }
-        assert_eq!(to_png(&image).is_ok(), !size.contains(&0));
+        assert_eq!(
+            to_png(&image, Compression::Fast).is_ok(),
+            !size.contains(&0)
+        );
     }
 }
 
@@ -223,7 +226,7 @@ fn png_holds_the_same_pixels() {
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
-    std::fs::write(&path, to_png(&image).unwrap()).unwrap();
+    std::fs::write(&path, to_png(&image, Compression::Fast).unwrap()).unwrap();
     assert!(read_png(&path).unwrap() == image);
     std::fs::write(&path, "a picture of a cat").unwrap();
     let error = read_png(&path).unwrap_err();

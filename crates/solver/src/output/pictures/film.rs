@@ -1,6 +1,6 @@
 //! Pictures side by side, and one after the other.
 
-use png::{BlendOp, DisposeOp, EncodingError, Writer};
+use png::{BlendOp, Compression, DisposeOp, EncodingError, Writer};
 
 use super::image::{Image, MAX_SIDE_PX};
 use super::png_file::{encoder, fault};
@@ -115,7 +115,7 @@ fn begun<'a>(
     count: u32,
     delay_ms: u16,
 ) -> Result<Writer<&'a mut Vec<u8>>, EncodingError> {
-    let mut encoder = encoder(bytes, first);
+    let mut encoder = encoder(bytes, first, Compression::Balanced);
     // Without frames as well, so that the header is what is refused.
     encoder.set_animated(count.max(1), 0)?;
     encoder.set_frame_delay(delay_ms, 1000)?;

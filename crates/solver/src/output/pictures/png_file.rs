@@ -5,7 +5,8 @@ use std::io::BufReader;
 use std::path::Path;
 
 use dem_io::{Diagnostic, Result};
-use png::{BitDepth, ColorType, Compression, Decoder, Encoder, EncodingError, Filter};
+pub use png::Compression;
+use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, Filter};
 
 use super::image::Image;
 
@@ -13,9 +14,9 @@ use super::image::Image;
 ///
 /// # Errors
 /// A picture without pixels.
-pub fn to_png(image: &Image) -> Result<Vec<u8>> {
+pub fn to_png(image: &Image, compression: Compression) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let written = encoder(&mut bytes, image)
+    let written = encoder(&mut bytes, image, compression)
         .write_header()
         .and_then(|mut writer| {
             writer.write_image_data(image.rgb())?;
@@ -54,11 +55,15 @@ pub fn read_png(path: &Path) -> Result<Image> {
 }
 
 /// Writes pictures as large as this one, RGB.
-pub(super) fn encoder<'a>(bytes: &'a mut Vec<u8>, image: &Image) -> Encoder<'a, &'a mut Vec<u8>> {
+pub(super) fn encoder<'a>(
+    bytes: &'a mut Vec<u8>,
+    image: &Image,
+    compression: Compression,
+) -> Encoder<'a, &'a mut Vec<u8>> {
     let mut encoder = Encoder::new(bytes, image.width(), image.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::Balanced);
+    encoder.set_compression(compression);
     encoder.set_filter(Filter::Adaptive);
     encoder
 }
