@@ -42,6 +42,7 @@ fn main() -> Result<(), Failed> {
     let release = own.parent().and_then(Path::parent).ok_or("no folder")?;
     let program = &release.join("dem-run");
     let folder = std::env::temp_dir().join("replacement-table");
+    std::fs::create_dir_all(&folder)?;
     let mut runs: [Vec<Run>; 3] = Default::default();
     // In turn, so that a machine that becomes slower is so for all.
     for seed in 0..SEEDS {

@@ -119,3 +119,31 @@ fn make_no_difference(few: State) {
     );
     assert!(on_ground > 100 && on_each_other > 100);
 }
+
+/// What a clump takes that waits: its outer spheres, and no more, however many spheres and bonds its body has.
+#[test]
+fn clumps_share_what_they_are_made_of() {
+    let lump = porous("lump", "").replace(
+        "start_as = \"clump\"\n",
+        "start_as = \"clump\"\nbonds = \"stiff\"\n",
+    );
+    let text = format!(
+        "{HEAD}{MEETS}{lump}\
+         [regions.gate]\nbox = {{ min = [0, 0, 0], max = [0.3, 0.3, 0.3] }}\n\
+         [regions.far]\nbox = {{ min = [1, 1, 1], max = [2, 2, 2] }}\n\
+         [replacement.lump]\nwhen = {{ enters = \"far\" }}\n\
+         [inlets.all]\nbodies = [\"lump\"]\nregion = \"gate\"\nrate = 1e9\ncount = 1000\norientation = \"random\"\n"
+    );
+    let mut plan = planned(&text);
+    for _ in 0..20 {
+        crate::go(&mut plan.state, &mut plan.bodies);
+    }
+    let state = &plan.state;
+    let [template] = &state.clumps.templates[..] else {
+        panic!("{} templates", state.clumps.templates.len());
+    };
+    assert_eq!((template.spheres.len(), template.outer.len()), (64, 56));
+    assert!(template.bonds.len() == 144 && state.bonds.is_empty());
+    assert_eq!(state.clumps.all.len(), 1000);
+    assert_eq!(state.particles.len(), 1000 * template.outer.len());
+}
