@@ -297,38 +297,26 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     count_sleepers(state);
 }
 
-/// Wakes the bodies that are about to go or to become others, and puts what is kept of all back into the lists, where it is counted anew.
+/// Wakes the bodies that are about to go or to become others, with all that sleep with them, and puts what is kept of the rest back into the lists, where it
+/// is counted anew.
 pub fn prepare_change(state: &mut State, changes: &Changes) {
-    let Some(sleep) = &mut state.sleep else {
+    let Some(sleep) = &state.sleep else {
         return;
     };
     let clumps = &state.clumps.all;
     let swapped = changes.to_clusters.iter().map(|&at| clumps[at].cluster);
     let stiffened = changes.to_clumps.iter().map(|(id, _)| *id);
     let gone = changes.leaving.iter().copied();
-    let mut bodies = 0;
-    for id in swapped.chain(stiffened).chain(gone) {
-        if let Some(bed) = sleep.beds.get_mut(id as usize).filter(|bed| bed.asleep) {
-            *bed = Bed::AWAKE;
-            bodies += 1;
-        }
+    let all = swapped.chain(stiffened).chain(gone);
+    let asleep: Vec<u32> = all.filter(|&id| sleep.is_asleep(id)).collect();
+    if !asleep.is_empty() {
+        wake(state, &asleep, "changed");
     }
-    if bodies > 0 {
-        sleep.news.push(News {
-            step: state.steps,
-            time_s: state.time_s,
-            kind: "awake",
-            cause: "changed",
-            bodies,
-        });
+    if let Some(sleep) = &mut state.sleep {
+        let contacts = state.contacts.as_mut();
+        let Sleep { pairs, touches, .. } = sleep;
+        put_back(pairs, touches, contacts, &mut state.walls, |_| true);
     }
-    put_back(
-        &mut sleep.pairs,
-        &mut sleep.touches,
-        state.contacts.as_mut(),
-        &mut state.walls,
-        |_| true,
-    );
 }
 
 /// Puts what is kept of those particles that are awake back into the lists.
