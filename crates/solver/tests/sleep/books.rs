@@ -1,6 +1,6 @@
 //! The books of energy and momentum close over sleep.
 
-use dem_run::check::ledger::{Balance, balance};
+use dem_run::check::ledger::{Balance, Ledger, balance};
 use dem_run::state::State;
 use dem_run::step::{act, move_on};
 
@@ -83,4 +83,28 @@ fn what_falls_asleep_is_booked() {
     assert!(lost_j > 1e-9, "{lost_j:e}");
     assert!(worst[0] < 1.1 * worst_awake);
     assert!(worst[1] < 1e-10 && worst[2] < 1e-10, "{worst:?}");
+}
+
+#[test]
+fn damping_of_bonds_is_booked_until_the_motion_stops() {
+    let text = head(0.0).replace("run.end_time = 1", "run.end_time = 1\nrun.time_step = 1e-8");
+    let swinging = slab("swinging", [0.0, 0.0, 1e-3], "");
+    let asks = "[sleep]\nspeed = 0.05\nafter = 5e-7\n";
+    let mut state = planned(&format!("{text}{swinging}{GROUND}{asks}"));
+    for (i, along) in [(0, 0.02), (1, -0.02)] {
+        state.particles.motions[i].velocity_m_s = [along, 0.0, 0.0];
+    }
+    state.ledger = Ledger::opened(&state);
+    let mut before = look(&mut state);
+    while sleep(&state).bodies == 0 {
+        before = look(&mut state);
+    }
+    assert_eq!(state.steps, 101);
+    let after = look(&mut state);
+    let lost_j = before.kinetic_j - after.kinetic_j;
+    assert!(after.kinetic_j == 0.0 && after.bond_damping_j > before.bond_damping_j);
+    // What it takes in half a step is some 1e-4 of the motion.
+    let jump_j = (after.energy_error_j - before.energy_error_j).abs();
+    eprintln!("lost {lost_j:.2e} J, off by {jump_j:.1e} J");
+    assert!(jump_j < 1e-6 * lost_j, "{jump_j:e}");
 }
