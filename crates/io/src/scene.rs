@@ -27,6 +27,7 @@ mod run;
 mod search;
 mod set;
 mod shape;
+mod sleep;
 mod support;
 mod table;
 mod targets;
@@ -47,6 +48,7 @@ pub use region::Region;
 pub use relaxation::Relaxation;
 pub use replacement::{Back, Replacement};
 pub use search::Search;
+pub use sleep::Sleep;
 pub use test::{Test, TestKind};
 pub use wall::{Wall, WallMotion, WallShape};
 
@@ -92,6 +94,8 @@ pub struct Scene {
     pub relaxation: Relaxation,
     /// `[search]`
     pub search: Search,
+    /// `[sleep]`. None: nothing sleeps.
+    pub sleep: Option<Sleep>,
     /// `[output]`. None: nothing is written to disk unless the command line names a folder.
     pub output: Option<Output>,
     /// `[test]`. None: no laboratory test.

@@ -207,8 +207,8 @@ impl Gauge {
                 heap::angle_of_repose_rad(p, &self.particles, up)
             }
             // Of the particles on the wall.
-            Quantity::Force(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.force_n[k as usize]),
-            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.push.torque_n_m[k as usize]),
+            Quantity::Force(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[0][k as usize]),
+            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[1][k as usize]),
             Quantity::Count => {
                 let clusters = state.clusters.as_ref();
                 clusters.map_or(f64::NAN, |c| c.living().count() as f64)

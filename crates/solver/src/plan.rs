@@ -21,6 +21,7 @@ use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
 use crate::state::particles::Wrench;
+use crate::state::sleep::Sleep;
 
 use self::bodies::{PlacedBody, place_bodies};
 use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
@@ -145,6 +146,8 @@ fn place_meetings(
         }
         place_contacts(scene, &kinds, bodies, state)?;
         state.walls = walls::place_walls(scene, &kinds, bodies, state, notes)?;
+        let asked = scene.sleep.as_ref();
+        state.sleep = asked.map(|asked| Sleep::new(asked.speed_m_s, asked.after_s));
     }
     Ok(())
 }

@@ -24,7 +24,7 @@ use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
-use crate::output::summary::{PopulationSummary, Summary};
+use crate::output::summary::{PopulationSummary, SleepSummary, Summary};
 use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
@@ -33,7 +33,9 @@ use crate::stages::replacement::replace;
 use crate::state::State;
 use crate::step::{act, move_on};
 
-use self::events::{change_step, new_step, write_breaks, write_happened, write_splits};
+use self::events::{
+    change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
+};
 use self::fragments::write_fragments;
 use self::limits::{Limits, went_through};
 use self::pictures::{Order, Pictures};
@@ -287,6 +289,9 @@ pub fn run(
         }
         state.clock.book(Stage::Replacement);
         move_on(&mut state);
+        if let Some(files) = &mut files {
+            write_sleep(&state, files)?;
+        }
 
         if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {
             return Err(with_checkpoint(problem, files.as_ref()));
@@ -331,6 +336,7 @@ pub fn run(
         broken_bonds: state.broken_count,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         population: PopulationSummary::of(&state),
+        sleep: state.sleep.as_ref().map(SleepSummary::of),
         steps: state.steps,
         time_step_s: state.time_step_s,
         limit_s: progress.limit_s,
@@ -366,6 +372,7 @@ pub fn run(
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
+        write_sleep(&state, files)?;
         save(
             &state,
             &bodies,

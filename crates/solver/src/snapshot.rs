@@ -229,7 +229,7 @@ impl Snapshot {
         for &at in &self.broken {
             state.bonds.set_broken(at as usize);
         }
-        divide_anew(&state.bonds, &mut state.shares);
+        divide_anew(&state.bonds, &mut state.shares, &[]);
         let history = |&[fx, fy, fz, mx, my, mz]: &[f64; 6]| History {
             shear_force: Vector3::new(fx, fy, fz),
             moment: Vector3::new(mx, my, mz),

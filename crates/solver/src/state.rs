@@ -8,6 +8,7 @@ pub mod particles;
 pub mod regions;
 pub mod rules;
 pub mod shares;
+pub mod sleep;
 pub mod walls;
 
 use crate::check::ledger::Ledger;
@@ -23,6 +24,7 @@ use self::contacts::Contacts;
 use self::particles::{Particles, Wrench};
 use self::rules::Rules;
 use self::shares::{Share, divide};
+use self::sleep::Sleep;
 use self::walls::Wall;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
@@ -50,6 +52,8 @@ pub struct State {
     pub rules: Rules,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
+    /// Bodies that sleep. None: none can.
+    pub sleep: Option<Sleep>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
     /// Loads.
@@ -109,6 +113,7 @@ impl State {
             splits: Vec::new(),
             rules: Rules::default(),
             contacts: None,
+            sleep: None,
             walls: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),

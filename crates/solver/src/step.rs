@@ -4,13 +4,15 @@ use crate::clock::Stage;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::breakage::break_bonds;
 use crate::stages::clumps;
-use crate::stages::contacts::{contact_wrenches, list_contacts};
+use crate::stages::contacts::contact_wrenches;
 use crate::stages::damping::damping_wrenches;
 use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
+use crate::stages::listing::renew_lists;
 use crate::stages::loads::add_loads;
 use crate::stages::motion::{add_particle_damping, drift, kick};
+use crate::stages::sleep;
 use crate::stages::supports::{hold, remember};
-use crate::stages::walls::{list_near, move_walls, plan_motions, wall_wrenches};
+use crate::stages::walls::{move_walls, plan_motions, wall_wrenches};
 use crate::state::State;
 use crate::state::particles::Wrench;
 use crate::state::shares::{Share, divide_anew};
@@ -23,11 +25,13 @@ const STALE: u64 = 64;
 /// Afterwards poses stand at `time_s` and velocities half a step later: the moment at which everything can be measured.
 pub fn act(state: &mut State) {
     let before_s = state.previous_time_step_s;
-    let p = &mut state.particles;
     state.clock.start(state.steps);
+    renew_lists(state);
+    state.clock.book(Stage::Contacts);
 
+    let p = &mut state.particles;
     if !state.bonds.histories.is_empty() && before_s > 0.0 {
-        advance_histories(&mut state.bonds, &p.poses, &p.motions, before_s);
+        advance_histories(&mut state.bonds, p, before_s);
     }
     bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
     if !state.bonds.histories.is_empty() {
@@ -35,15 +39,6 @@ pub fn act(state: &mut State) {
     }
     state.clock.book(Stage::Bonds);
     if let Some(contacts) = &mut state.contacts {
-        if contacts.room_m < 0.0 {
-            clumps::place_all(&state.clumps, p);
-            list_near(&mut state.walls, p, contacts.skin_m);
-            let clusters = state.clusters.as_ref();
-            list_contacts(contacts, clusters.map_or(&[], |c| &c.of_particle), p);
-            let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
-            let near = contacts.pairs.iter().flatten().chain(at_walls).copied();
-            clumps::list_near(&mut state.clumps, p, near);
-        }
         contact_wrenches(contacts, p, before_s);
         wall_wrenches(&mut state.walls, contacts, p, before_s);
         clumps::gather(&mut state.clumps, p, before_s);
@@ -114,6 +109,7 @@ pub fn act(state: &mut State) {
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
+    sleep::look(state);
     let of_clumps_m_s = clumps::drift(&mut state.clumps, &mut state.particles, state.time_step_s);
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s).max(of_clumps_m_s);
     if let Some(contacts) = &mut state.contacts {
@@ -154,9 +150,10 @@ fn find_pieces(state: &mut State) {
 fn leave_out_broken(state: &mut State) {
     let computed: usize = state.shares.iter().map(Share::own_bonds).sum();
     let broken = state.broken_count - state.broken_gone;
-    let whole = state.bonds.len() as u64 - broken;
+    let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
+    let whole = state.bonds.len() as u64 - broken - asleep;
     if (computed as u64 - whole) * STALE >= computed as u64 {
-        divide_anew(&state.bonds, &mut state.shares);
+        divide_anew(&state.bonds, &mut state.shares, &state.particles.asleep);
     }
 }
 

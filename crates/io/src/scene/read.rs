@@ -10,13 +10,13 @@ use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
     SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material, measure, outlet,
-    output, region, relaxation, replacement, run, search, set, support, test, wall,
+    output, region, relaxation, replacement, run, search, set, sleep, support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 20] = [
+const KEYS: [&str; 21] = [
     "version",
     "run",
     "materials",
@@ -35,6 +35,7 @@ const KEYS: [&str; 20] = [
     "clusters",
     "relaxation",
     "search",
+    "sleep",
     "output",
     "test",
 ];
@@ -129,6 +130,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         search: root
             .read("search", |field| search::read(&field))?
             .unwrap_or_default(),
+        sleep: root.read("sleep", |field| sleep::read(&field))?,
         output: root.read("output", |field| output::read(&field, folder))?,
         test,
         contacts,

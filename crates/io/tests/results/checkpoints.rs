@@ -51,9 +51,9 @@ fn each_kind_of_bad_file_has_its_message() {
     let turned = refusal(&turned);
     assert!(turned.problem.contains("check sum"), "{turned}");
     let mut newer = good;
-    newer[16] = 2;
+    newer[16] = 3;
     let newer = refusal(&newer);
-    assert!(newer.problem.contains("format 2"), "{newer}");
+    assert!(newer.problem.contains("format 3"), "{newer}");
     assert!(newer.problem.contains("'dem-run "), "{newer}");
 }
 

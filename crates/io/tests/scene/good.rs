@@ -631,7 +631,7 @@ fn values_in_words() {
 fn words_on_contacts() {
     let said = |scene: &Scene| -> Vec<String> {
         let of_contacts = |line: &&str| {
-            ["clusters.", "relaxation.", "search."]
+            ["clusters.", "relaxation.", "search.", "sleep."]
                 .iter()
                 .any(|table| line.starts_with(table))
         };
@@ -654,4 +654,10 @@ fn words_on_contacts() {
     let options = ["search.skin=0.1".to_owned()];
     let scene = read_scene(&folder().join("shortest.toml"), &options).unwrap();
     assert_eq!(said(&scene), ["search.skin 0.1"]);
+    let options = ["sleep.speed=\"2 mm/s\"".to_owned()];
+    let scene = read_scene(&folder().join("shortest.toml"), &options).unwrap();
+    assert_eq!(
+        said(&scene),
+        ["sleep.speed 0.002 m/s", "sleep.after 0.05 s"]
+    );
 }

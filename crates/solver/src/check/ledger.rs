@@ -12,6 +12,7 @@ use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::sleep::Sleep;
 use crate::state::walls::{Push, Wall};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -38,6 +39,9 @@ pub struct Ledger {
     mass_kg: f64,
     /// Sum of mass times place from `about_m`, kg m.
     first_moment: [f64; 3],
+    /// The same two of what sleeps, on which gravity does not act.
+    asleep_kg: f64,
+    asleep_moment: [f64; 3],
     /// What momentum and angular momentum should be, N s and N m s.
     momentum: [f64; 3],
     angular_momentum: [f64; 3],
@@ -88,7 +92,8 @@ pub struct Balance {
     pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub released_j: f64,
-    /// That bodies brought which came, less what those took along that went, and what clumps and clusters gained as they took each other's place, J.
+    /// That bodies brought which came, less what those took along that went, and what clumps and clusters gained as they took each other's place; less the motion that bodies had when they
+    /// fell asleep, J.
     pub brought_j: f64,
     /// What is there less what should be, J.
     pub energy_error_j: f64,
@@ -206,6 +211,34 @@ impl Ledger {
         self.brought_j += energy_j;
     }
 
+    /// Books something that stops where it is, between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
+    /// angular momentum that it has after the kick, and with this kinetic energy at the moment of the places, J.
+    pub fn stop(
+        &mut self,
+        [mass_kg, kinetic_j]: [f64; 2],
+        [place_m, velocity_m_s, own]: [[f64; 3]; 3],
+    ) {
+        let [px, py, pz, lx, ly, lz, ..] =
+            momenta_of(mass_kg, place_m, velocity_m_s, own, self.about_m);
+        self.brought_j -= kinetic_j;
+        for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {
+            self.momentum[k] -= p;
+            self.angular_momentum[k] -= l;
+        }
+    }
+
+    /// Takes down what sleeps from now on: masses, kg, and places, m.
+    pub fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
+        self.asleep_kg = 0.0;
+        self.asleep_moment = [0.0; 3];
+        for (mass_kg, place_m) in sleepers {
+            self.asleep_kg += mass_kg;
+            for (k, moment) in self.asleep_moment.iter_mut().enumerate() {
+                *moment += mass_kg * (place_m[k] - self.about_m[k]);
+            }
+        }
+    }
+
     /// Where the centre of mass should be after a drift.
     pub fn drift(&mut self, time_step_s: f64) {
         for k in 0..3 {
@@ -230,12 +263,12 @@ fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
 
 /// Powers of loads and damping, W.
 fn powers(state: &State) -> Work {
-    let motions = &state.particles.motions;
+    let particles = &state.particles;
     Work {
-        loads: loads_power_w(&state.loads, state.time_s, motions),
+        loads: loads_power_w(&state.loads, state.time_s, &particles.motions),
         supports: 0.0,
-        bond_damping: -power_w(&state.bond_resistance, motions),
-        particle_damping: -power_w(&state.particle_resistance, motions),
+        bond_damping: -power_w(&state.bond_resistance, particles),
+        particle_damping: -power_w(&state.particle_resistance, particles),
     }
 }
 
@@ -296,7 +329,8 @@ pub fn after_kick(state: &mut State) {
     }
     let resisted = resultant(&state.particle_resistance, &particles.poses, about);
     let g = state.gravity_m_s2;
-    let [sx, sy, sz] = ledger.first_moment;
+    let [sx, sy, sz] = [0, 1, 2].map(|k| ledger.first_moment[k] - ledger.asleep_moment[k]);
+    let awake_kg = ledger.mass_kg - ledger.asleep_kg;
     let fall = [
         sy * g[2] - sz * g[1],
         sz * g[0] - sx * g[2],
@@ -304,7 +338,7 @@ pub fn after_kick(state: &mut State) {
     ];
     let kick_s = 0.5 * (before_s + after_s);
     for k in 0..3 {
-        ledger.momentum[k] += kick_s * (total[0][k] + resisted[0][k] + ledger.mass_kg * g[k]);
+        ledger.momentum[k] += kick_s * (total[0][k] + resisted[0][k] + awake_kg * g[k]);
         ledger.angular_momentum[k] += kick_s * (total[1][k] + resisted[1][k] + fall[k]);
     }
 }
@@ -343,6 +377,7 @@ pub fn balance(state: &mut State) -> Balance {
         friction += wall.friction_j;
         contact_damping += wall.damping_j;
     }
+    contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -420,6 +455,9 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let resistances = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
+        if p.sleeps(i) {
+            return motion;
+        }
         let (per_mass, per_inertia) = (
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,

@@ -10,6 +10,7 @@ use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::state::State;
+use crate::state::sleep::Sleep;
 
 /// Energy errors above this share are worth a word.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
@@ -41,6 +42,9 @@ pub struct Summary {
     /// Which bodies came, went, and became others, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<PopulationSummary>,
+    /// Who sleeps, where bodies can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sleep: Option<SleepSummary>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.
@@ -104,6 +108,26 @@ pub struct PopulationSummary {
     pub bonds_left_out: f64,
     /// Share of the spheres of a clump that no other can touch, the mean of all templates.
     pub inner_spheres: f64,
+}
+
+/// Who sleeps.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SleepSummary {
+    /// Bodies that sleep at the end.
+    pub bodies: usize,
+    /// Share of particles times steps that was left out because their bodies slept.
+    pub left_out: f64,
+}
+
+impl SleepSummary {
+    /// Of what is known at the end.
+    pub fn of(sleep: &Sleep) -> Self {
+        let [done, left_out] = sleep.particle_steps.map(|count| count as f64);
+        Self {
+            bodies: sleep.bodies,
+            left_out: over(left_out, done + left_out),
+        }
+    }
 }
 
 impl PopulationSummary {
@@ -252,6 +276,14 @@ impl fmt::Display for Summary {
                 f,
                 "saved        {:.0} % of bonds times steps, as their bodies were rigid{hidden}",
                 100.0 * p.bonds_left_out,
+            )?;
+        }
+        if let Some(sleep) = &self.sleep {
+            writeln!(
+                f,
+                "asleep       {} bodies at the end; {:.0} % of particles times steps left out",
+                sleep.bodies,
+                100.0 * sleep.left_out,
             )?;
         }
         if let Some(fragments) = &self.fragments {

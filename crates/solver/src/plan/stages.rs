@@ -1,6 +1,7 @@
 //! What a step of a scene consists of, and what it leaves out and why.
 
 use dem_io::scene::Scene;
+use dem_io::units::significant;
 
 use crate::state::State;
 
@@ -147,6 +148,22 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             !state.walls.is_empty(),
             format!("{}", state.walls.len()),
             "no walls",
+        ),
+        stage(
+            "sleep",
+            state.sleep.is_some(),
+            state.sleep.as_ref().map_or(String::new(), |sleep| {
+                format!(
+                    "bodies slower than {} mm/s for {} ms are not stepped until something comes near",
+                    significant(1e3 * sleep.speed_m_s, 4),
+                    significant(1e3 * sleep.after_s, 4)
+                )
+            }),
+            if scene.sleep.is_some() {
+                "nothing can touch"
+            } else {
+                "not asked for"
+            },
         ),
         stage(
             "rolling friction",

@@ -131,6 +131,24 @@ pub(super) fn write_happened(
     Ok(())
 }
 
+/// The bodies that fell asleep or woke in this step.
+pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
+    for news in state.sleep.iter().flat_map(|sleep| &sleep.news) {
+        let plural = if news.bodies == 1 { "body" } else { "bodies" };
+        files.events.append(&[Event {
+            step: news.step,
+            time_s: news.time_s,
+            ..of_all(
+                state,
+                news.kind,
+                news.cause,
+                &format!("{} {plural}", news.bodies),
+            )
+        }])?;
+    }
+    Ok(())
+}
+
 /// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.
 pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<String> {
     let before_s = state.time_step_s;

@@ -5,9 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::clusters::{Cluster, Clusters};
 use crate::geometry::Frame;
+use crate::stages::sleep::count_sleepers;
 use crate::state::State;
 use crate::state::contacts::Memory;
-use crate::state::walls::{Push, WallTouch};
+use crate::state::sleep::{Bed, Sleep};
+use crate::state::walls::{Push, Wall, WallTouch};
 
 /// Clusters, contacts and walls of a state between two steps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -20,6 +22,15 @@ pub(super) struct Meetings {
     /// Energy that friction and damping took, booked at each particle, J.
     lost_j: Vec<[f64; 2]>,
     walls: Vec<WallState>,
+    /// None: nobody can sleep.
+    sleep: Option<SleepState>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct SleepState {
+    beds: Vec<Bed>,
+    particle_steps: [u64; 2],
+    room_m: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,6 +53,10 @@ impl Meetings {
             let pairs = contacts.pairs.iter().copied();
             pairs.zip(contacts.memories.iter().copied())
         });
+        let kept = state.sleep.iter().flat_map(|sleep| &sleep.pairs);
+        let kept = kept.map(|kept| (kept.pair, kept.memory));
+        let mut remembered: Vec<([u32; 2], Memory)> = remembered.chain(kept).collect();
+        remembered.sort_by_key(|(pair, _)| *pair);
         Self {
             clusters: state.clusters.as_ref().map(|clusters| {
                 let (of_particle, history) = (&clusters.of_particle, &clusters.history);
@@ -52,14 +67,14 @@ impl Meetings {
                 )
             }),
             fastest_m_s: state.fastest_m_s,
-            contacts: remembered.collect(),
+            contacts: remembered,
             lost_j: (state.contacts.as_ref()).map_or(Vec::new(), |c| c.lost_j.clone()),
-            walls: (state.walls.iter())
-                .map(|wall| WallState {
+            walls: (state.walls.iter().enumerate())
+                .map(|(n, wall)| WallState {
                     frame: wall.frame,
                     velocities_m_s: wall.velocities_m_s,
                     spins_rad_s: wall.spins_rad_s,
-                    touching: wall.touching.clone(),
+                    touching: touching(wall, n, state.sleep.as_ref()),
                     push: wall.push,
                     stiffness_n_m: wall.stiffness_n_m,
                     friction_j: wall.friction_j,
@@ -68,6 +83,11 @@ impl Meetings {
                     pending_j: wall.pending_j,
                 })
                 .collect(),
+            sleep: state.sleep.as_ref().map(|sleep| SleepState {
+                beds: sleep.beds.clone(),
+                particle_steps: sleep.particle_steps,
+                room_m: state.contacts.as_ref().map_or(-1.0, |c| c.room_m),
+            }),
         }
     }
 
@@ -77,6 +97,7 @@ impl Meetings {
     /// The scene has other clusters, contacts or walls.
     pub(super) fn restore(&self, state: &mut State) -> Result<()> {
         if self.clusters.is_some() != state.clusters.is_some()
+            || self.sleep.is_some() != state.sleep.is_some()
             || self.walls.len() != state.walls.len()
             || self.lost_j.len() != state.contacts.as_ref().map_or(0, |c| c.lost_j.len())
         {
@@ -106,8 +127,26 @@ impl Meetings {
             wall.work_j = saved.work_j;
             wall.pending_j = saved.pending_j;
         }
+        if let (Some(sleep), Some(saved)) = (&mut state.sleep, &self.sleep) {
+            sleep.beds.clone_from(&saved.beds);
+            sleep.particle_steps = saved.particle_steps;
+            sleep.is_resumed = true;
+            if let Some(contacts) = &mut state.contacts {
+                contacts.room_m = saved.room_m;
+            }
+            count_sleepers(state);
+        }
         Ok(())
     }
+}
+
+/// What touches a wall, be it awake or asleep.
+fn touching(wall: &Wall, n: usize, sleep: Option<&Sleep>) -> Vec<WallTouch> {
+    let kept = sleep.into_iter().flat_map(|sleep| &sleep.touches);
+    let kept = kept.filter(|kept| kept.wall == n).map(|kept| kept.touch);
+    let mut all: Vec<WallTouch> = wall.touching.iter().copied().chain(kept).collect();
+    all.sort_by_key(|touch| touch.particle);
+    all
 }
 
 fn foreign() -> Diagnostic {

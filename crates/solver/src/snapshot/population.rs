@@ -105,6 +105,7 @@ impl Population {
             motions: self.motions.clone(),
             wrenches: vec![Wrench::default(); count],
             free: self.free,
+            asleep: Vec::new(),
         };
         let rules = std::mem::take(&mut state.bonds.rules);
         state.bonds = Bonds {

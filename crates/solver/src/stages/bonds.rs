@@ -66,11 +66,14 @@ impl LaneWork for ShareWork<'_> {
         } = self;
         let Share {
             particles,
+            awake,
             batches,
             failing,
         } = share;
         failing.clear();
-        wrenches.fill(Wrench::default());
+        for awake in awake {
+            wrenches[awake.clone()].fill(Wrench::default());
+        }
         for Batch { rule, which } in batches.iter() {
             let kind = Kind {
                 torsion_per_bending: bonds.torsion_per_bending[*rule],

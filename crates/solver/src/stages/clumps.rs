@@ -28,9 +28,9 @@ pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iter
     }
 }
 
-/// Puts all spheres of all clumps where they are.
+/// Puts all spheres of all clumps where they are. Those of clumps that sleep are there.
 pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
-    for clump in &clumps.all {
+    for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
         let template = clumps.template(clump);
         let turned = rotation_of(clump.turned);
         let (centre, to_space) = (Vector3::from(clump.place_m), turned.to_rotation_matrix());
@@ -51,7 +51,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
         near,
         ..
     } = clumps;
-    for clump in all {
+    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
         let centre = Vector3::from(clump.place_m);
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         let [from, to] = clump.near.map(|n| n as usize);
@@ -76,7 +76,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
 /// Velocities and angular momenta changed by what acts on the clumps and by gravity, over the time `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
-    for clump in all {
+    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
         let per_mass = kick_s / templates[clump.template as usize].mass_kg;
         for (k, gravity) in gravity_m_s2.iter().enumerate() {
             clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity;
@@ -95,7 +95,7 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
         ..
     } = clumps;
     let mut fastest = 0.0_f64;
-    for clump in all {
+    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
         let template = &templates[clump.template as usize];
         let before = rotation_of(clump.turned);
         for k in 0..3 {

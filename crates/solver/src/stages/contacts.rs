@@ -54,7 +54,7 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again. `clusters`: one for each particle; those of one cluster do not touch each other.
+/// Looks for near pairs again. `clusters`: a number for each particle; those of one number do not touch each other.
 pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Particles) {
     let poses = &particles.poses;
     let pairs = near_pairs(poses, clusters, contacts.skin_m);
@@ -65,7 +65,7 @@ pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Part
             if relaxes { overlap_m(poses, pair) } else { 0.0 }
         },
     );
-    contacts.divide(particles.len(), contacts.shares.len().max(1));
+    contacts.divide(particles.len(), contacts.wanted_shares.max(1));
     contacts.room_m = 0.5 * contacts.skin_m;
 }
 

@@ -47,7 +47,9 @@ impl LaneWork for ShareWork<'_> {
             share,
             resisting,
         } = self;
-        resisting.fill(Wrench::default());
+        for awake in &share.awake {
+            resisting[awake.clone()].fill(Wrench::default());
+        }
         let particles = &share.particles;
         for Batch { rule, which } in &share.batches {
             if !bonds.rules[*rule].damped {

@@ -7,11 +7,12 @@ use crate::physics::bond::failure::{stresses, utilisation};
 use crate::physics::bond::incremental::{Step, advance, bond_forces};
 use crate::stages::blocks::for_each_share;
 use crate::state::bonds::Bonds;
-use crate::state::particles::{Motion, Pose, Wrench};
+use crate::state::particles::{Particles, Pose, Wrench};
 use crate::state::shares::{Batch, Share, Which};
 
 /// Brings the histories up to the present places, after a drift of `time_step_s` with these motions.
-pub fn advance_histories(bonds: &mut Bonds, poses: &[Pose], motions: &[Motion], time_step_s: f64) {
+pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
+    let (poses, motions) = (&particles.poses, &particles.motions);
     let mut histories = std::mem::take(&mut bonds.histories);
     let known = &*bonds;
     histories
@@ -19,10 +20,11 @@ pub fn advance_histories(bonds: &mut Bonds, poses: &[Pose], motions: &[Motion], 
         .with_min_len(1024)
         .enumerate()
         .for_each(|(at, history)| {
-            if known.is_broken(at) || !known.rules[known.rule_of(at)].incremental {
+            let [a, b] = known.ends[at].map(|end| end as usize);
+            let rests = known.is_broken(at) || particles.sleeps(a);
+            if rests || !known.rules[known.rule_of(at)].incremental {
                 return;
             }
-            let [a, b] = known.ends[at].map(|end| end as usize);
             let after = poses[b].place() - poses[a].place();
             let velocity = |end: usize| Vector3::from(motions[end].velocity_m_s);
             let step = Step {
@@ -52,6 +54,7 @@ fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wr
         particles: own,
         batches,
         failing,
+        ..
     } = share;
     for Batch { rule, which } in batches.iter() {
         let rule = &bonds.rules[*rule];

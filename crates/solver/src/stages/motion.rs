@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use crate::physics::rigid::turn;
-use crate::state::particles::{Motion, Particles, Wrench};
+use crate::state::particles::{Particles, Wrench};
 
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
@@ -17,7 +17,12 @@ pub fn kick(
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 ) {
-    let (motions, wrenches) = (&mut particles.motions, &particles.wrenches);
+    let Particles {
+        motions,
+        wrenches,
+        asleep,
+        ..
+    } = particles;
     let fall = gravity_m_s2.map(|g| kick_s * g);
     motions[..particles.free]
         .par_chunks_mut(CHUNK)
@@ -25,6 +30,9 @@ pub fn kick(
         .for_each(|(chunk, motions)| {
             let first = chunk * CHUNK;
             for (i, motion) in (first..).zip(motions) {
+                if asleep.get(i).is_some_and(|asleep| *asleep) {
+                    continue;
+                }
                 let per_mass = kick_s * motion.inverse_mass;
                 let per_inertia = kick_s * motion.inverse_inertia;
                 let wrench = &wrenches[i];
@@ -44,13 +52,22 @@ pub fn kick(
 
 /// Places and orientations of the particles that move by themselves after moving on for `time_step_s`. Returns the largest speed of a particle, m/s.
 pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
-    let (poses, motions) = (&mut particles.poses, &particles.motions);
+    let Particles {
+        poses,
+        motions,
+        asleep,
+        ..
+    } = particles;
     poses[..particles.free]
         .par_chunks_mut(CHUNK)
-        .zip(motions.par_chunks(CHUNK))
-        .map(|(poses, motions)| {
+        .enumerate()
+        .map(|(chunk, poses)| {
             let mut fastest = 0.0_f64;
-            for (pose, motion) in poses.iter_mut().zip(motions) {
+            let first = chunk * CHUNK;
+            for ((i, pose), motion) in (first..).zip(poses).zip(&motions[first..]) {
+                if asleep.get(i).is_some_and(|asleep| *asleep) {
+                    continue;
+                }
                 let mut square = 0.0;
                 for k in 0..3 {
                     pose.position_m[k] += time_step_s * motion.velocity_m_s[k];
@@ -102,10 +119,13 @@ fn against(force: f64, velocity: f64) -> f64 {
     }
 }
 
-/// Power of wrenches on particles moving so, W. The sum keeps its order for any number of threads.
-pub fn power_w(wrenches: &[Wrench], motions: &[Motion]) -> f64 {
+/// Power of wrenches on particles that move, W. The sum keeps its order for any number of threads.
+pub fn power_w(wrenches: &[Wrench], particles: &Particles) -> f64 {
     ordered_sum(wrenches.len(), |i| {
-        let (wrench, motion) = (&wrenches[i], &motions[i]);
+        if particles.sleeps(i) {
+            return 0.0;
+        }
+        let (wrench, motion) = (&wrenches[i], &particles.motions[i]);
         (0..3)
             .map(|k| {
                 wrench.force_n[k] * motion.velocity_m_s[k]

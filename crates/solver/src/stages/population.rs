@@ -8,6 +8,7 @@ use crate::clusters::{Cluster, Clusters};
 use crate::physics::bond::scatter::strength_factor;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
@@ -60,6 +61,7 @@ pub struct Renumbered {
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.
 pub fn change(state: &mut State, changes: Changes) -> Renumbered {
+    prepare_change(state, &changes);
     place_all(&state.clumps, &mut state.particles);
     let pressed_before_j = pressed_j(state);
     let Changes {
@@ -201,6 +203,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         let strain_j: f64 = bonds.map(strain_j).sum();
         state.ledger.gain(strain_j);
     }
+    count_sleepers(state);
     let pressed_j = pressed_j(state);
     state.ledger.gain(pressed_j - pressed_before_j);
     Renumbered {

@@ -25,31 +25,39 @@ const SAME_WAY: f64 = 0.9;
 /// Share of what is missing that a servo makes good in a step.
 const SERVO: f64 = 0.1;
 
-/// Lists the particles whose surface is less than `skin_m` from a wall.
+/// Lists the particles whose surface is less than `skin_m` from a wall, without those that sleep.
 pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
-        let bounds = wall.shape.bounds();
-        let in_space = wall.bounds_in_space();
-        let to_wall = wall.frame.all_to_wall();
-        let is_near = |i: &u32| {
-            let pose = &particles.poses[*i as usize];
-            let reach = pose.radius_m() + skin_m;
-            if !in_space.is_near(&pose.place().into(), reach) {
-                return false;
-            }
-            let centre = to_wall(pose.place().into());
-            let mut found = Vec::new();
-            if bounds.is_near(&centre, reach) {
-                wall.shape.touches(centre, reach, &mut found);
-            }
-            !found.is_empty()
+        let near: Vec<u32> = {
+            let is_near = nearness(wall, skin_m);
+            let is_near =
+                |&i: &u32| !particles.sleeps(i as usize) && is_near(&particles.poses[i as usize]);
+            let all = 0..particles.len() as u32;
+            all.into_par_iter()
+                .with_min_len(CHUNK)
+                .filter(is_near)
+                .collect()
         };
-        let all = 0..particles.len() as u32;
-        wall.near = all
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .filter(is_near)
-            .collect();
+        wall.near = near;
+    }
+}
+
+/// Says of spheres whether their surface is less than `skin_m` from a wall.
+pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
+    let bounds = wall.shape.bounds();
+    let in_space = wall.bounds_in_space();
+    let to_wall = wall.frame.all_to_wall();
+    move |pose| {
+        let reach = pose.radius_m() + skin_m;
+        if !in_space.is_near(&pose.place().into(), reach) {
+            return false;
+        }
+        let centre = to_wall(pose.place().into());
+        let mut found = Vec::new();
+        if bounds.is_near(&centre, reach) {
+            wall.shape.touches(centre, reach, &mut found);
+        }
+        !found.is_empty()
     }
 }
 
@@ -138,11 +146,7 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     let pushes = [&mut wall.push, &mut wall.damping];
     for ((push, force), moment) in pushes.into_iter().zip(met.forces).zip(met.moments) {
         let about_pivot = arm.cross(&force) + moment;
-        for k in 0..3 {
-            push.force_n[k] += force[k];
-            push.torque_n_m[k] += about_pivot[k];
-        }
-        push.belt_w += force.dot(&met.belt);
+        push.add(force.into(), about_pivot.into(), force.dot(&met.belt));
     }
     wall.elastic_j += met.elastic_j;
     wall.stiffness_n_m += met.stiffness_n_m;
@@ -292,6 +296,38 @@ fn meet_at(
     }
 }
 
+/// What a wall at rest does to a particle at rest at one place, as it is remembered.
+pub fn push_at_rest(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    old: &WallTouch,
+) -> Push {
+    let pose = &particles.poses[old.particle as usize];
+    let there = Touch {
+        point: pose.place().into(),
+        feature: old.feature,
+        normal: old.normal.map(|n| -n),
+        distance_m: pose.radius_m() - old.memory.overlap_m() - old.memory.origin_m(),
+    };
+    let kind = wall.kind(contacts.materials[old.particle as usize]);
+    let met = meet_at(
+        wall,
+        kind,
+        particles,
+        old.particle,
+        &there,
+        Some(old),
+        contacts.least_overlap,
+        0.0,
+    );
+    let arm = met.point - Vector3::from(wall.frame.position_m);
+    let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
+    let mut push = Push::default();
+    push.add(met.forces[0].into(), about_pivot.into(), 0.0);
+    push
+}
+
 /// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it overlaps by `overlap_m`.
 pub fn wall_touch(
     particles: &Particles,
@@ -361,53 +397,73 @@ fn with_law(
 /// Decides how the walls move in the step of `dt`, s, that begins at `time_s`.
 pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
     for wall in walls {
-        let [velocity, spin] = match &wall.motion {
-            WallMotion::Fixed => [[0.0; 3]; 2],
-            WallMotion::Velocity {
-                velocity_m_s,
-                spin_rad_s,
-                factor,
-            } => {
-                let factor = factor_at(factor, time_s + 0.5 * dt);
-                [
-                    velocity_m_s.map(|v| factor * v),
-                    spin_rad_s.map(|w| factor * w),
-                ]
-            }
-            WallMotion::Displacement {
-                displacement_m,
-                turn_rad,
-                factor,
-            } => {
-                let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
-                [
-                    displacement_m.map(|d| gain * d / dt),
-                    turn_rad.map(|t| gain * t / dt),
-                ]
-            }
-            WallMotion::Servo {
-                force_n,
-                direction,
-                largest_velocity_m_s,
-                factor,
-            } => {
-                // Without damping, which follows from the wall's own velocity: in a circle the two would drive each other.
-                let elastic = |k: usize| wall.push.force_n[k] - wall.damping.force_n[k];
-                let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
-                let missing = factor_at(factor, time_s) * force_n - pushed;
-                // Without contact there is nothing to go by: as fast as it may.
-                let wanted = if wall.stiffness_n_m > 0.0 {
-                    SERVO * missing / (wall.stiffness_n_m * dt)
-                } else {
-                    f64::INFINITY.copysign(missing)
-                };
-                let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
-                [direction.map(|d| speed * d), [0.0; 3]]
-            }
-        };
+        let [velocity, spin] = planned(wall, time_s, dt);
         wall.velocities_m_s[1] = velocity;
         wall.spins_rad_s[1] = spin;
     }
+}
+
+/// Velocity, m/s, and spin, rad/s, of a wall in the step of `dt`, s, that begins at `time_s`.
+fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
+    match &wall.motion {
+        WallMotion::Fixed => [[0.0; 3]; 2],
+        WallMotion::Velocity {
+            velocity_m_s,
+            spin_rad_s,
+            factor,
+        } => {
+            let factor = factor_at(factor, time_s + 0.5 * dt);
+            [
+                velocity_m_s.map(|v| factor * v),
+                spin_rad_s.map(|w| factor * w),
+            ]
+        }
+        WallMotion::Displacement {
+            displacement_m,
+            turn_rad,
+            factor,
+        } => {
+            let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
+            [
+                displacement_m.map(|d| gain * d / dt),
+                turn_rad.map(|t| gain * t / dt),
+            ]
+        }
+        WallMotion::Servo {
+            force_n,
+            direction,
+            largest_velocity_m_s,
+            factor,
+        } => {
+            // Without damping, which follows from the wall's own velocity: in a circle the two would drive each other.
+            let elastic = |k: usize| wall.push.force_n[k] - wall.damping.force_n[k];
+            let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
+            let missing = factor_at(factor, time_s) * force_n - pushed;
+            // Without contact there is nothing to go by: as fast as it may.
+            let wanted = if wall.stiffness_n_m > 0.0 {
+                SERVO * missing / (wall.stiffness_n_m * dt)
+            } else {
+                f64::INFINITY.copysign(missing)
+            };
+            let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
+    }
+}
+
+/// Whether a wall has moved in the step before, or its surface moves as it stands.
+pub fn has_moved(wall: &Wall) -> bool {
+    let moving = [
+        wall.velocities_m_s[0],
+        wall.spins_rad_s[0],
+        wall.surface_velocity_m_s,
+    ];
+    matches!(wall.motion, WallMotion::Servo { .. }) || moving != [[0.0; 3]; 3]
+}
+
+/// Whether a wall moves in the step of `dt`, s, that begins at `time_s`.
+pub fn will_move(wall: &Wall, time_s: f64, dt: f64) -> bool {
+    planned(wall, time_s, dt) != [[0.0; 3]; 2]
 }
 
 /// Moves the walls on. Returns the largest speed of a wall's point that is near particles, m/s.

@@ -120,6 +120,8 @@ pub struct Clump {
     pub near: [u32; 2],
     /// Energy that contacts have taken from its motion so far, J: the sum over all times at which they slowed it down.
     pub impact_energy_j: f64,
+    /// Whether it sleeps: it is not stepped then, and nothing is near it.
+    pub asleep: bool,
 }
 
 /// All clumps. Their spheres are the last of the particles, in the same order.

@@ -111,6 +111,8 @@ pub struct Contacts {
     pub memories: Vec<Memory>,
     /// Who works on what.
     pub shares: Vec<ContactShare>,
+    /// Number of shares that was asked for: few contacts make fewer.
+    pub wanted_shares: usize,
     /// Surfaces closer than this were near when pairs were looked for, m.
     pub skin_m: f64,
     /// What every particle may move before pairs have to be looked for again, m.
@@ -174,6 +176,7 @@ impl Contacts {
 
     /// Divides the contacts into `count` shares of about the same number each.
     pub fn divide(&mut self, particles: usize, count: usize) {
+        self.wanted_shares = count;
         let wanted = self.pairs.len().div_ceil(count).max(1);
         let mut starts = vec![0];
         for k in 1..count {

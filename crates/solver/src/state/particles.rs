@@ -90,6 +90,8 @@ pub struct Particles {
     pub wrenches: Vec<Wrench>,
     /// Number of those that move by themselves.
     pub free: usize,
+    /// For each whether its body sleeps. Empty: none does.
+    pub asleep: Vec<bool>,
 }
 
 impl Particles {
@@ -101,6 +103,12 @@ impl Particles {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
+    }
+
+    /// Whether the body of particle `i` sleeps.
+    #[inline(always)]
+    pub fn sleeps(&self, i: usize) -> bool {
+        self.asleep.get(i).is_some_and(|asleep| *asleep)
     }
 
     /// Kinetic energy of particle `i` when it moves so, J.

@@ -1,7 +1,7 @@
 //! Which particles and bonds each thread works on.
 //!
 //! A share is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
-//! of two shares are computed by both. Bonds that are broken belong to none. So no two threads write to the same place, and every sum keeps its order for any number of shares.
+//! of two shares are computed by both. Bonds that are broken or of bodies that sleep belong to none. So no two threads write to the same place, and every sum keeps its order for any number of shares.
 
 use std::ops::Range;
 
@@ -32,6 +32,8 @@ pub enum Which {
 pub struct Share {
     /// Its particles.
     pub particles: Range<usize>,
+    /// Those of them that do not sleep: as numbers within the share.
+    pub awake: Vec<Range<usize>>,
     /// Its bonds: those of the border first, so that each particle meets its bonds in their order.
     pub batches: Vec<Batch>,
     /// Bonds of its own that have reached their strength in this step, in order.
@@ -52,46 +54,65 @@ impl Share {
 
 /// Divides particles and bonds into `count` shares with about the same number of bonds each; fewer where there are not enough particles.
 pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Share> {
-    // A particle costs about a third of a bond.
-    let work = 3 * bonds.len() + particles;
+    divide_awake(bonds, particles, count, &[])
+}
+
+/// Divides those particles and bonds that are not `asleep` (one for each particle; empty: none is).
+pub fn divide_awake(bonds: &Bonds, particles: usize, count: usize, asleep: &[bool]) -> Vec<Share> {
     let first_bond = first_bonds(bonds, particles);
-    let mut starts: Vec<usize> = (0..=count)
-        .map(|k| {
-            let wanted = work * k / count;
-            let mut low = 0;
-            let mut high = particles;
-            while low < high {
-                let middle = (low + high) / 2;
-                if 3 * first_bond[middle] + middle < wanted {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            low
-        })
-        .collect();
+    // A particle costs about a third of a bond.
+    let mut done = 0;
+    let mut work = vec![0];
+    for i in 0..particles {
+        if !sleeps(asleep, i) {
+            done += 3 * (first_bond[i + 1] - first_bond[i]) + 1;
+        }
+        work.push(done);
+    }
+    let between = (1..count).map(|k| {
+        let wanted = done * k / count;
+        work.partition_point(|before| *before < wanted)
+    });
+    let mut starts: Vec<usize> = [0].into_iter().chain(between).chain([particles]).collect();
     starts.dedup();
     let mut shares: Vec<Share> = starts
         .windows(2)
         .map(|w| Share {
             particles: w[0]..w[1],
+            awake: awake_ranges(w[0]..w[1], asleep),
             batches: Vec::new(),
             failing: Vec::new(),
         })
         .collect();
-    add_batches(bonds, &mut shares, &first_bond);
+    add_batches(bonds, &mut shares, &first_bond, asleep);
     shares
 }
 
-/// Gives the shares their bonds once more, without those that have broken since.
-pub fn divide_anew(bonds: &Bonds, shares: &mut [Share]) {
+fn sleeps(asleep: &[bool], i: usize) -> bool {
+    asleep.get(i).is_some_and(|asleep| *asleep)
+}
+
+/// The particles of a share that do not sleep, as numbers within it.
+fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for i in particles.clone().filter(|&i| !sleeps(asleep, i)) {
+        let at = i - particles.start;
+        match ranges.last_mut() {
+            Some(last) if last.end == at => last.end += 1,
+            _ => ranges.push(at..at + 1),
+        }
+    }
+    ranges
+}
+
+/// Gives the shares their bonds once more, without those that have broken since and those of bodies that sleep.
+pub fn divide_anew(bonds: &Bonds, shares: &mut [Share], asleep: &[bool]) {
     let particles = shares.last().map_or(0, |share| share.particles.end);
     let first_bond = first_bonds(bonds, particles);
     for share in shares.iter_mut() {
         share.batches.clear();
     }
-    add_batches(bonds, shares, &first_bond);
+    add_batches(bonds, shares, &first_bond, asleep);
 }
 
 /// For each particle the first of the bonds that it is the first end of; and at the end the number of bonds. Length particles + 1.
@@ -106,16 +127,19 @@ pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     first_bond
 }
 
-fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize]) {
-    add_borders(bonds, shares);
+fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize], asleep: &[bool]) {
+    add_borders(bonds, shares, asleep);
     for share in shares {
         let own = first_bond[share.particles.start]..first_bond[share.particles.end];
         for (rule, range) in bonds.runs(own) {
             let whole: Vec<u32> = range
                 .clone()
-                .filter(|&at| !bonds.is_broken(at))
+                .filter(|&at| !is_left_out(bonds, at, asleep))
                 .map(|at| at as u32)
                 .collect();
+            if whole.is_empty() {
+                continue;
+            }
             let which = if whole.len() == range.len() {
                 Which::Run(range)
             } else {
@@ -126,14 +150,19 @@ fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize]) {
     }
 }
 
+/// Whether nobody computes a bond: it is broken, or its body sleeps.
+fn is_left_out(bonds: &Bonds, at: usize, asleep: &[bool]) -> bool {
+    bonds.is_broken(at) || sleeps(asleep, bonds.ends[at][0] as usize)
+}
+
 /// Gives each bond whose ends lie in two shares to the share of its second end as well.
-fn add_borders(bonds: &Bonds, shares: &mut [Share]) {
+fn add_borders(bonds: &Bonds, shares: &mut [Share], asleep: &[bool]) {
     let mut of_first = 0;
     for (at, &[a, b]) in bonds.ends.iter().enumerate() {
         while shares[of_first].particles.end <= a as usize {
             of_first += 1;
         }
-        if (b as usize) < shares[of_first].particles.end || bonds.is_broken(at) {
+        if (b as usize) < shares[of_first].particles.end || is_left_out(bonds, at, asleep) {
             continue;
         }
         let of_second = shares.partition_point(|s| s.particles.end <= b as usize);

@@ -33,6 +33,8 @@ pub struct Wall {
     pub push: Push,
     /// The part of that which is damping.
     pub damping: Push,
+    /// What it does to the particles that touch it and sleep, which are not among those.
+    pub slept_on: Push,
     /// Stiffness of its contacts along their normals, together, N/m.
     pub stiffness_n_m: f64,
     /// Elastic energy of its contacts, J.
@@ -65,6 +67,7 @@ impl Wall {
             touching: Vec::new(),
             push: Push::default(),
             damping: Push::default(),
+            slept_on: Push::default(),
             stiffness_n_m: 0.0,
             elastic_j: 0.0,
             friction_j: 0.0,
@@ -82,6 +85,16 @@ impl Wall {
         }
         let corners = self.shape.bounds().corners();
         Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
+    }
+
+    /// Force, N, and torque about the pivot, N m, on all particles that touch it, be they awake or asleep.
+    pub fn whole_push(&self) -> [[f64; 3]; 2] {
+        let (awake, asleep) = (&self.push, &self.slept_on);
+        let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
+        [
+            sum(&awake.force_n, &asleep.force_n),
+            sum(&awake.torque_n_m, &asleep.torque_n_m),
+        ]
     }
 
     /// How it meets a material of this number, which it is known to meet.
@@ -115,6 +128,15 @@ pub struct Push {
 }
 
 impl Push {
+    /// Adds a force, N, a torque about the pivot, N m, and a power of the belt, W.
+    pub fn add(&mut self, force_n: [f64; 3], torque_n_m: [f64; 3], belt_w: f64) {
+        for k in 0..3 {
+            self.force_n[k] += force_n[k];
+            self.torque_n_m[k] += torque_n_m[k];
+        }
+        self.belt_w += belt_w;
+    }
+
     /// Power of the wall with the particles while it moves so, W.
     pub fn power_w(&self, velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> f64 {
         let moving: f64 = (0..3)

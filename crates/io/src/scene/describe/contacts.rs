@@ -34,7 +34,7 @@ impl Lines {
         }
     }
 
-    /// `[clusters]`, `[relaxation]` and `[search]`: where anything can touch, or where they say something.
+    /// `[clusters]`, `[relaxation]` and `[search]`: where anything can touch, or where they say something; `[sleep]` where it is there.
     pub(super) fn about_contacts(&mut self, scene: &Scene) {
         let touches = !scene.contacts.is_empty() || !scene.walls.is_empty();
         let clusters = &scene.clusters;
@@ -55,6 +55,10 @@ impl Lines {
         if touches || scene.search != Search::default() {
             let skin = optional(scene.search.skin, "", "chosen by the program");
             self.add("search.skin", skin);
+        }
+        if let Some(sleep) = &scene.sleep {
+            self.add("sleep.speed", value(sleep.speed_m_s, "m/s"));
+            self.add("sleep.after", value(sleep.after_s, "s"));
         }
     }
 }

@@ -1,0 +1,433 @@
+//! Bodies at rest fall asleep together with all that they touch, and wake together when something that moves comes near.
+//!
+//! Who sleeps is decided from places, motions and contacts alone, never from what happens to be listed: a run that goes on from a checkpoint decides the same.
+
+use nalgebra::Vector3;
+
+use super::clumps::{place_all, synchronous};
+use super::contacts::contact_energy_j;
+use super::neighbours::near_pairs;
+use super::population::Changes;
+use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
+use crate::check::ledger::synchronous_motions;
+use crate::disjoint::{find, join};
+use crate::state::State;
+use crate::state::contacts::{Contacts, Memory};
+use crate::state::particles::Wrench;
+use crate::state::shares::divide_awake;
+use crate::state::sleep::{Bed, KeptPair, KeptTouch, News, Sleep};
+use crate::state::walls::{Push, Wall};
+
+/// Steps between two looks at who is slow.
+const EVERY: u64 = 100;
+
+/// Lets those bodies fall asleep that have been slow for long enough and touch none that has not, between a kick and the drift after it.
+pub fn look(state: &mut State) {
+    if let Some(sleep) = &mut state.sleep {
+        let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
+        sleep.particle_steps[0] += all - left_out;
+        sleep.particle_steps[1] += left_out;
+    }
+    if state.sleep.is_none() || !state.steps.is_multiple_of(EVERY) {
+        return;
+    }
+    let speeds_m_s = speeds_m_s(state);
+    let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
+        return;
+    };
+    sleep.beds.resize(clusters.history.len(), Bed::AWAKE);
+    let slow_for = |bed: &Bed| !bed.asleep && state.time_s - bed.slow_since_s >= sleep.after_s;
+    for (bed, speed_m_s) in sleep.beds.iter_mut().zip(speeds_m_s) {
+        bed.slow_since_s = match speed_m_s {
+            Some(speed_m_s) if speed_m_s < sleep.speed_m_s => bed.slow_since_s.min(state.time_s),
+            _ => f64::INFINITY,
+        };
+    }
+    let may: Vec<bool> = sleep.beds.iter().map(slow_for).collect();
+    let falling = at_rest_together(state, may);
+    if !falling.is_empty() {
+        fall_asleep(state, &falling);
+    }
+}
+
+/// For each cluster a speed that no point of it exceeds, m/s; none of one that has ended or sleeps.
+fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
+    let Some(clusters) = &state.clusters else {
+        return Vec::new();
+    };
+    let mut speeds: Vec<Option<f64>> = vec![None; clusters.history.len()];
+    let mut note = |id: u32, speed_m_s: f64| {
+        let largest = &mut speeds[id as usize];
+        *largest = Some(largest.map_or(speed_m_s, |before| before.max(speed_m_s)));
+    };
+    let norm = |v: [f64; 3]| Vector3::from(v).norm();
+    let p = &state.particles;
+    for i in (0..p.free).filter(|&i| !p.sleeps(i)) {
+        let motion = &p.motions[i];
+        let turning_m_s = norm(motion.spin_rad_s) * p.poses[i].radius_m();
+        note(
+            clusters.of_particle[i],
+            norm(motion.velocity_m_s) + turning_m_s,
+        );
+    }
+    for clump in state.clumps.all.iter().filter(|clump| !clump.asleep) {
+        let template = state.clumps.template(clump);
+        let reach_m = template.reach_m * template.scale.max(1.0);
+        let turning_m_s = clump.spin_rad_s(template).norm() * reach_m;
+        note(clump.cluster, norm(clump.velocity_m_s) + turning_m_s);
+    }
+    speeds
+}
+
+/// Which of the clusters that may sleep can: nothing holds, loads or moves them, and all that they touch or are near to can as well. Their numbers, rising.
+fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
+    let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
+        return Vec::new();
+    };
+    let id = |i: u32| clusters.of_particle[i as usize];
+    let held = state.supports.iter().flat_map(|support| &support.held);
+    let held = held.map(|held| held.particle);
+    let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
+    for i in held.chain(loaded) {
+        may[id(i) as usize] = false;
+    }
+    for cluster in clusters.damaged_by(&state.unsearched, &state.bonds) {
+        may[cluster as usize] = false;
+    }
+    let moving = |wall: &&Wall| moves(wall, [state.time_s, state.time_step_s]);
+    for touch in state.walls.iter().filter(moving).flat_map(|w| &w.touching) {
+        may[id(touch.particle) as usize] = false;
+    }
+    let mut names: Vec<u32> = (0..may.len() as u32).collect();
+    for (pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
+        if memory.overlap_m() > 0.0 {
+            join(&mut names, id(pair[0]), id(pair[1]));
+        }
+    }
+    leave_out_islands(&mut names, &mut may, state.sleep.as_ref());
+    if !may.contains(&true) {
+        return Vec::new();
+    }
+    // Few come as far as this: only now is everything near looked for.
+    place_all(&state.clumps, &mut state.particles);
+    let (poses, skin_m) = (&state.particles.poses, contacts.skin_m);
+    for wall in state.walls.iter().filter(moving) {
+        let near = nearness(wall, skin_m);
+        for (pose, &cluster) in poses.iter().zip(&clusters.of_particle) {
+            if may[cluster as usize] && near(pose) {
+                may[cluster as usize] = false;
+            }
+        }
+    }
+    for pair in near_pairs(poses, &clusters.of_particle, skin_m) {
+        join(&mut names, id(pair[0]), id(pair[1]));
+    }
+    leave_out_islands(&mut names, &mut may, state.sleep.as_ref());
+    let found = (0..may.len() as u32).filter(|&cluster| may[cluster as usize]);
+    found.collect()
+}
+
+/// Of islands in which one is awake and may not sleep, nobody may.
+fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>) {
+    let mut can = vec![true; may.len()];
+    for cluster in 0..may.len() as u32 {
+        let sleeps = sleep.is_some_and(|sleep| sleep.is_asleep(cluster));
+        can[find(names, cluster) as usize] &= may[cluster as usize] || sleeps;
+    }
+    for cluster in 0..may.len() as u32 {
+        may[cluster as usize] &= can[find(names, cluster) as usize];
+    }
+}
+
+/// Whether a wall moves in the step before or in the one that begins at this time and takes so long, s.
+fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
+    has_moved(wall) || will_move(wall, time_s, time_step_s)
+}
+
+/// Whether somebody sleeps and a wall that rested moves from now on: then nobody may sleep on it.
+pub fn begins_to_move(
+    sleep: Option<&Sleep>,
+    walls: &[Wall],
+    [time_s, time_step_s]: [f64; 2],
+) -> bool {
+    let begins = |wall: &Wall| !has_moved(wall) && will_move(wall, time_s, time_step_s);
+    sleep.is_some_and(|sleep| sleep.bodies > 0) && walls.iter().any(begins)
+}
+
+/// Puts clusters to sleep: takes their motion, and books it.
+fn fall_asleep(state: &mut State, falling: &[u32]) {
+    let motions = synchronous_motions(state);
+    let now = synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s);
+    let (Some(clusters), Some(sleep)) = (&state.clusters, &mut state.sleep) else {
+        return;
+    };
+    let falls = |id: u32| falling.binary_search(&id).is_ok();
+    let half_s = 0.5 * state.time_step_s;
+    for i in (0..state.particles.len()).filter(|&i| falls(clusters.of_particle[i])) {
+        let p = &mut state.particles;
+        let motion = p.motions[i];
+        if i < p.free {
+            let own = motion.spin_rad_s.map(|w| w / motion.inverse_inertia);
+            let kinetic_j = p.kinetic_j(i, &motions[i]);
+            state.ledger.stop(
+                [1.0 / motion.inverse_mass, kinetic_j],
+                [p.poses[i].place().into(), motion.velocity_m_s, own],
+            );
+            let resisting = [&mut state.bond_resistance, &mut state.particle_resistance];
+            for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {
+                // What damping would have taken in the half step to come has been booked.
+                let power_w = power_w(wrench, &motion.velocity_m_s, &motion.spin_rad_s);
+                state.ledger.gain(-half_s * power_w);
+                *wrench = Wrench::default();
+            }
+        }
+        p.motions[i].velocity_m_s = [0.0; 3];
+        p.motions[i].spin_rad_s = [0.0; 3];
+        p.wrenches[i] = Wrench::default();
+    }
+    for (n, now) in now.iter().enumerate() {
+        if !falls(now.cluster) {
+            continue;
+        }
+        let template = state.clumps.template(now);
+        let (mass_kg, kinetic_j) = (template.mass_kg, now.kinetic_j(template));
+        let clump = &mut state.clumps.all[n];
+        state.ledger.stop(
+            [mass_kg, kinetic_j],
+            [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
+        );
+        clump.velocity_m_s = [0.0; 3];
+        clump.angular_momentum = [0.0; 3];
+        clump.force_n = [0.0; 3];
+        clump.torque_n_m = [0.0; 3];
+    }
+    for &id in falling {
+        sleep.beds[id as usize].asleep = true;
+    }
+    sleep.news.push(News {
+        step: state.steps,
+        time_s: state.time_s,
+        kind: "asleep",
+        cause: "rest",
+        bodies: falling.len(),
+    });
+    if let Some(contacts) = &mut state.contacts {
+        contacts.room_m = -1.0;
+    }
+    count_sleepers(state);
+}
+
+/// Power of a wrench, W.
+fn power_w(wrench: &Wrench, velocity_m_s: &[f64; 3], spin_rad_s: &[f64; 3]) -> f64 {
+    (0..3)
+        .map(|k| wrench.force_n[k] * velocity_m_s[k] + wrench.torque_n_m[k] * spin_rad_s[k])
+        .sum()
+}
+
+/// Clusters that sleep and are near a particle that is awake, by the list of pairs, or near a wall that moves.
+pub fn disturbed(state: &State) -> Vec<u32> {
+    let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
+        return Vec::new();
+    };
+    let p = &state.particles;
+    if p.asleep.is_empty() {
+        return Vec::new();
+    }
+    let near_particles =
+        contacts
+            .pairs
+            .iter()
+            .filter_map(|&[a, b]| match [a, b].map(|i| p.sleeps(i as usize)) {
+                [true, false] => Some(a),
+                [false, true] => Some(b),
+                _ => None,
+            });
+    let mut near: Vec<u32> = near_particles.collect();
+    for wall in &state.walls {
+        if moves(wall, [state.time_s, state.time_step_s]) {
+            let is_near = nearness(wall, contacts.skin_m);
+            let sleepers = (0..p.len()).filter(|&i| p.asleep[i] && is_near(&p.poses[i]));
+            near.extend(sleepers.map(|i| i as u32));
+        }
+    }
+    let ids = near.iter().map(|&i| clusters.of_particle[i as usize]);
+    let mut ids: Vec<u32> = ids.collect();
+    ids.sort_unstable();
+    ids.dedup();
+    ids
+}
+
+/// Wakes clusters, and all that sleep with them: those that they touch, and those that these touch.
+pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
+    let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
+        return;
+    };
+    let mut names: Vec<u32> = (0..sleep.beds.len() as u32).collect();
+    for kept in &sleep.pairs {
+        let [a, b] = kept.pair.map(|i| clusters.of_particle[i as usize]);
+        join(&mut names, a, b);
+    }
+    let mut wakes = vec![false; sleep.beds.len()];
+    for &id in ids {
+        wakes[find(&mut names, id) as usize] = true;
+    }
+    let mut bodies = 0;
+    for (id, bed) in (0..).zip(&mut sleep.beds) {
+        if bed.asleep && wakes[find(&mut names, id) as usize] {
+            *bed = Bed::AWAKE;
+            bodies += 1;
+        }
+    }
+    sleep.news.push(News {
+        step: state.steps,
+        time_s: state.time_s,
+        kind: "awake",
+        cause,
+        bodies,
+    });
+    let beds = &sleep.beds;
+    let is_awake = |i: u32| !beds[clusters.of_particle[i as usize] as usize].asleep;
+    put_back(
+        &mut sleep.pairs,
+        &mut sleep.touches,
+        state.contacts.as_mut(),
+        &mut state.walls,
+        is_awake,
+    );
+    count_sleepers(state);
+}
+
+/// Wakes the bodies that are about to go or to become others, with all that sleep with them, and puts what is kept of the rest back into the lists, where it
+/// is counted anew.
+pub fn prepare_change(state: &mut State, changes: &Changes) {
+    let Some(sleep) = &state.sleep else {
+        return;
+    };
+    let clumps = &state.clumps.all;
+    let swapped = changes.to_clusters.iter().map(|&at| clumps[at].cluster);
+    let stiffened = changes.to_clumps.iter().map(|(id, _)| *id);
+    let gone = changes.leaving.iter().copied();
+    let all = swapped.chain(stiffened).chain(gone);
+    let asleep: Vec<u32> = all.filter(|&id| sleep.is_asleep(id)).collect();
+    if !asleep.is_empty() {
+        wake(state, &asleep, "changed");
+    }
+    if let Some(sleep) = &mut state.sleep {
+        let contacts = state.contacts.as_mut();
+        let Sleep { pairs, touches, .. } = sleep;
+        put_back(pairs, touches, contacts, &mut state.walls, |_| true);
+    }
+}
+
+/// Puts what is kept of those particles that are awake back into the lists.
+fn put_back(
+    pairs: &mut Vec<KeptPair>,
+    touches: &mut Vec<KeptTouch>,
+    contacts: Option<&mut Contacts>,
+    walls: &mut [Wall],
+    is_awake: impl Fn(u32) -> bool,
+) {
+    if let Some(contacts) = contacts {
+        let before = contacts.pairs.iter().zip(&contacts.memories);
+        let mut all: Vec<([u32; 2], Memory)> = before.map(|(pair, m)| (*pair, *m)).collect();
+        let back = pairs.extract_if(.., |kept| is_awake(kept.pair[0]));
+        all.extend(back.map(|kept| (kept.pair, kept.memory)));
+        all.sort_by_key(|(pair, _)| *pair);
+        (contacts.pairs, contacts.memories) = all.into_iter().unzip();
+    }
+    for kept in touches.extract_if(.., |kept| is_awake(kept.touch.particle)) {
+        walls[kept.wall].touching.push(kept.touch);
+    }
+    for wall in walls.iter_mut() {
+        wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    sum_pushes(touches, walls);
+}
+
+/// Takes what contacts of sleepers remember from the lists, and keeps it.
+pub fn keep_touches(state: &mut State) {
+    let (Some(sleep), Some(contacts)) = (&mut state.sleep, &state.contacts) else {
+        return;
+    };
+    let p = &state.particles;
+    if p.asleep.is_empty() {
+        return;
+    }
+    let known = sleep.pairs.len() + sleep.touches.len();
+    for (at, (&pair, &memory)) in contacts.pairs.iter().zip(&contacts.memories).enumerate() {
+        let both_sleep = pair.iter().all(|&i| p.sleeps(i as usize));
+        // Pairs that are listed and do not touch remember nothing.
+        if both_sleep && memory != Memory::default() {
+            let elastic_j = contact_energy_j(contacts, p, at);
+            sleep.pairs.push(KeptPair {
+                pair,
+                memory,
+                elastic_j,
+            });
+        }
+    }
+    for (n, wall) in state.walls.iter_mut().enumerate() {
+        let all = std::mem::take(&mut wall.touching);
+        let (asleep, awake): (Vec<_>, Vec<_>) = all
+            .into_iter()
+            .partition(|touch| p.sleeps(touch.particle as usize));
+        wall.touching = awake;
+        sleep
+            .touches
+            .extend(asleep.into_iter().map(|touch| KeptTouch {
+                wall: n,
+                touch,
+                push: push_at_rest(wall, contacts, p, &touch),
+                elastic_j: touch_energy_j(wall, contacts, p, &touch),
+            }));
+    }
+    if sleep.pairs.len() + sleep.touches.len() > known {
+        sleep.pairs.sort_by_key(|kept| kept.pair);
+        sleep
+            .touches
+            .sort_by_key(|kept| (kept.wall, kept.touch.particle));
+        sum_pushes(&sleep.touches, &mut state.walls);
+    }
+}
+
+/// What walls do to those who sleep on them.
+fn sum_pushes(touches: &[KeptTouch], walls: &mut [Wall]) {
+    for wall in walls.iter_mut() {
+        wall.slept_on = Push::default();
+    }
+    for KeptTouch { wall, push, .. } in touches {
+        walls[*wall]
+            .slept_on
+            .add(push.force_n, push.torque_n_m, push.belt_w);
+    }
+}
+
+/// Everything that follows from who sleeps: which particles and clumps, how the work is divided, and on what gravity acts in the books.
+pub fn count_sleepers(state: &mut State) {
+    let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
+        return;
+    };
+    let p = &mut state.particles;
+    sleep.bodies = sleep.beds.iter().filter(|bed| bed.asleep).count();
+    p.asleep.clear();
+    if sleep.bodies > 0 {
+        let of_particle = clusters.of_particle.iter();
+        p.asleep.extend(of_particle.map(|&id| sleep.is_asleep(id)));
+    }
+    sleep.particles = p.asleep.iter().filter(|asleep| **asleep).count();
+    let bonds = &state.bonds;
+    let rests = |at: &usize| p.sleeps(bonds.ends[*at][0] as usize) && !bonds.is_broken(*at);
+    sleep.bonds = match sleep.particles {
+        0 => 0,
+        _ => (0..bonds.len()).filter(rests).count() as u64,
+    };
+    state.shares = divide_awake(bonds, p.free, state.threads, &p.asleep);
+    for clump in &mut state.clumps.all {
+        clump.asleep = sleep.is_asleep(clump.cluster);
+    }
+    let free = (0..p.free).filter(|&i| p.sleeps(i));
+    let free = free.map(|i| (1.0 / p.motions[i].inverse_mass, p.poses[i].place().into()));
+    let clumps = state.clumps.all.iter().filter(|clump| clump.asleep);
+    let clumps = clumps.map(|clump| (state.clumps.template(clump).mass_kg, clump.place_m));
+    state.ledger.set_asleep(free.chain(clumps));
+}

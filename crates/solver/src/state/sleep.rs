@@ -1,0 +1,113 @@
+//! Sleep: which bodies at rest are not stepped, and what is kept of them until they wake.
+
+use serde::{Deserialize, Serialize};
+
+use super::contacts::Memory;
+use super::walls::{Push, WallTouch};
+
+/// Bodies that sleep, by the numbers of their clusters: clumps as well as clusters.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sleep {
+    /// No point of a body that falls asleep is faster, m/s.
+    pub speed_m_s: f64,
+    /// It has been as slow for so long, s.
+    pub after_s: f64,
+    /// For each cluster whether it sleeps, and since when it has been slow, s (infinite: it is not). Clusters beyond the end are awake and not slow.
+    pub beds: Vec<Bed>,
+    /// Contacts between particles that sleep, by pair. They are in no list of contacts.
+    pub pairs: Vec<KeptPair>,
+    /// Contacts between particles that sleep and walls, by wall and particle.
+    pub touches: Vec<KeptTouch>,
+    /// Number of bodies that sleep.
+    pub bodies: usize,
+    /// Number of their particles.
+    pub particles: usize,
+    /// Number of their bonds that hold.
+    pub bonds: u64,
+    /// Particles times steps that were done, and that were left out.
+    pub particle_steps: [u64; 2],
+    /// Bodies that fell asleep or woke in this step.
+    pub news: Vec<News>,
+    /// Lists are to be made from what a checkpoint holds: nobody wakes of it.
+    pub is_resumed: bool,
+}
+
+/// What is known of a cluster.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Bed {
+    /// Whether it sleeps.
+    pub asleep: bool,
+    /// Since when no point of it has been fast, s; infinite: since never.
+    pub slow_since_s: f64,
+}
+
+impl Bed {
+    /// Of a body that is awake and moves.
+    pub const AWAKE: Self = Self {
+        asleep: false,
+        slow_since_s: f64::INFINITY,
+    };
+}
+
+/// A contact between two particles that sleep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptPair {
+    /// The smaller number first.
+    pub pair: [u32; 2],
+    /// What it remembers.
+    pub memory: Memory,
+    /// J.
+    pub elastic_j: f64,
+}
+
+/// A contact between a particle that sleeps and a wall at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptTouch {
+    /// Which wall.
+    pub wall: usize,
+    /// What it remembers.
+    pub touch: WallTouch,
+    /// What the wall does to the particle.
+    pub push: Push,
+    /// J.
+    pub elastic_j: f64,
+}
+
+/// Bodies that fell asleep or woke together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct News {
+    /// At this step.
+    pub step: u64,
+    /// s.
+    pub time_s: f64,
+    /// `asleep` or `awake`.
+    pub kind: &'static str,
+    /// Why: `rest`; `near` something that moves; `changed` into something else, or gone.
+    pub cause: &'static str,
+    /// How many.
+    pub bodies: usize,
+}
+
+impl Sleep {
+    /// Nobody sleeps yet.
+    pub fn new(speed_m_s: f64, after_s: f64) -> Self {
+        Self {
+            speed_m_s,
+            after_s,
+            ..Self::default()
+        }
+    }
+
+    /// Whether a cluster sleeps.
+    pub fn is_asleep(&self, cluster: u32) -> bool {
+        let bed = self.beds.get(cluster as usize);
+        bed.is_some_and(|bed| bed.asleep)
+    }
+
+    /// Elastic energy of the contacts that are kept, J.
+    pub fn elastic_j(&self) -> f64 {
+        let pairs = self.pairs.iter().map(|kept| kept.elastic_j);
+        let touches = self.touches.iter().map(|kept| kept.elastic_j);
+        pairs.chain(touches).sum()
+    }
+}
