@@ -19,6 +19,7 @@ use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
+use crate::machine::machine;
 use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
 use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
@@ -326,6 +327,7 @@ pub fn run(
         simulated_s: state.time_s,
         wall_s,
         threads: settings.threads,
+        machine: machine(),
         particles: state.particles.len(),
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,

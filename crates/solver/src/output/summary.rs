@@ -29,6 +29,8 @@ pub struct Summary {
     pub wall_s: f64,
     /// Threads.
     pub threads: usize,
+    /// Processor and number of cores.
+    pub machine: String,
     /// Number of particles.
     pub particles: usize,
     /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
