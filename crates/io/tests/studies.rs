@@ -4,9 +4,7 @@
 
 use std::path::Path;
 
-use dem_io::study::{
-    Combine, MeasureOf, Reference, Study, rewritten, scene_with, study_from_text,
-};
+use dem_io::study::{Combine, MeasureOf, Reference, Study, rewritten, scene_with, study_from_text};
 
 const HEAD: &str = "version = 1\nscene = \"bar.toml\"\n";
 const TIP: &str = "[measures.tip]\n";
@@ -109,7 +107,10 @@ series = "load"
     let measure = |name: &str| study.measures.iter().find(|m| m.name == name).unwrap();
     assert_eq!(measure("tip").reference, Reference::Richardson(3));
     assert_eq!(measure("first").of, MeasureOf::Measure("tip".to_owned()));
-    assert_eq!(measure("first").reference, Reference::Value("-8.5 mm".to_owned()));
+    assert_eq!(
+        measure("first").reference,
+        Reference::Value("-8.5 mm".to_owned())
+    );
     assert_eq!(measure("energy").of, MeasureOf::Ledger("energy_error"));
     assert_eq!(measure("fine").reference, Reference::Finest(1));
 }
@@ -127,38 +128,116 @@ fn ranges_begin_and_end_where_they_say() {
 #[test]
 fn what_is_no_study() {
     for (rest, parts) in [
-        ("[measures.tip]\n", "study.toml:1: nothing varies; add [vary]"),
+        (
+            "[measures.tip]\n",
+            "study.toml:1: nothing varies; add [vary]",
+        ),
         ("[vary]\n\"run.safety\" = [0.5]\n", "nothing is measured"),
-        ("[vary]\nrun.safety = [0.5]\n[measures.tip]\n", "study.toml:4: vary.\"run\" is neither a list nor a range; write its path in quotes"),
-        ("[vary]\n\"run.safety\" = 0.5\n[measures.tip]\n", "study.toml:4: vary.\"run.safety\" is 0.5, but must be a list or a range"),
-        ("[vary]\n\"run.safety\" = []\n[measures.tip]\n", "an empty list"),
-        ("[vary]\n\"safety\" = [1]\n[measures.tip]\n", "\"safety\" is no path of a scene; write TABLE.KEY"),
-        ("[vary]\n\"run.safety\" = { from = 1, to = \"2 s\", count = 3 }\n[measures.tip]\n", "is in 's', but vary.\"run.safety\".from in no unit"),
-        ("[vary]\n\"run.safety\" = { from = 0, to = 2, count = 3, spacing = \"log\" }\n[measures.tip]\n", "no logarithm"),
-        ("[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n", "count is 1, but must be from 2 to 1000000"),
-        ("[vary]\n\"run.safety\" = { values = [1, 2], size = [1] }\n[measures.tip]\n", "must be a list of 2, one for each value"),
-        ("[vary]\n\"run.safety\" = { values = [1, 2], size = [1, -1] }\n[measures.tip]\n", "a size of more than 0"),
-        ("[vary]\n\"run.safety\" = [0.5, 0.6]\n[together.a]\n\"run.safety\" = [0.5]\n[measures.tip]\n", "study.toml:5: a is set by run.safety already"),
-        ("[vary]\n\"body.bar\" = [\"-\"]\n[measures.tip]\n", "must be the name of a file"),
-        ("[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = \"richardson\"\n", "study.toml:6: measures.tip.reference: run.safety has 2 sizes, but Richardson extrapolation needs 3"),
-        ("[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = { finest = \"run.safty\" }\n", "which does not vary; did you mean 'run.safety'?"),
-        ("[vary]\n\"bonds.a.model\" = [\"parallel\"]\n[measures.tip]\nreference = { finest = \"bonds.a.model\" }\n", "whose values have no size above 0; add size = [...]"),
-        ("[vary]\n\"bonds.a.model\" = [\"parallel\"]\n[measures.tip]\nreference = \"finest\"\n", "but 0 axes have sizes"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = 5\n", "must be a table"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = { value = 1, finest = \"run.safety\" }\n", "names 2 references"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energi\"\n", "did you mean 'energy'?"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nreference = \"finest\"\n", "it is an error by itself"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nmeasure = \"tip\"\n", "stands beside"),
-        ("[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n[page]\nseries = \"x\"\n", "which does not vary"),
-        ("repeats = 0\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n", "repeats is 0"),
-        ("threads = 5000\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n", "at most 1024"),
-        ("repeat = 3\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n", "unknown key repeat; did you mean 'repeats'?"),
+        (
+            "[vary]\nrun.safety = [0.5]\n[measures.tip]\n",
+            "study.toml:4: vary.\"run\" is neither a list nor a range; write its path in quotes",
+        ),
+        (
+            "[vary]\n\"run.safety\" = 0.5\n[measures.tip]\n",
+            "study.toml:4: vary.\"run.safety\" is 0.5, but must be a list or a range",
+        ),
+        (
+            "[vary]\n\"run.safety\" = []\n[measures.tip]\n",
+            "an empty list",
+        ),
+        (
+            "[vary]\n\"safety\" = [1]\n[measures.tip]\n",
+            "\"safety\" is no path of a scene; write TABLE.KEY",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = \"2 s\", count = 3 }\n[measures.tip]\n",
+            "is in 's', but vary.\"run.safety\".from in no unit",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 0, to = 2, count = 3, spacing = \"log\" }\n[measures.tip]\n",
+            "no logarithm",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n",
+            "count is 1, but must be from 2 to 1000000",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { values = [1, 2], size = [1] }\n[measures.tip]\n",
+            "must be a list of 2, one for each value",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { values = [1, 2], size = [1, -1] }\n[measures.tip]\n",
+            "a size of more than 0",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[together.a]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "study.toml:5: a is set by run.safety already",
+        ),
+        (
+            "[vary]\n\"body.bar\" = [\"-\"]\n[measures.tip]\n",
+            "must be the name of a file",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = \"richardson\"\n",
+            "study.toml:6: measures.tip.reference: run.safety has 2 sizes, but Richardson extrapolation needs 3",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = { finest = \"run.safty\" }\n",
+            "which does not vary; did you mean 'run.safety'?",
+        ),
+        (
+            "[vary]\n\"bonds.a.model\" = [\"parallel\"]\n[measures.tip]\nreference = { finest = \"bonds.a.model\" }\n",
+            "whose values have no size above 0; add size = [...]",
+        ),
+        (
+            "[vary]\n\"bonds.a.model\" = [\"parallel\"]\n[measures.tip]\nreference = \"finest\"\n",
+            "but 0 axes have sizes",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = 5\n",
+            "must be a table",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = { value = 1, finest = \"run.safety\" }\n",
+            "names 2 references",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energi\"\n",
+            "did you mean 'energy'?",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nreference = \"finest\"\n",
+            "it is an error by itself",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nmeasure = \"tip\"\n",
+            "stands beside",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n[page]\nseries = \"x\"\n",
+            "which does not vary",
+        ),
+        (
+            "repeats = 0\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeats is 0",
+        ),
+        (
+            "threads = 5000\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "at most 1024",
+        ),
+        (
+            "repeat = 3\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "unknown key repeat; did you mean 'repeats'?",
+        ),
     ] {
         let said = refused(&format!("{HEAD}{rest}"));
         assert!(said.contains(parts), "{rest}\n{said}\n{parts}");
     }
     assert!(refused("version = 2\n").contains("at most 1"));
-    assert!(refused("version = 1\n[vary]\n\"run.safety\" = [1]\n[measures.tip]\n").contains("scene is missing"));
+    assert!(
+        refused("version = 1\n[vary]\n\"run.safety\" = [1]\n[measures.tip]\n")
+            .contains("scene is missing")
+    );
 }
 
 #[test]
@@ -172,11 +251,26 @@ fn values_meet_the_scene() {
     assert_eq!(said("[vary]\n\"run.safety\" = [0.5]"), "");
     assert_eq!(said("[vary]\n\"bonds.steel.damping.force\" = [1]"), "");
     for (rest, parts) in [
-        ("[vary]\n\"run.safty\" = [0.5]", "study.toml:4: --set run.safty=0.5: unknown key run.safty; did you mean 'safety'?"),
-        ("[vary]\n\"run.safety\" = [5]", "study.toml:4: --set run.safety=5: run.safety is 5, but must be"),
-        ("[set]\n\"run.seed\" = 5\n[vary]\n\"materials.stel.density\" = [1]", "study.toml:6: materials.stel.density: the scene bar.toml has no [materials.stel]; did you mean 'steel'?"),
-        ("[vary]\n\"body.rod\" = [\"a.vtp\"]", "study.toml:4: the scene bar.toml has no body 'rod'; known: bar"),
-        ("[vary]\n\"body.bar\" = [\"a.vtp\"]", "study.toml:4: there is no file a.vtp"),
+        (
+            "[vary]\n\"run.safty\" = [0.5]",
+            "study.toml:4: --set run.safty=0.5: unknown key run.safty; did you mean 'safety'?",
+        ),
+        (
+            "[vary]\n\"run.safety\" = [5]",
+            "study.toml:4: --set run.safety=5: run.safety is 5, but must be",
+        ),
+        (
+            "[set]\n\"run.seed\" = 5\n[vary]\n\"materials.stel.density\" = [1]",
+            "study.toml:6: materials.stel.density: the scene bar.toml has no [materials.stel]; did you mean 'steel'?",
+        ),
+        (
+            "[vary]\n\"body.rod\" = [\"a.vtp\"]",
+            "study.toml:4: the scene bar.toml has no body 'rod'; known: bar",
+        ),
+        (
+            "[vary]\n\"body.bar\" = [\"a.vtp\"]",
+            "study.toml:4: there is no file a.vtp",
+        ),
         ("[vary]\n\"body.bar\" = [\"a.xyz\"]", "study.toml:4: a.xyz"),
     ] {
         let found = said(rest);
@@ -188,30 +282,55 @@ fn values_meet_the_scene() {
 fn a_scene_is_written_with_its_values() {
     let written = |rest: &str| {
         let study = study(&format!("{rest}\n{TIP}"));
-        let last = study.axes.iter().flat_map(|axis| &axis.values.last().unwrap().settings);
+        let last = study
+            .axes
+            .iter()
+            .flat_map(|axis| &axis.values.last().unwrap().settings);
         let settings: Vec<_> = study.fixed.iter().chain(last).collect();
         // Equality with the scene that was asked for is seen to inside.
-        rewritten(&study, SCENE, &settings, Path::new("new.toml")).unwrap_or_else(|e| panic!("{rest}: {e}"))
+        rewritten(&study, SCENE, &settings, Path::new("new.toml"))
+            .unwrap_or_else(|e| panic!("{rest}: {e}"))
     };
     let plain = written("[vary]\n\"run.safety\" = [0.9, 0.25]");
     assert_eq!(plain, SCENE.replace("safety = 0.9", "safety = 0.25"));
-    let added = written("[vary]\n\"run.seed\" = [1]\n\"bonds.steel.damping.force\" = [\"2 N s/m\"]\n\"bonds.steel.model\" = [\"parallel\"]");
+    let added = written(
+        "[vary]\n\"run.seed\" = [1]\n\"bonds.steel.damping.force\" = [\"2 N s/m\"]\n\"bonds.steel.model\" = [\"parallel\"]",
+    );
     assert!(added.contains("[run]\nseed = 1\n"), "{added}");
-    assert!(added.contains("{ viscous = 0.1, force = \"2 N s/m\" }"), "{added}");
-    assert!(added.contains("# A bar.") && added.contains("# long"), "{added}");
-    let table = written("[vary]\n\"sets.tip\" = [{ box = { min = [0.3, -1, -1], max = [1, 1, 1] } }]\n\"output.frames\" = [\"1 s\"]\n\"run.gravity\" = [[0, 0, -9.81]]");
+    assert!(
+        added.contains("{ viscous = 0.1, force = \"2 N s/m\" }"),
+        "{added}"
+    );
+    assert!(
+        added.contains("# A bar.") && added.contains("# long"),
+        "{added}"
+    );
+    let table = written(
+        "[vary]\n\"sets.tip\" = [{ box = { min = [0.3, -1, -1], max = [1, 1, 1] } }]\n\"output.frames\" = [\"1 s\"]\n\"run.gravity\" = [[0, 0, -9.81]]",
+    );
     assert!(table.contains("[sets.tip]\nbox = { min"), "{table}");
     assert!(table.contains("[output]\nframes = \"1 s\"\n"), "{table}");
-    written("[vary]\n\"bodies.bar.particles\" = [[[0, 0, 0, 0.1], [0.2, 0, 0, 0.1]]]\n\"bonds.steel.failure.tension\" = [\"1 MPa\"]");
+    written(
+        "[vary]\n\"bodies.bar.particles\" = [[[0, 0, 0, 0.1], [0.2, 0, 0, 0.1]]]\n\"bonds.steel.failure.tension\" = [\"1 MPa\"]",
+    );
 
     let folder = tempfile::tempdir().unwrap();
     for (part, text) in [
-        ("particles", "x_m,y_m,z_m,radius_m\n0,0,0,0.1\n0.2,0,0,0.1\n"),
+        (
+            "particles",
+            "x_m,y_m,z_m,radius_m\n0,0,0,0.1\n0.2,0,0,0.1\n",
+        ),
         ("bonds", "a,b\n0,1\n"),
     ] {
         std::fs::write(folder.path().join(format!("b.{part}.csv")), text).unwrap();
     }
     let file = folder.path().join("b.csv");
-    let text = written(&format!("[vary]\n\"body.bar\" = [{:?}]", file.display().to_string()));
-    assert!(text.contains("file = ") && !text.contains("bond_list"), "{text}");
+    let text = written(&format!(
+        "[vary]\n\"body.bar\" = [{:?}]",
+        file.display().to_string()
+    ));
+    assert!(
+        text.contains("file = ") && !text.contains("bond_list"),
+        "{text}"
+    );
 }

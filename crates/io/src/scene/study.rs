@@ -4,7 +4,7 @@ mod check;
 mod rewrite;
 mod values;
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
@@ -33,6 +33,8 @@ pub struct Study {
     pub repeats: u32,
     /// `threads` of each run; 1 unless given.
     pub threads: u32,
+    /// `time`, "wall" unless given.
+    pub time: RunTime,
     /// `combine`, "grid" unless given.
     pub combine: Combine,
     /// `[set]`: what all runs have.
@@ -43,6 +45,15 @@ pub struct Study {
     pub measures: Vec<StudyMeasure>,
     /// `series` of `[page]`: the axis whose values have colours; the first without sizes unless given.
     pub series: Option<usize>,
+}
+
+/// Which time of a run is compared. Both leave out start-up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunTime {
+    /// "wall": from the first step to the last.
+    Wall,
+    /// "processor": what processors spent on it; other programs on the machine change it less.
+    Processor,
 }
 
 /// How the values of several axes meet.
@@ -137,6 +148,8 @@ const LEDGERS: [(&str, &str); 3] = [
     ("angular-momentum", "angular_momentum_error"),
 ];
 
+const TIMES: [(&str, RunTime); 2] = [("wall", RunTime::Wall), ("processor", RunTime::Processor)];
+
 const COMBINATIONS: [(&str, Combine); 2] = [("grid", Combine::Grid), ("paired", Combine::Paired)];
 
 /// Most repeats, threads.
@@ -162,8 +175,8 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         return Err(version.wrong(&format!("at most {STUDY_VERSION}"), "use a newer program"));
     }
     root.refuse_unknown(&[
-        "version", "scene", "repeats", "threads", "combine", "set", "vary", "together", "measures",
-        "page",
+        "version", "scene", "repeats", "threads", "time", "combine", "set", "vary", "together",
+        "measures", "page",
     ])?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
     let mut axes = Vec::new();
@@ -220,9 +233,12 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     };
     Ok(Study {
         source: source.to_owned(),
-        scene: named_path(&root.need("scene", "\"scene.toml\"")?, folder)?,
+        scene: tidy(named_path(&root.need("scene", "\"scene.toml\"")?, folder)?),
         repeats: count("repeats", 3)?,
         threads: count("threads", 1)?,
+        time: root
+            .read("time", |field| field.choice(&TIMES))?
+            .unwrap_or(RunTime::Wall),
         combine: root
             .read("combine", |field| field.choice(&COMBINATIONS))?
             .unwrap_or(Combine::Grid),
@@ -231,6 +247,23 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         axes,
         measures,
     })
+}
+
+/// A path without `folder/..`, where that is the same.
+fn tidy(path: PathBuf) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leads_down = matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && leads_down {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    match (short.canonicalize(), path.canonicalize()) {
+        (Ok(one), Ok(other)) if one == other => short,
+        _ => path,
+    }
 }
 
 /// Whether two axes set the same path.

@@ -15,7 +15,12 @@ use crate::{Diagnostic, Result};
 ///
 /// # Errors
 /// The scene refuses the settings, or it is written in a way in which they cannot be put.
-pub fn rewritten(study: &Study, text: &str, settings: &[&Setting], target: &Path) -> Result<String> {
+pub fn rewritten(
+    study: &Study,
+    text: &str,
+    settings: &[&Setting],
+    target: &Path,
+) -> Result<String> {
     let wanted = scene_with(study, text, settings.iter().copied())?;
     let cannot = || {
         Diagnostic::input(
@@ -30,7 +35,9 @@ pub fn rewritten(study: &Study, text: &str, settings: &[&Setting], target: &Path
     let mut new = text.to_owned();
     let is_beside = target.parent() == study.scene.parent();
     for (name, body) in &wanted.bodies {
-        let varies = settings.iter().any(|s| s.path.strip_prefix(BODY) == Some(name));
+        let varies = settings
+            .iter()
+            .any(|s| s.path.strip_prefix(BODY) == Some(name));
         if let (BodySource::File(path), true) = (&body.source, varies || !is_beside) {
             for inline in ["particles", "bond_list"] {
                 new = without(&new, &["bodies", name, inline]).ok_or_else(cannot)?;
@@ -140,7 +147,10 @@ fn with(text: &str, keys: &[&str], value: &str) -> Option<String> {
             let (last, table) = keys.split_last()?;
             let table = header(table);
             let last = key(last);
-            Some(format!("{}\n\n[{table}]\n{last} = {value}\n", text.trim_end()))
+            Some(format!(
+                "{}\n\n[{table}]\n{last} = {value}\n",
+                text.trim_end()
+            ))
         }
     }
 }

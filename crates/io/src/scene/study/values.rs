@@ -1,8 +1,8 @@
 //! What varies, and through which values: lists, ranges, several paths together.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::{Axis, AxisValue, BODY, Setting, key};
+use super::{Axis, AxisValue, BODY, Setting, key, tidy};
 use crate::Result;
 use crate::scene::field::Field;
 use crate::scene::tree::{Node, Value, shortened};
@@ -164,7 +164,7 @@ fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
         if name.trim().is_empty() || name == "-" {
             return Err(field.wrong("the name of a file", "write a name such as \"cake.vtp\""));
         }
-        folder.join(name).display().to_string()
+        tidy_body(folder.join(name)).display().to_string()
     } else {
         toml(field.node)
     };
@@ -173,6 +173,14 @@ fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
         value,
         place: field.document.place(field.node.origin),
     })
+}
+
+/// The same for a body, which may be two files of other names: its folder is made tidy.
+fn tidy_body(path: PathBuf) -> PathBuf {
+    match (path.parent(), path.file_name()) {
+        (Some(folder), Some(name)) => tidy(folder.to_owned()).join(name),
+        _ => path,
+    }
 }
 
 /// Gives the values the sizes and names of two lists of the same length.
@@ -298,7 +306,9 @@ fn split(node: &Node) -> Option<(f64, String)> {
     match &node.value {
         Value::Number(_, value) => value.is_finite().then(|| (*value, String::new())),
         Value::Text(text) => {
-            let ends = (1..=text.len()).rev().filter(|end| text.is_char_boundary(*end));
+            let ends = (1..=text.len())
+                .rev()
+                .filter(|end| text.is_char_boundary(*end));
             let number = |end: usize| text[..end].trim().parse::<f64>().ok().map(|v| (v, end));
             let (value, end) = ends.filter_map(number).find(|(v, _)| v.is_finite())?;
             Some((value, text[end..].trim().to_owned()))
