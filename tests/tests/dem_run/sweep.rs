@@ -13,7 +13,7 @@ use super::{Bench, root};
 const SCENE: &str = r#"version = 1
 
 [run]
-end_time = "1 ms"
+end_time = "4 ms"
 safety = 0.9
 
 [materials.steel]
@@ -396,22 +396,60 @@ reference = { value = 1 }
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert!(html.contains("<h2>Failed</h2>") && html.contains("the largest stable"));
 
-    // Where nothing can break, the pieces are not counted.
-    bench.write(
-        "study.toml",
-        study
-            .replace("bonds.steel.failure.tension", "bonds.steel.poisson_ratio")
-            .replace("[\"1e12 Pa\", \"1e12 Pa\"]", "[0.3, 0.2]"),
-    );
+    let all = study.replace("[\"10 us\", \"900 us\"]", "[\"800 us\", \"900 us\"]");
+    bench.write("study.toml", all);
     let said = bad(&bench, &["--force"], 1);
     assert!(
+        said.contains("study.toml: no run came to its end; the first: "),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_measure_that_is_no_number_is_a_failure() {
+    let bench = Bench::new();
+    // Before the first body has come, it has no place.
+    bench.write(
+        "spring.toml",
+        r#"version = 1
+[run]
+end_time = "10 ms"
+[materials.steel]
+density = 7850
+young_modulus = "1 GPa"
+[contacts]
+steel-steel = { restitution = 0.5 }
+[bodies.ball]
+material = "steel"
+particles = [[0, 0, 0, 0.01]]
+start_as = "clump"
+[regions.gate]
+box = { min = [0, 0, 0], max = [0.1, 0.1, 0.1] }
+[inlets.feed]
+bodies = ["ball"]
+region = "gate"
+rate = "100 1/s"
+velocity = ["1 m/s", 0, 0]
+[measures.place]
+quantity = "position_x"
+"#,
+    );
+    bench.write(
+        "study.toml",
+        "version = 1\nscene = \"spring.toml\"\n[vary]\n\"inlets.feed.start\" = [\"0 s\", \"20 ms\"]\n[measures.place]\nreference = { value = \"2 cm\" }\n",
+    );
+    let said = good(&bench, &[]);
+    assert!(
         said.contains(
-            "study.toml: no run came to its end; the first: the measure 'pieces' is not a number"
+            "failed       run 2, inlets.feed.start 20 ms: the measure 'place' is not a number"
         ),
         "{said}"
     );
+    let rows = csv(&bench.path("study-sweep/sweep.csv"));
+    assert_eq!(rows[0]["failed"], "");
+    assert_eq!(rows[1]["failed"], "the measure 'place' is not a number");
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
-    assert!(html.contains("the measure 'pieces' is not a number"));
+    assert!(html.contains("<h2>Failed</h2>") && html.contains("is not a number"));
 }
 
 #[test]

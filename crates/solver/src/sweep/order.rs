@@ -34,16 +34,17 @@ pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
     let mut found = Vec::new();
     for (measure, of) in study.measures.iter().enumerate() {
         for (along, axis) in study.axes.iter().enumerate() {
-            let Some(sizes) = axis.sizes() else { continue };
+            if axis.sizes().is_none() {
+                continue;
+            }
             let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
             for (at, run) in runs.iter().enumerate() {
                 groups.entry(group(study, run, along)).or_default().push(at);
             }
             for members in groups.values() {
-                let size = |at: usize| sizes[runs[at].choice[along]];
-                let results = members
-                    .iter()
-                    .filter_map(|&at| Some((size(at), rows[at].results.get(measure)?)));
+                let results = members.iter().filter_map(|&at| {
+                    Some((rows[at].size(study, along)?, rows[at].results.get(measure)?))
+                });
                 let by_values = of.reference == Reference::Richardson(along);
                 let points: Vec<(f64, f64)> = if by_values {
                     results.map(|(size, judged)| (size, judged.value)).collect()

@@ -180,7 +180,7 @@ fn write_axes(out: &mut String, x: &Scale, y: &Scale) -> std::fmt::Result {
     }
     writeln!(
         out,
-        "</g>\n<rect id=\"area\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888888\"/>",
+        "</g>\n<rect class=\"area\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888888\"/>",
         RIGHT - LEFT,
         BOTTOM - TOP
     )
@@ -262,7 +262,7 @@ fn write_front(out: &mut String, marks: &[Mark<'_>], x: &Scale, y: &Scale) -> st
     if !path.is_empty() {
         writeln!(
             out,
-            "<path id=\"front\" d=\"{path}H{RIGHT}\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.2\" stroke-dasharray=\"5 3\"/>"
+            "<path class=\"front\" d=\"{path}H{RIGHT}\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.2\" stroke-dasharray=\"5 3\"/>"
         )?;
     }
     Ok(())
@@ -319,7 +319,7 @@ fn shape(series: usize, x: f64, y: f64, fill: &str) -> String {
 
 fn write_legend(out: &mut String, table: &SweepTable, marks: &[Mark<'_>]) -> std::fmt::Result {
     let mut y = TOP + 8.0;
-    writeln!(out, "<g id=\"legend\">")?;
+    writeln!(out, "<g class=\"legend\">")?;
     let text = |x: f64, y: f64, text: &str| {
         let text = escaped(&shortened(text, LETTERS));
         format!("<text x=\"{x}\" y=\"{:.1}\">{text}</text>", y + 4.0)

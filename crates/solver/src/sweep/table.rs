@@ -1,16 +1,15 @@
 //! The table of a sweep: of every run its time, its values and its errors, and which are on the fronts.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use dem_io::scene::study::{MeasureOf, Reference, RunTime, Study};
-use dem_io::units::significant;
+use dem_io::scene::study::{RunTime, Study};
 use serde::Serialize;
 
 use super::collect::{Done, Outcome};
-use super::expand::{Run, group};
+use super::expand::Run;
 use super::front::{Point, front};
+use super::judge::{in_words, judge};
 use super::order::{Order, orders};
-use super::reference::{Extrapolated, richardson};
 
 /// Differences of run times below this share mean nothing, however close the repeats are.
 const LEAST_SPREAD: f64 = 0.05;
@@ -108,6 +107,17 @@ pub struct Judged {
     pub is_reference: bool,
     /// Whether no run is both faster and as exact.
     pub is_on_front: bool,
+}
+
+impl Row {
+    /// How coarse its value of an axis is: its step itself where the axis is the relative one, as a run has a least number of steps.
+    pub fn size(&self, study: &Study, along: usize) -> Option<f64> {
+        let axis = &study.axes[along];
+        match axis.name.as_str() {
+            "run.safety" => self.time_step_s,
+            _ => axis.values[self.choice[along]].size,
+        }
+    }
 }
 
 impl Judged {
@@ -275,115 +285,6 @@ fn median(times: &[f64]) -> Option<f64> {
     }
 }
 
-/// Finds the references of one measure, and from them the errors.
-fn judge(
-    study: &Study,
-    runs: &[Run],
-    done: &[Option<&Done>],
-    measure: usize,
-    value: Option<f64>,
-    rows: &mut [Row],
-    notes: &mut Vec<String>,
-) {
-    let of = &study.measures[measure];
-    let along = match of.reference {
-        Reference::Finest(along) | Reference::Richardson(along) => along,
-        Reference::ClosedForm | Reference::Value(_) => {
-            for (row, done) in rows.iter_mut().zip(done) {
-                let own = done.and_then(|done| done.readings[measure].closed_form);
-                let reference = match of.reference {
-                    Reference::Value(_) => value,
-                    _ => own,
-                };
-                if let (Some(judged), Some(reference)) = (row.results.get_mut(measure), reference) {
-                    set_error(judged, reference, None);
-                }
-            }
-            return;
-        }
-    };
-    let sizes = study.axes[along].sizes().unwrap_or_default();
-    let size = |run: &Run| sizes[run.choice[along]];
-    let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
-    for (at, run) in runs.iter().enumerate() {
-        groups.entry(group(study, run, along)).or_default().push(at);
-    }
-    for members in groups.values() {
-        let named = |at: usize| runs[at].labels(study).join(", ");
-        if let Reference::Finest(_) = of.reference {
-            let finest = members
-                .iter()
-                .copied()
-                .min_by(|&a, &b| size(&runs[a]).total_cmp(&size(&runs[b])));
-            let Some(finest) = finest else { continue };
-            let Some(reference) = rows[finest].results.get(measure).map(|j| j.value) else {
-                notes.push(format!(
-                    "{}: the finest run failed ({}), so others have nothing to be compared with",
-                    of.name,
-                    named(finest)
-                ));
-                continue;
-            };
-            for &at in members {
-                if let Some(judged) = rows[at].results.get_mut(measure) {
-                    judged.is_reference = at == finest;
-                    if at != finest {
-                        set_error(judged, reference, None);
-                    }
-                }
-            }
-            continue;
-        }
-        let points: Vec<(f64, f64)> = members
-            .iter()
-            .filter_map(|&at| Some((size(&runs[at]), rows[at].results.get(measure)?.value)))
-            .collect();
-        let Some(Extrapolated {
-            value,
-            uncertainty,
-            doubt,
-            ..
-        }) = richardson(&points)
-        else {
-            if let Some(&first) = members.first() {
-                notes.push(format!(
-                    "{}: fewer than three runs along {} came to their end ({}): nothing to extrapolate from",
-                    of.name,
-                    study.axes[along].name,
-                    named(first)
-                ));
-            }
-            continue;
-        };
-        if let (Some(doubt), Some(&first)) = (doubt, members.first()) {
-            notes.push(format!(
-                "{}: no extrapolation along {} ({}): {}; compared with the finest run, good to {}",
-                of.name,
-                study.axes[along].name,
-                named(first),
-                doubt.text(),
-                significant(uncertainty, 2)
-            ));
-        }
-        for &at in members {
-            if let Some(judged) = rows[at].results.get_mut(measure) {
-                set_error(judged, value, Some(uncertainty));
-            }
-        }
-    }
-}
-
-fn set_error(judged: &mut Judged, reference: f64, uncertainty: Option<f64>) {
-    let scale = if reference == 0.0 {
-        1.0
-    } else {
-        reference.abs()
-    };
-    judged.reference = Some(reference);
-    judged.error = Some((judged.value - reference).abs() / scale);
-    judged.uncertainty = uncertainty.map(|uncertainty| uncertainty / scale);
-}
-
 fn mark_front(rows: &mut [Row], measure: usize) {
     let mut at = Vec::new();
     let mut points = Vec::new();
@@ -401,20 +302,6 @@ fn mark_front(rows: &mut [Row], measure: usize) {
     for (index, is_on) in at.into_iter().zip(front(&points)) {
         if let Some(judged) = rows[index].results.get_mut(measure) {
             judged.is_on_front = is_on;
-        }
-    }
-}
-
-fn in_words(study: &Study, measure: usize) -> String {
-    let measure = &study.measures[measure];
-    match (&measure.of, &measure.reference) {
-        (MeasureOf::Ledger(_), _) => "an error by itself".to_owned(),
-        (MeasureOf::Figure(_), Reference::ClosedForm) => "the theory of the test".to_owned(),
-        (_, Reference::ClosedForm) => "the reference of the scene".to_owned(),
-        (_, Reference::Value(text)) => text.clone(),
-        (_, Reference::Finest(at)) => format!("the finest run along {}", study.axes[*at].name),
-        (_, Reference::Richardson(at)) => {
-            format!("Richardson extrapolation along {}", study.axes[*at].name)
         }
     }
 }
