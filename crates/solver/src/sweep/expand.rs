@@ -120,3 +120,78 @@ pub fn group(study: &Study, run: &Run, along: usize) -> Vec<usize> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use dem_io::study::study_from_text;
+
+    fn study(rest: &str) -> Study {
+        let text = format!("version = 1\nscene = \"a.toml\"\n{rest}\n[measures.tip]\n");
+        study_from_text(&text, "study.toml").unwrap()
+    }
+
+    fn labels(study: &Study) -> Vec<String> {
+        let runs = runs(study, false).unwrap();
+        runs.iter().map(|run| run.labels(study).join(" ")).collect()
+    }
+
+    #[test]
+    fn a_grid_has_each_with_each() {
+        let grid = study(
+            "[set]\n\"run.seed\" = 3\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = { from = 1, to = 3, count = 3 }",
+        );
+        assert_eq!(
+            labels(&grid),
+            ["0.9 1", "0.9 2", "0.9 3", "0.5 1", "0.5 2", "0.5 3"]
+        );
+        let runs = runs(&grid, false).unwrap();
+        assert!(
+            runs.iter()
+                .zip(1..)
+                .all(|(run, number)| run.number == number)
+        );
+        let settings = runs[5].settings(&grid);
+        let settings: Vec<&str> = settings.iter().map(|s| s.value.as_str()).collect();
+        assert_eq!(settings, ["3", "0.5", "3"]);
+        assert_eq!(group(&grid, &runs[1], 1), group(&grid, &runs[2], 1));
+        assert_ne!(group(&grid, &runs[1], 1), group(&grid, &runs[4], 1));
+    }
+
+    #[test]
+    fn pairs_go_side_by_side() {
+        let paired = study(
+            "combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1, 2]",
+        );
+        assert_eq!(labels(&paired), ["0.9 1", "0.5 2"]);
+        let runs_of = runs(&paired, false).unwrap();
+        assert_eq!(
+            group(&paired, &runs_of[0], 0),
+            group(&paired, &runs_of[1], 0)
+        );
+        let uneven =
+            study("combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1]");
+        let said = runs(&uneven, true).unwrap_err();
+        assert_eq!(said.exit_code(), 2);
+        assert!(
+            said.problem
+                .contains("run.rest has 1 values, but run.safety has 2")
+        );
+    }
+
+    #[test]
+    fn a_million_runs_are_refused_unless_asked_for() {
+        let many = "[vary]\n\"run.safety\" = { from = 0, to = 1, count = 1000 }\n\"run.rest\" = { from = 0, to = 1, count = COUNT }";
+        let million = study(&format!("repeats = 1\n{}", many.replace("COUNT", "1000")));
+        let said = runs(&million, false).unwrap_err().to_string();
+        assert!(
+            said.contains("1000000 runs, 1 times each, are more than 10000")
+                && said.contains("--yes"),
+            "{said}"
+        );
+        assert_eq!(runs(&million, true).unwrap().len(), 1_000_000);
+        let more = study(&many.replace("COUNT", "100000"));
+        assert!(runs(&more, true).is_err());
+    }
+}

@@ -190,3 +190,34 @@ fn not_started(error: &std::io::Error) -> Diagnostic {
     let problem = format!("dem-run cannot be started: {error}");
     Diagnostic::failed("", problem, "run the commands of --list yourself")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeats_go_there_and_back() {
+        let order: Vec<(usize, u32)> = jobs(3, 3).iter().map(|job| (job.run, job.repeat)).collect();
+        let wanted = [
+            (0, 1),
+            (1, 1),
+            (2, 1),
+            (2, 2),
+            (1, 2),
+            (0, 2),
+            (0, 3),
+            (1, 3),
+            (2, 3),
+        ];
+        assert_eq!(order, wanted);
+    }
+
+    #[test]
+    fn sh_reads_what_is_meant() {
+        let arguments = ["--set", "a.b=\"2 mm\"", "it's", ""].map(str::to_owned);
+        assert_eq!(
+            shell_line("dem-run", &arguments, Some(Path::new("a b.txt"))),
+            r#"dem-run --set 'a.b="2 mm"' 'it'\''s' '' 2> 'a b.txt'"#
+        );
+    }
+}

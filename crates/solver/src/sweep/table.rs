@@ -160,15 +160,9 @@ impl SweepTable {
             rows.push(row(study, run, outcomes, &done));
             of_runs.push(done.first().copied());
         }
-        for measure in 0..study.measures.len() {
+        for (measure, value) in values.iter().enumerate() {
             judge(
-                study,
-                runs,
-                &of_runs,
-                measure,
-                values[measure],
-                &mut rows,
-                &mut notes,
+                study, runs, &of_runs, measure, *value, &mut rows, &mut notes,
             );
         }
         if machines.len() > 1 {
