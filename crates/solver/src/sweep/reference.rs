@@ -44,8 +44,8 @@ const ROUNDING: f64 = 1e-14;
 /// Least uncertainty as a share of what was extrapolated.
 const LEAST: f64 = 0.02;
 
-/// Richardson extrapolation f = f0 + C h^p through the three finest of `points` (size, value). With four sizes the uncertainty is how far the
-/// extrapolations of the finest and the next finest three differ, but no more than three times what was extrapolated; with three it is the grid
+/// Richardson extrapolation f = f0 + C h^p through the three finest of `points` (size, value). With four sizes the uncertainty follows from how far
+/// the extrapolations of the finest and the next finest three differ, but is no more than three times what was extrapolated; with three it is the grid
 /// convergence index. None: fewer than three sizes.
 pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     let mut points = points.to_vec();
@@ -59,8 +59,10 @@ pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     Some(match next {
         Some(next) if finest.doubt.is_none() && next.doubt.is_none() => {
             let rounding = ROUNDING * a.1.abs();
-            let differ = (finest.value - next.value).abs();
             let way = (finest.value - a.1).abs();
+            // Both are off by a further power of their finest sizes, of the first order at least.
+            let falls = b.0 / a.0 - 1.0;
+            let differ = SAFETY * (finest.value - next.value).abs() * falls.recip().max(1.0);
             let differ = differ.clamp(LEAST * way, UNCONFIRMED * way);
             Extrapolated {
                 uncertainty: differ.max(rounding),
