@@ -374,6 +374,25 @@ fn the_fastest_setting_is_said_and_written() {
     }
 }
 
+/// The written scene lies elsewhere than the scene and the body, whose names are relative.
+#[test]
+fn a_scene_with_another_body_is_written() {
+    let bench = bench(
+        "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"body.bar\" = [\"bar.csv\"]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n",
+    );
+    bench.write(
+        "bar.particles.csv",
+        "x_m,y_m,z_m,radius_m\n0,0,0,0.2\n0.5,0,0,0.2\n",
+    );
+    bench.write("bar.bonds.csv", "a,b\n0,1\n");
+    fs::create_dir(bench.path("there")).unwrap();
+    good(&bench, &["--want", "error=1", "--write", "there/new.toml"]);
+    let written = bench.good(Path::new("there/new.toml"), &["--json"]);
+    let written: Value = serde_json::from_str(&written).unwrap();
+    let value = &json(&bench)["runs"][0]["results"][0]["value"];
+    assert_same_number(written["energy_error"].as_f64().unwrap(), value);
+}
+
 #[test]
 fn runs_that_fail_are_shown_and_the_sweep_goes_on() {
     let study = r#"version = 1

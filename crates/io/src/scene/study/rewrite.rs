@@ -72,8 +72,16 @@ fn comparable(mut scene: Scene) -> Scene {
     scene
 }
 
+/// From the root. The name may be that of a body in two files, which are called a little differently.
 fn absolute(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
+    }
 }
 
 /// Where something stands in a text, in bytes.
