@@ -49,7 +49,7 @@ fn commands_run_as_pasted() {
         )
         .unwrap();
     }
-    for name in ["data/scenes", "data/bodies"] {
+    for name in ["data/scenes", "data/bodies", "data/studies"] {
         let copies = folder.path().join(name);
         fs::create_dir_all(&copies).unwrap();
         for file in fs::read_dir(root().join(name)).unwrap() {
@@ -75,7 +75,11 @@ fn commands_run_as_pasted() {
         }
         let small = line
             .replace(" 2mm..3mm", " 4mm..5mm")
-            .replace("/chute.toml", "/chute.toml --set run.end_time=0.2");
+            .replace("/chute.toml", "/chute.toml --set run.end_time=0.2")
+            .replace(
+                " data/studies/spinning-bar.toml",
+                " data/studies/spinning-bar.toml --jobs 2",
+            );
         let output = Command::new("bash")
             .args(["-o", "pipefail", "-c", &small])
             .env("PATH", &path)
@@ -146,6 +150,10 @@ fn options_exist() {
             .unwrap(),
         program("dem-run")
             .args(["fragment", "--help"])
+            .output()
+            .unwrap(),
+        program("dem-run")
+            .args(["sweep", "--help"])
             .output()
             .unwrap(),
     ])

@@ -1,6 +1,6 @@
 //! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an algorithm of either program.
 //!
-//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files; TOML -> [`scene`]; what a run
+//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files; TOML -> [`scene`], [`study`]; what a run
 //! has to tell -> [`results`]; its state <-> [`checkpoint`].
 //! Lengths are metres unless a name says otherwise.
 
@@ -19,5 +19,5 @@ mod xml;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};
-pub use scene::{Scene, read_scene, scene_from_text};
+pub use scene::{Scene, read_scene, scene_from_text, study};
 pub use surface::Surface;

@@ -2,6 +2,7 @@
 
 mod check;
 mod fragment;
+mod sweep;
 
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -57,6 +58,14 @@ enum Command {
                       Example:\n  dem-run fragment results --largest -o piece.vtp"
     )]
     Fragment(fragment::FragmentArguments),
+    /// Run a scene with many settings: error against run time
+    #[command(
+        after_help = "A study names a scene, what varies, what is measured and against what. Every run is a process of its own.\n\
+                      Examples:\n  \
+                      dem-run sweep data/studies/cantilever-models.toml --want error=1% --write fast.toml\n  \
+                      dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
+    )]
+    Sweep(sweep::SweepArguments),
 }
 
 #[derive(Debug, Args)]
@@ -119,6 +128,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
+        Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         None if arguments.run.scene.names_a_scene() => in_pool(&arguments.run.scene, |threads| {
             run_scene(&arguments.run, threads, interrupt)
         }),

@@ -19,6 +19,7 @@ use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
+use crate::machine::{machine, processor_time_s};
 use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
 use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
@@ -191,6 +192,7 @@ pub fn run(
     let watchdog = Watchdog::new(choice.share_of_limit());
     let first_step = state.steps;
     let clock = Instant::now();
+    let processor_before_s = processor_time_s();
     let mut saved = clock;
     let (ended_by, last) = loop {
         act(&mut state);
@@ -315,6 +317,7 @@ pub fn run(
     };
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
+    let processor_s = processor_time_s().zip(processor_before_s);
     let test = watch
         .map(|watch| watch.finish(&progress.test, &state, progress.broke, settings.folder))
         .transpose()?;
@@ -330,7 +333,9 @@ pub fn run(
         ended_by: ended_by.to_owned(),
         simulated_s: state.time_s,
         wall_s,
+        processor_s: processor_s.map(|(after, before)| after - before),
         threads: settings.threads,
+        machine: machine(),
         particles: state.particles.len(),
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,

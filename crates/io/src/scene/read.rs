@@ -47,26 +47,34 @@ const KEYS: [&str; 21] = [
 /// # Errors
 /// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
+    let text = text_of(path, "a scene")?;
+    scene_from_text(&text, &path.display().to_string(), overrides)
+}
+
+/// The text of a file that holds `what`.
+///
+/// # Errors
+/// It cannot be read, or is not text.
+pub fn text_of(path: &Path, what: &str) -> Result<String> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
             Diagnostic::input(&name, "there is no such file", "check its name and folder")
         }
         ErrorKind::IsADirectory => {
-            Diagnostic::input(&name, "this is a folder", "name a scene in it")
+            Diagnostic::input(&name, "this is a folder", format!("name {what} in it"))
         }
         _ => {
             let remedy = "check the name and its permissions";
             Diagnostic::input(&name, format!("cannot be read: {error}"), remedy)
         }
     })?;
-    let text = String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
         let remedy = "save the file as plain text in UTF-8";
         Diagnostic::input(format!("{name}:{line}"), "this is not text", remedy)
-    })?;
-    scene_from_text(&text, &name, overrides)
+    })
 }
 
 /// Reads a scene from the text of a file named `source`, as [`read_scene`] does.

@@ -28,8 +28,13 @@ pub struct Summary {
     pub simulated_s: f64,
     /// Needed for it, s; of the part since the last checkpoint for a run that was resumed.
     pub wall_s: f64,
+    /// Time that processors spent on the same, s, all threads together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub processor_s: Option<f64>,
     /// Threads.
     pub threads: usize,
+    /// Processor and number of cores.
+    pub machine: String,
     /// Number of particles.
     pub particles: usize,
     /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.

@@ -1,0 +1,278 @@
+//! `dem-run sweep`: a scene with many settings, error against run time.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use clap::Args;
+use dem_io::results::write_json;
+use dem_io::safe_write::{write_file, write_standard_output};
+use dem_io::scene::text_of;
+use dem_io::study::{Study, read_study, reference_values, rewritten, scene_with};
+use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use crate::interrupt::Interrupt;
+use crate::sweep::collect::{Outcome, outcome};
+use crate::sweep::expand::{Run, runs};
+use crate::sweep::folder::{Earlier, SweepFolder};
+use crate::sweep::jobs::{Job, arguments, jobs, scene_arguments, shell_line, work};
+use crate::sweep::page::page;
+use crate::sweep::plot::svg;
+use crate::sweep::table::{Row, SweepTable};
+use crate::sweep::text::csv;
+use crate::sweep::want::{Want, fastest};
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArguments {
+    /// The study (.toml): a scene, what varies, what is measured
+    study: PathBuf,
+    /// Folder for the runs and what comes of them; the study's name with -sweep unless given
+    #[arg(long, short, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Runs at a time. More than one disturb each other's times
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    jobs: usize,
+    /// Go on with an interrupted sweep: what is done is kept
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
+    /// Replace the sweep that is in the folder
+    #[arg(long)]
+    force: bool,
+    /// Do more than 10000 runs
+    #[arg(long)]
+    yes: bool,
+    /// Run nothing: print one command for sh per run that is to be done
+    #[arg(long, conflicts_with_all = ["collect", "want", "json", "quiet"])]
+    list: bool,
+    /// Run nothing: make the tables and pages of what is there
+    #[arg(long, conflicts_with_all = ["force", "resume"])]
+    collect: bool,
+    /// Say the fastest setting with such errors: error=1% for all measures, or NAME=1%
+    #[arg(long, value_name = "NAME=SHARE")]
+    want: Vec<String>,
+    /// Write the scene with that setting
+    #[arg(long, value_name = "FILE", requires = "want")]
+    write: Option<PathBuf>,
+    /// Say all of it as JSON
+    #[arg(long)]
+    json: bool,
+    /// Say nothing unless something is wrong: no progress, no table; --json is printed all the same
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Runs the study, lists its runs or collects them, and says what came of it.
+///
+/// # Errors
+/// Bad input, all runs failed, interrupted, files that cannot be written. A run that fails is no error of the sweep.
+pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
+    if !(1..=1024).contains(&options.jobs) {
+        let problem = format!("{} is not between 1 and 1024", options.jobs);
+        return Err(Diagnostic::input(
+            "--jobs",
+            problem,
+            "1 measures run times best",
+        ));
+    }
+    let study = read_study(&options.study)?;
+    let scene_text = text_of(&study.scene, "a scene")
+        .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
+    let names: Vec<&str> = study.measures.iter().map(|m| m.name.as_str()).collect();
+    let wants = options.want.iter().map(|text| Want::parse(text, &names));
+    let wants = wants.collect::<Result<Vec<_>>>()?;
+    let all = runs(&study, options.yes)?;
+    let values = checked(&study, &scene_text, &all)?;
+    let path = options.out.clone().unwrap_or_else(|| {
+        let stem = options.study.file_stem().unwrap_or_default();
+        PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
+    });
+    let earlier = match options {
+        SweepArguments { collect: true, .. } => Earlier::Collect,
+        SweepArguments { force: true, .. } => Earlier::Replace,
+        SweepArguments { resume: true, .. } => Earlier::Continue,
+        _ => Earlier::Refuse,
+    };
+    let folder = SweepFolder::create(&path, earlier, &study, &scene_text)?;
+    let all_jobs = jobs(all.len(), study.repeats);
+    let is_left = |job: &Job| !job.is_done(&folder.runs());
+    if options.list {
+        return list(
+            &study,
+            &all,
+            all_jobs.iter().filter(|job| is_left(job)),
+            &folder,
+        );
+    }
+    if !options.collect {
+        let todo: Vec<Job> = all_jobs.iter().copied().filter(is_left).collect();
+        let bar = progress_bar(options, todo.len());
+        let tell = |done: usize| bar.set_position(done as u64);
+        let worked = interrupt.heeded_by(|interrupted| {
+            work(
+                &study,
+                &all,
+                &todo,
+                &folder.runs(),
+                options.jobs,
+                interrupted,
+                &tell,
+            )
+        });
+        bar.finish_and_clear();
+        worked?;
+    }
+    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
+    for job in &all_jobs {
+        outcomes[job.run].push(outcome(&study, *job, &folder.runs()));
+    }
+    let mut table = SweepTable::new(&study, &all, &outcomes, &values);
+    if options.jobs > 1 {
+        table.notes.push(format!(
+            "{} runs at a time: they disturb each other's times",
+            options.jobs
+        ));
+    }
+    write_files(&folder, &table)?;
+    if let Some(row) = table.failed().next()
+        && table.failed().count() == table.runs.len()
+    {
+        return Err(Diagnostic::failed(
+            &study.source,
+            format!(
+                "no run came to its end; the first: {}",
+                row.failed.as_deref().unwrap_or_default()
+            ),
+            "",
+        ));
+    }
+    let best = if wants.is_empty() {
+        None
+    } else {
+        Some(fastest(&table, &wants)?)
+    };
+    if let (Some(best), Some(target)) = (best, &options.write) {
+        let settings = all[best.number - 1].settings(&study);
+        let text = rewritten(&study, &scene_text, &settings, target)?;
+        write_file(target, |out| out.write_all(text.as_bytes()))?;
+    }
+    say(options, &study, &all, &table, best, &folder)
+}
+
+/// Reads the scene of every run, so that what it refuses is known before hours are spent. What each measure is compared with, where that is known.
+fn checked(study: &Study, scene_text: &str, all: &[Run]) -> Result<Vec<Option<f64>>> {
+    let mut values = Vec::new();
+    for run in all {
+        let settings = run.settings(study);
+        let scene = scene_with(study, scene_text, settings.into_iter())?;
+        let of_run = reference_values(study, &scene)?;
+        if values.is_empty() {
+            values = of_run;
+        }
+    }
+    Ok(values)
+}
+
+fn list<'a>(
+    study: &Study,
+    all: &[Run],
+    jobs: impl Iterator<Item = &'a Job>,
+    folder: &SweepFolder,
+) -> Result<()> {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("dem-run"));
+    let program = program.display().to_string();
+    let runs = folder.runs();
+    write_standard_output(|out| {
+        for job in jobs {
+            let arguments = arguments(study, &all[job.run], *job, &runs);
+            let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
+            writeln!(out, "{line}")?;
+        }
+        Ok(())
+    })
+}
+
+fn progress_bar(options: &SweepArguments, count: usize) -> ProgressBar {
+    if options.quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(count as u64);
+    if let Ok(style) = ProgressStyle::with_template("sweep [{bar:40}] {pos}/{len} runs  {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+/// `sweep.csv`, `sweep.json`, `sweep.html` and a plot of each measure.
+fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
+    let file = |name: &str| folder.path().join(name);
+    write_file(&file("sweep.csv"), |out| {
+        out.write_all(csv(table).as_bytes())
+    })?;
+    write_json(&file("sweep.json"), table)?;
+    write_file(&file("sweep.html"), |out| {
+        out.write_all(page(table).as_bytes())
+    })?;
+    for (at, measure) in table.measures.iter().enumerate() {
+        let plot = svg(table, at, true);
+        let path = file(&format!("{}.svg", measure.name));
+        write_file(&path, |out| out.write_all(plot.as_bytes()))?;
+    }
+    Ok(())
+}
+
+fn say(
+    options: &SweepArguments,
+    study: &Study,
+    all: &[Run],
+    table: &SweepTable,
+    best: Option<&Row>,
+    folder: &SweepFolder,
+) -> Result<()> {
+    let command = |row: &Row| {
+        let arguments = scene_arguments(study, &all[row.number - 1]);
+        shell_line("dem-run", &arguments, None)
+    };
+    write_standard_output(|out| {
+        if options.json {
+            let mut value = serde_json::to_value(table)?;
+            value["fastest"] = match best {
+                Some(row) => json!({ "run": row.number, "command": command(row) }),
+                None => serde_json::Value::Null,
+            };
+            serde_json::to_writer_pretty(&mut *out, &value)?;
+            return writeln!(out);
+        }
+        if options.quiet {
+            return Ok(());
+        }
+        write!(out, "{table}")?;
+        writeln!(
+            out,
+            "results      {}",
+            folder.path().join("sweep.html").display()
+        )?;
+        if let Some(row) = best {
+            let errors = table.measures.iter().zip(&row.results);
+            let errors: Vec<String> = errors
+                .filter_map(|(m, judged)| Some((m, judged.sure_error()?)))
+                .map(|(m, error)| format!("{} {}", m.name, significant(error, 2)))
+                .collect();
+            writeln!(
+                out,
+                "fastest      run {}, {} s, error {}: {}",
+                row.number,
+                significant(row.time_s.unwrap_or(f64::NAN), 3),
+                errors.join(", "),
+                table.named(row)
+            )?;
+            writeln!(out, "             {}", command(row))?;
+            if let Some(target) = &options.write {
+                writeln!(out, "written      {}", target.display())?;
+            }
+        }
+        Ok(())
+    })
+}

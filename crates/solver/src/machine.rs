@@ -1,0 +1,25 @@
+//! Which machine this is, as run times of different ones are not compared, and the time that its processors gave to this program.
+
+/// Processor and number of cores: `AMD EPYC 7763, 16 cores`. Nodes of one kind are one machine.
+pub fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'))
+        .map_or_else(
+            || format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            |(_, model)| model.trim().to_owned(),
+        );
+    format!("{model}, {cores} core{}", if cores == 1 { "" } else { "s" })
+}
+
+/// Time that processors have spent on the threads of this program, s. None: the system does not say.
+pub fn processor_time_s() -> Option<f64> {
+    let mut sum_ns = 0.0;
+    for thread in std::fs::read_dir("/proc/self/task").ok()? {
+        let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        sum_ns += text.split_whitespace().next()?.parse::<f64>().ok()?;
+    }
+    (sum_ns > 0.0).then_some(1e-9 * sum_ns)
+}

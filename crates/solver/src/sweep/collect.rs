@@ -1,0 +1,122 @@
+//! What the processes of a sweep came to, from the files that they left.
+
+use std::fs;
+use std::path::Path;
+
+use dem_io::scene::study::{MeasureOf, Reference, RunTime, Study};
+use serde_json::Value;
+
+use super::jobs::Job;
+
+/// What one process came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Done {
+    /// Time of its steps as the study asks for it, s.
+    pub time_s: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Last time step, s.
+    pub time_step_s: f64,
+    /// Processor and cores.
+    pub machine: String,
+    /// One for each measure of the study.
+    pub readings: Vec<Reading>,
+}
+
+/// A measure of one process.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// In `unit`.
+    pub value: f64,
+    /// SI unit; empty for plain numbers.
+    pub unit: String,
+    /// What the scene or the theory says it should be.
+    pub closed_form: Option<f64>,
+}
+
+/// What came of a process.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// It came to its end, and all measures are numbers.
+    Done(Done),
+    /// Why not.
+    Failed(String),
+    /// It has not been run to its end.
+    Missing,
+}
+
+/// Reads what a job has left.
+pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
+    let summary = fs::read(job.folder(runs).join("summary.json"));
+    let summary = summary
+        .ok()
+        .and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let Some(summary) = summary else {
+        let said = fs::read_to_string(job.complaint(runs)).unwrap_or_default();
+        let last = said.lines().rev().find(|line| !line.trim().is_empty());
+        return last.map_or(Outcome::Missing, |line| {
+            Outcome::Failed(line.strip_prefix("error: ").unwrap_or(line).to_owned())
+        });
+    };
+    done(study, &summary).map_or_else(Outcome::Failed, Outcome::Done)
+}
+
+fn done(study: &Study, summary: &Value) -> Result<Done, String> {
+    let number = |key: &str| {
+        let value = summary[key].as_f64();
+        value.ok_or_else(|| format!("its summary has no {key}"))
+    };
+    let mut readings = Vec::new();
+    for measure in &study.measures {
+        let mut read = reading(summary, &measure.of)?;
+        if !read.value.is_finite() {
+            return Err(format!("the measure '{}' is not a number", measure.name));
+        }
+        if let (MeasureOf::Figure(name), Reference::ClosedForm, None) =
+            (&measure.of, &measure.reference, read.closed_form)
+        {
+            return Err(format!(
+                "the scene says nothing of which the theory of '{name}' follows"
+            ));
+        }
+        if let MeasureOf::Ledger(_) = measure.of {
+            read.closed_form = Some(0.0);
+        }
+        readings.push(read);
+    }
+    Ok(Done {
+        time_s: number(match study.time {
+            RunTime::Wall => "wall_s",
+            RunTime::Processor => "processor_s",
+        })?,
+        steps: number("steps")? as u64,
+        time_step_s: number("time_step_s")?,
+        machine: summary["machine"].as_str().unwrap_or_default().to_owned(),
+        readings,
+    })
+}
+
+/// What is no number in JSON is null there.
+fn reading(summary: &Value, of: &MeasureOf) -> Result<Reading, String> {
+    let (list, name, reference) = match of {
+        MeasureOf::Ledger(key) => {
+            return Ok(Reading {
+                value: summary[*key].as_f64().unwrap_or(f64::NAN),
+                unit: String::new(),
+                closed_form: None,
+            });
+        }
+        MeasureOf::Measure(name) => (&summary["measures"], name, "reference"),
+        MeasureOf::Figure(name) => (&summary["test"]["figures"], name, "theory"),
+    };
+    let found = list.as_array().into_iter().flatten();
+    let mut found = found.filter(|entry| entry["name"].as_str() == Some(name));
+    let entry = found
+        .next()
+        .ok_or_else(|| format!("nothing in its summary is called '{name}'"))?;
+    Ok(Reading {
+        value: entry["value"].as_f64().unwrap_or(f64::NAN),
+        unit: entry["unit"].as_str().unwrap_or_default().to_owned(),
+        closed_form: entry[reference].as_f64(),
+    })
+}

@@ -1,0 +1,197 @@
+//! From a study to its runs.
+
+use dem_io::scene::study::{Axis, Combine, Setting, Study};
+use dem_io::{Diagnostic, Result};
+
+/// Most processes that are started without being asked twice.
+pub const MOST_UNASKED: u64 = 10_000;
+/// Most processes at all.
+pub const MOST: u64 = 10_000_000;
+
+/// One choice of values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Run {
+    /// From 1.
+    pub number: usize,
+    /// Of each axis the value, from 0.
+    pub choice: Vec<usize>,
+}
+
+impl Run {
+    /// What it sets in the scene.
+    pub fn settings<'a>(&self, study: &'a Study) -> Vec<&'a Setting> {
+        let chosen = study.axes.iter().zip(&self.choice);
+        let chosen = chosen.flat_map(|(axis, &at)| &axis.values[at].settings);
+        study.fixed.iter().chain(chosen).collect()
+    }
+
+    /// Its value on each axis, for a person.
+    pub fn labels(&self, study: &Study) -> Vec<String> {
+        let chosen = study.axes.iter().zip(&self.choice);
+        chosen
+            .map(|(axis, &at)| axis.values[at].label.clone())
+            .collect()
+    }
+}
+
+/// All runs of a study; the last axis changes fastest.
+///
+/// # Errors
+/// Paired axes of different lengths; more than [`MOST_UNASKED`] processes unless `yes`.
+pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
+    let lengths: Vec<usize> = study.axes.iter().map(|axis| axis.values.len()).collect();
+    let count = match study.combine {
+        Combine::Grid => lengths.iter().fold(1, |product: u64, &length| {
+            product.saturating_mul(length as u64)
+        }),
+        Combine::Paired => paired(&study.axes)? as u64,
+    };
+    let processes = count.saturating_mul(u64::from(study.repeats));
+    if processes > MOST || (processes > MOST_UNASKED && !yes) {
+        let (limit, remedy) = if processes > MOST {
+            (MOST, "vary less")
+        } else {
+            (
+                MOST_UNASKED,
+                "vary less, or say --yes to have so many all the same",
+            )
+        };
+        return Err(Diagnostic::input(
+            &study.source,
+            format!(
+                "{count} runs, {} times each, are more than {limit}",
+                study.repeats
+            ),
+            remedy,
+        ));
+    }
+    // Not above MOST.
+    Ok((0..count as usize)
+        .map(|index| Run {
+            number: index + 1,
+            choice: choice(study.combine, &lengths, index),
+        })
+        .collect())
+}
+
+fn paired(axes: &[Axis]) -> Result<usize> {
+    let count = axes.first().map_or(0, |axis| axis.values.len());
+    match axes.iter().find(|axis| axis.values.len() != count) {
+        None => Ok(count),
+        Some(other) => Err(Diagnostic::input(
+            &other.place,
+            format!(
+                "{} has {} values, but {} has {count}",
+                other.name,
+                other.values.len(),
+                axes.first().map_or("", |axis| axis.name.as_str())
+            ),
+            "paired axes have equally many; give as many, or write combine = \"grid\"",
+        )),
+    }
+}
+
+fn choice(combine: Combine, lengths: &[usize], index: usize) -> Vec<usize> {
+    if combine == Combine::Paired {
+        return vec![index; lengths.len()];
+    }
+    let mut rest = index;
+    let mut choice: Vec<usize> = lengths
+        .iter()
+        .rev()
+        .map(|length| {
+            let at = rest % length;
+            rest /= length;
+            at
+        })
+        .collect();
+    choice.reverse();
+    choice
+}
+
+/// What the runs have in common that differ along one axis only. Runs of a study that is paired all differ along each.
+pub fn group(study: &Study, run: &Run, along: usize) -> Vec<usize> {
+    match study.combine {
+        Combine::Paired => Vec::new(),
+        Combine::Grid => {
+            let mut others = run.choice.clone();
+            others[along] = 0;
+            others
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use dem_io::study::study_from_text;
+
+    fn study(rest: &str) -> Study {
+        let text = format!("version = 1\nscene = \"a.toml\"\n{rest}\n[measures.tip]\n");
+        study_from_text(&text, "study.toml").unwrap()
+    }
+
+    fn labels(study: &Study) -> Vec<String> {
+        let runs = runs(study, false).unwrap();
+        runs.iter().map(|run| run.labels(study).join(" ")).collect()
+    }
+
+    #[test]
+    fn a_grid_has_each_with_each() {
+        let grid = study(
+            "[set]\n\"run.seed\" = 3\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = { from = 1, to = 3, count = 3 }",
+        );
+        assert_eq!(
+            labels(&grid),
+            ["0.9 1", "0.9 2", "0.9 3", "0.5 1", "0.5 2", "0.5 3"]
+        );
+        let runs = runs(&grid, false).unwrap();
+        assert!(
+            runs.iter()
+                .zip(1..)
+                .all(|(run, number)| run.number == number)
+        );
+        let settings = runs[5].settings(&grid);
+        let settings: Vec<&str> = settings.iter().map(|s| s.value.as_str()).collect();
+        assert_eq!(settings, ["3", "0.5", "3"]);
+        assert_eq!(group(&grid, &runs[1], 1), group(&grid, &runs[2], 1));
+        assert_ne!(group(&grid, &runs[1], 1), group(&grid, &runs[4], 1));
+    }
+
+    #[test]
+    fn pairs_go_side_by_side() {
+        let paired = study(
+            "combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1, 2]",
+        );
+        assert_eq!(labels(&paired), ["0.9 1", "0.5 2"]);
+        let runs_of = runs(&paired, false).unwrap();
+        assert_eq!(
+            group(&paired, &runs_of[0], 0),
+            group(&paired, &runs_of[1], 0)
+        );
+        let uneven =
+            study("combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1]");
+        let said = runs(&uneven, true).unwrap_err();
+        assert_eq!(said.exit_code(), 2);
+        assert!(
+            said.problem
+                .contains("run.rest has 1 values, but run.safety has 2")
+        );
+    }
+
+    #[test]
+    fn a_million_runs_are_refused_unless_asked_for() {
+        let many = "[vary]\n\"run.safety\" = { from = 0, to = 1, count = 1000 }\n\"run.rest\" = { from = 0, to = 1, count = COUNT }";
+        let million = study(&format!("repeats = 1\n{}", many.replace("COUNT", "1000")));
+        let said = runs(&million, false).unwrap_err().to_string();
+        assert!(
+            said.contains("1000000 runs, 1 times each, are more than 10000")
+                && said.contains("--yes"),
+            "{said}"
+        );
+        assert_eq!(runs(&million, true).unwrap().len(), 1_000_000);
+        let more = study(&many.replace("COUNT", "100000"));
+        assert!(runs(&more, true).is_err());
+    }
+}

@@ -1,0 +1,223 @@
+//! The processes of a sweep: what is started, in which order, and what is left to do.
+
+use std::collections::VecDeque;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::sleep;
+use std::time::Duration;
+
+use dem_io::scene::study::{BODY, Study, override_text};
+use dem_io::{Diagnostic, Result};
+
+use super::expand::Run;
+
+/// How often processes are looked after. What they take is measured by themselves.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// One process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Job {
+    /// Place of the run in the list of all, from 0.
+    pub run: usize,
+    /// From 1.
+    pub repeat: u32,
+}
+
+impl Job {
+    /// Folder of its results.
+    pub fn folder(&self, runs: &Path) -> PathBuf {
+        runs.join(format!("{:04}-{}", self.run + 1, self.repeat))
+    }
+
+    /// What it says if it fails.
+    pub fn complaint(&self, runs: &Path) -> PathBuf {
+        runs.join(format!("{:04}-{}.txt", self.run + 1, self.repeat))
+    }
+
+    /// Whether it has come to its end.
+    pub fn is_done(&self, runs: &Path) -> bool {
+        let summary = fs::read(self.folder(runs).join("summary.json"));
+        summary.is_ok_and(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).is_ok())
+    }
+}
+
+/// All processes. Each run is done once before any is done again, there and back, so that a machine that becomes slower favours none.
+pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for repeat in 1..=repeats {
+        let one = (0..runs).map(|run| Job { run, repeat });
+        if repeat % 2 == 1 {
+            jobs.extend(one);
+        } else {
+            jobs.extend(one.rev());
+        }
+    }
+    jobs
+}
+
+/// The arguments of the program for a process.
+pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String> {
+    let mut arguments = scene_arguments(study, run);
+    let threads = study.threads.to_string();
+    let out = job.folder(runs).display().to_string();
+    for argument in ["--threads", &threads, "--out", &out, "--force", "--quiet"] {
+        arguments.push(argument.to_owned());
+    }
+    arguments
+}
+
+/// The scene and its values.
+pub fn scene_arguments(study: &Study, run: &Run) -> Vec<String> {
+    let mut arguments = vec![study.scene.display().to_string()];
+    for setting in run.settings(study) {
+        match setting.path.strip_prefix(BODY) {
+            Some(body) => {
+                arguments.push("--body".to_owned());
+                arguments.push(format!("{body}={}", setting.value));
+            }
+            None => {
+                arguments.push("--set".to_owned());
+                arguments.push(override_text(setting));
+            }
+        }
+    }
+    arguments
+}
+
+/// A command line for sh.
+pub fn shell_line(program: &str, arguments: &[String], complaint: Option<&Path>) -> String {
+    let mut line = shell_word(program);
+    for argument in arguments {
+        line.push(' ');
+        line += &shell_word(argument);
+    }
+    if let Some(path) = complaint {
+        line += &format!(" 2> {}", shell_word(&path.display().to_string()));
+    }
+    line
+}
+
+fn shell_word(text: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+/// A process that is under way, and its job. Dropped, it is ended.
+struct Started(Child, Job);
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        if matches!(self.0.try_wait(), Ok(None)) {
+            let _ = self.0.kill();
+            let _ = self.0.wait();
+        }
+    }
+}
+
+/// Does the jobs, so many at a time. One that fails leaves its complaint; the others go on. `tell` is called with the number that are done.
+///
+/// # Errors
+/// Interrupted; the program cannot be started.
+pub fn work(
+    study: &Study,
+    all: &[Run],
+    todo: &[Job],
+    runs: &Path,
+    at_a_time: usize,
+    interrupted: &AtomicBool,
+    tell: &dyn Fn(usize),
+) -> Result<()> {
+    let program = std::env::current_exe().map_err(|error| not_started(&error))?;
+    let mut waiting: VecDeque<Job> = todo.iter().copied().collect();
+    let mut started: Vec<Started> = Vec::new();
+    let mut done = 0;
+    loop {
+        if interrupted.load(Ordering::Relaxed) {
+            return Err(Diagnostic::failed(
+                "",
+                format!("interrupted after {done} of {} runs", todo.len()),
+                "go on with --resume",
+            ));
+        }
+        while started.len() < at_a_time
+            && let Some(job) = waiting.pop_front()
+        {
+            let complaint = job.complaint(runs);
+            let say = File::create(&complaint).map_err(|error| {
+                let problem = format!("cannot be written: {error}");
+                Diagnostic::failed(complaint.display().to_string(), problem, "")
+            })?;
+            let child = Command::new(&program)
+                .args(arguments(study, &all[job.run], job, runs))
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(say)
+                .spawn()
+                .map_err(|error| not_started(&error))?;
+            started.push(Started(child, job));
+        }
+        if started.is_empty() {
+            return Ok(());
+        }
+        let before = started.len();
+        started.retain_mut(|Started(child, job)| match child.try_wait() {
+            Ok(None) => true,
+            Ok(Some(status)) => {
+                let complaint = job.complaint(runs);
+                let is_silent = fs::metadata(&complaint).is_ok_and(|file| file.len() == 0);
+                if !status.success() && is_silent {
+                    let _ = fs::write(&complaint, format!("error: ended by {status}\n"));
+                }
+                false
+            }
+            Err(_) => false,
+        });
+        done += before - started.len();
+        tell(done);
+        if before == started.len() {
+            sleep(LOOK);
+        }
+    }
+}
+
+fn not_started(error: &std::io::Error) -> Diagnostic {
+    let problem = format!("dem-run cannot be started: {error}");
+    Diagnostic::failed("", problem, "run the commands of --list yourself")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeats_go_there_and_back() {
+        let order: Vec<(usize, u32)> = jobs(3, 3).iter().map(|job| (job.run, job.repeat)).collect();
+        let wanted = [
+            (0, 1),
+            (1, 1),
+            (2, 1),
+            (2, 2),
+            (1, 2),
+            (0, 2),
+            (0, 3),
+            (1, 3),
+            (2, 3),
+        ];
+        assert_eq!(order, wanted);
+    }
+
+    #[test]
+    fn sh_reads_what_is_meant() {
+        let arguments = ["--set", "a.b=\"2 mm\"", "it's", ""].map(str::to_owned);
+        assert_eq!(
+            shell_line("dem-run", &arguments, Some(Path::new("a b.txt"))),
+            r#"dem-run --set 'a.b="2 mm"' 'it'\''s' '' 2> 'a b.txt'"#
+        );
+    }
+}

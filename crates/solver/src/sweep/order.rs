@@ -1,0 +1,85 @@
+//! Observed orders: by which power of the size errors fall.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::study::{Reference, Study};
+use serde::Serialize;
+
+use super::expand::{Run, group};
+use super::reference::{observed_order, richardson};
+use super::table::Row;
+
+/// Fewest runs for an order.
+const FEWEST: usize = 3;
+
+/// An observed order.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Order {
+    /// The measure.
+    pub measure: String,
+    /// The axis along which the size changes.
+    pub along: String,
+    /// What the runs have in common: the values of the other axes.
+    pub of: Vec<String>,
+    /// The order.
+    pub order: f64,
+    /// Number of runs from which it was found.
+    pub runs: usize,
+    /// "errors": the slope of error over size; "values": from Richardson extrapolation.
+    pub by: String,
+}
+
+/// Of each measure, along each axis with sizes. Errors below the uncertainty of their reference say nothing and are left out.
+pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
+    let mut found = Vec::new();
+    for (measure, of) in study.measures.iter().enumerate() {
+        for (along, axis) in study.axes.iter().enumerate() {
+            if axis.sizes().is_none() {
+                continue;
+            }
+            let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+            for (at, run) in runs.iter().enumerate() {
+                groups.entry(group(study, run, along)).or_default().push(at);
+            }
+            for members in groups.values() {
+                let results = members.iter().filter_map(|&at| {
+                    Some((rows[at].size(study, along)?, rows[at].results.get(measure)?))
+                });
+                let by_values = of.reference == Reference::Richardson(along);
+                let points: Vec<(f64, f64)> = if by_values {
+                    results.map(|(size, judged)| (size, judged.value)).collect()
+                } else {
+                    results
+                        .filter_map(|(size, judged)| {
+                            Some((size, judged.error?, judged.uncertainty))
+                        })
+                        .filter(|(_, error, uncertainty)| *error > uncertainty.unwrap_or(0.0))
+                        .map(|(size, error, _)| (size, error))
+                        .collect()
+                };
+                let order = if by_values {
+                    richardson(&points).and_then(|found| found.order)
+                } else {
+                    observed_order(&points).filter(|_| points.len() >= FEWEST)
+                };
+                if let (Some(order), Some(&first)) = (order, members.first()) {
+                    let mut others = runs[first].labels(study);
+                    if !group(study, &runs[first], along).is_empty() {
+                        others.remove(along);
+                    } else {
+                        others.clear();
+                    }
+                    found.push(Order {
+                        measure: of.name.clone(),
+                        along: axis.name.clone(),
+                        of: others,
+                        order,
+                        runs: points.len(),
+                        by: if by_values { "values" } else { "errors" }.to_owned(),
+                    });
+                }
+            }
+        }
+    }
+    found
+}

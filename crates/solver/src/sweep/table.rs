@@ -1,0 +1,301 @@
+//! The table of a sweep: of every run its time, its values and its errors, and which are on the fronts.
+
+use std::collections::BTreeSet;
+
+use dem_io::scene::study::{RunTime, Study};
+use serde::Serialize;
+
+use super::collect::{Done, Outcome};
+use super::expand::Run;
+use super::front::{Point, front};
+use super::judge::{in_words, judge};
+use super::order::{Order, orders};
+
+/// Differences of run times below this share mean nothing, however close the repeats are.
+const LEAST_SPREAD: f64 = 0.05;
+
+/// Everything that came of a sweep. SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepTable {
+    /// The study's file.
+    pub study: String,
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Processors and cores that did it. Run times of several are not compared.
+    pub machines: Vec<String>,
+    /// How often each run was to be done.
+    pub repeats: u32,
+    /// Threads of each run.
+    pub threads: u32,
+    /// "run time" or "processor time".
+    pub time: String,
+    /// What varies.
+    pub axes: Vec<AxisColumn>,
+    /// The axis that colours tell apart.
+    pub series: Option<usize>,
+    /// What is measured.
+    pub measures: Vec<MeasureColumn>,
+    /// All runs, in the order of their numbers.
+    pub runs: Vec<Row>,
+    /// How fast errors fall with the size.
+    pub orders: Vec<Order>,
+    /// What is to be known of it.
+    pub notes: Vec<String>,
+}
+
+/// Something that varies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AxisColumn {
+    /// Its path or name.
+    pub name: String,
+    /// Its values, for a person.
+    pub values: Vec<String>,
+    /// How coarse they are.
+    pub sizes: Option<Vec<f64>>,
+}
+
+/// Something that is measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeasureColumn {
+    /// Its name.
+    pub name: String,
+    /// SI unit of its values; empty for plain numbers.
+    pub unit: String,
+    /// What it is compared with, in words.
+    pub reference: String,
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// From 1.
+    pub number: usize,
+    /// Value of each axis, from 0.
+    pub choice: Vec<usize>,
+    /// The same for a person.
+    pub settings: Vec<String>,
+    /// Why it has no values. None: it has.
+    pub failed: Option<String>,
+    /// Time of each repeat, s.
+    pub times_s: Vec<f64>,
+    /// Their median, s.
+    pub time_s: Option<f64>,
+    /// Differences of run times up to this mean nothing, s: what the repeats differ by, or 5 % of the median.
+    pub spread_s: Option<f64>,
+    /// Steps.
+    pub steps: Option<u64>,
+    /// Last time step, s.
+    pub time_step_s: Option<f64>,
+    /// One for each measure; none of a run that failed.
+    pub results: Vec<Judged>,
+}
+
+/// A measure of one run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Judged {
+    /// In the unit of the measure.
+    pub value: f64,
+    /// What it should be. None: that is not known, or this run is what others are compared with.
+    pub reference: Option<f64>,
+    /// |value - reference|/|reference|; the plain difference for a reference of 0.
+    pub error: Option<f64>,
+    /// By how much the error may be off, as the reference is not known better.
+    pub uncertainty: Option<f64>,
+    /// Whether others are compared with this run.
+    pub is_reference: bool,
+    /// Whether no run is both faster and as exact.
+    pub is_on_front: bool,
+}
+
+impl Row {
+    /// How coarse its value of an axis is: its step itself where the axis is the relative one, as a run has a least number of steps.
+    pub fn size(&self, study: &Study, along: usize) -> Option<f64> {
+        let axis = &study.axes[along];
+        match axis.name.as_str() {
+            "run.safety" => self.time_step_s,
+            _ => axis.values[self.choice[along]].size,
+        }
+    }
+}
+
+impl Judged {
+    /// The error, or the uncertainty where that is larger: below it nothing can be told.
+    pub fn sure_error(&self) -> Option<f64> {
+        Some(self.error?.max(self.uncertainty.unwrap_or(0.0)))
+    }
+}
+
+impl SweepTable {
+    /// `outcomes`: of each run those of its repeats. `values`: what each measure is compared with, where the study says so as a number.
+    pub fn new(
+        study: &Study,
+        runs: &[Run],
+        outcomes: &[Vec<Outcome>],
+        values: &[Option<f64>],
+    ) -> Self {
+        let mut notes = Vec::new();
+        let mut machines = BTreeSet::new();
+        let mut rows = Vec::new();
+        let mut of_runs: Vec<Option<&Done>> = Vec::new();
+        for (run, outcomes) in runs.iter().zip(outcomes) {
+            let done: Vec<&Done> = outcomes
+                .iter()
+                .filter_map(|outcome| match outcome {
+                    Outcome::Done(done) => Some(done),
+                    _ => None,
+                })
+                .collect();
+            if done
+                .windows(2)
+                .any(|two| two[0].readings != two[1].readings)
+            {
+                let number = run.number;
+                notes.push(format!(
+                    "run {number} gave other values when it was done again"
+                ));
+            }
+            machines.extend(done.iter().map(|done| done.machine.clone()));
+            rows.push(row(study, run, outcomes, &done));
+            of_runs.push(done.first().copied());
+        }
+        for (measure, value) in values.iter().enumerate() {
+            judge(
+                study, runs, &of_runs, measure, *value, &mut rows, &mut notes,
+            );
+        }
+        if machines.len() > 1 {
+            let text = "the runs are of several machines, so that their times are not compared";
+            notes.push(text.to_owned());
+        } else {
+            for measure in 0..study.measures.len() {
+                mark_front(&mut rows, measure);
+            }
+        }
+        if study.repeats == 1 {
+            notes.push("each run was done once: how far run times scatter is not known".to_owned());
+        }
+        let unit = |at: usize| {
+            let done = of_runs.iter().flatten().next();
+            done.map_or(String::new(), |done| done.readings[at].unit.clone())
+        };
+        Self {
+            study: study.source.clone(),
+            scene: study.scene.display().to_string(),
+            program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            machines: machines.into_iter().collect(),
+            repeats: study.repeats,
+            threads: study.threads,
+            time: match study.time {
+                RunTime::Wall => "run time",
+                RunTime::Processor => "processor time",
+            }
+            .to_owned(),
+            axes: study
+                .axes
+                .iter()
+                .map(|axis| AxisColumn {
+                    name: axis.name.clone(),
+                    values: axis.values.iter().map(|v| v.label.clone()).collect(),
+                    sizes: axis.sizes(),
+                })
+                .collect(),
+            series: study.series,
+            measures: (0..study.measures.len())
+                .map(|at| MeasureColumn {
+                    name: study.measures[at].name.clone(),
+                    unit: unit(at),
+                    reference: in_words(study, at),
+                })
+                .collect(),
+            orders: orders(study, runs, &rows),
+            runs: rows,
+            notes,
+        }
+    }
+
+    /// Runs without values.
+    pub fn failed(&self) -> impl Iterator<Item = &Row> {
+        self.runs.iter().filter(|row| row.failed.is_some())
+    }
+
+    /// The settings of a run on one line: `run.safety 0.5, bonds.beam.model timoshenko`.
+    pub fn named(&self, row: &Row) -> String {
+        let named = self.axes.iter().zip(&row.settings);
+        let named: Vec<String> = named
+            .map(|(axis, value)| format!("{} {value}", axis.name))
+            .collect();
+        named.join(", ")
+    }
+}
+
+fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
+    let complaint = outcomes.iter().find_map(|outcome| match outcome {
+        Outcome::Failed(why) => Some(why.clone()),
+        _ => None,
+    });
+    let failed = match done {
+        [] => Some(complaint.unwrap_or_else(|| "it has not been run to its end".to_owned())),
+        _ => None,
+    };
+    let times_s: Vec<f64> = done.iter().map(|done| done.time_s).collect();
+    let time_s = median(&times_s);
+    let range = times_s.iter().fold(0.0, |l: f64, t| l.max(*t))
+        - times_s.iter().fold(f64::INFINITY, |l: f64, t| l.min(*t));
+    let first = done.first();
+    Row {
+        number: run.number,
+        choice: run.choice.clone(),
+        settings: run.labels(study),
+        failed,
+        time_s,
+        spread_s: time_s.map(|time| range.max(LEAST_SPREAD * time)),
+        times_s,
+        steps: first.map(|done| done.steps),
+        time_step_s: first.map(|done| done.time_step_s),
+        results: first.map_or(Vec::new(), |done| {
+            let judged = done.readings.iter().map(|reading| Judged {
+                value: reading.value,
+                reference: None,
+                error: None,
+                uncertainty: None,
+                is_reference: false,
+                is_on_front: false,
+            });
+            judged.collect()
+        }),
+    }
+}
+
+fn median(times: &[f64]) -> Option<f64> {
+    let mut times = times.to_vec();
+    times.sort_by(f64::total_cmp);
+    let middle = times.len() / 2;
+    match times.len() {
+        0 => None,
+        even if even % 2 == 0 => Some(f64::midpoint(times[middle - 1], times[middle])),
+        _ => Some(times[middle]),
+    }
+}
+
+fn mark_front(rows: &mut [Row], measure: usize) {
+    let mut at = Vec::new();
+    let mut points = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let error = row.results.get(measure).and_then(Judged::sure_error);
+        if let (Some(time_s), Some(spread_s), Some(error)) = (row.time_s, row.spread_s, error) {
+            at.push(index);
+            points.push(Point {
+                time_s,
+                spread_s,
+                error,
+            });
+        }
+    }
+    for (index, is_on) in at.into_iter().zip(front(&points)) {
+        if let Some(judged) = rows[index].results.get_mut(measure) {
+            judged.is_on_front = is_on;
+        }
+    }
+}

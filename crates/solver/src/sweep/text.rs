@@ -1,0 +1,166 @@
+//! The table of a sweep as CSV and for a person.
+
+use std::fmt;
+
+use dem_io::units::significant;
+
+use super::table::{Row, SweepTable};
+
+/// Most lines of a part that a person is told.
+const MOST_LINES: usize = 20;
+
+/// The table with one line for each run: comma-separated, texts in quotes where they need some.
+pub fn csv(table: &SweepTable) -> String {
+    let mut columns = vec!["run".to_owned()];
+    columns.extend(table.axes.iter().map(|axis| axis.name.clone()));
+    for name in ["time_s", "spread_s", "repeats", "steps", "time_step_s"] {
+        columns.push(name.to_owned());
+    }
+    for measure in &table.measures {
+        for part in ["value", "reference", "error", "uncertainty", "front"] {
+            columns.push(format!("{}_{part}", measure.name));
+        }
+    }
+    columns.push("failed".to_owned());
+    let mut out = line(&columns);
+    for row in &table.runs {
+        let mut cells = vec![row.number.to_string()];
+        cells.extend(row.settings.iter().cloned());
+        cells.push(number(row.time_s));
+        cells.push(number(row.spread_s));
+        cells.push(row.times_s.len().to_string());
+        cells.push(row.steps.map_or(String::new(), |steps| steps.to_string()));
+        cells.push(number(row.time_step_s));
+        for at in 0..table.measures.len() {
+            match row.results.get(at) {
+                Some(judged) => {
+                    cells.push(number(Some(judged.value)));
+                    cells.push(number(judged.reference));
+                    cells.push(number(judged.error));
+                    cells.push(number(judged.uncertainty));
+                    cells.push(u8::from(judged.is_on_front).to_string());
+                }
+                None => cells.extend(std::iter::repeat_n(String::new(), 5)),
+            }
+        }
+        cells.push(row.failed.clone().unwrap_or_default());
+        out += &line(&cells);
+    }
+    out
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| format!("{value:e}"))
+}
+
+fn line(cells: &[String]) -> String {
+    let cells: Vec<String> = cells
+        .iter()
+        .map(|cell| {
+            if cell.contains([',', '"', '\n', '\r']) {
+                format!("\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                cell.clone()
+            }
+        })
+        .collect();
+    format!("{}\n", cells.join(","))
+}
+
+/// The runs on the front of a measure, the fastest first.
+pub fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
+    let on = |row: &&Row| row.results.get(measure).is_some_and(|j| j.is_on_front);
+    let mut rows: Vec<&Row> = table.runs.iter().filter(on).collect();
+    rows.sort_by(|a, b| {
+        let time = |row: &Row| row.time_s.unwrap_or(f64::INFINITY);
+        time(a).total_cmp(&time(b))
+    });
+    rows
+}
+
+/// Lines of which only the first are shown.
+fn cut(f: &mut fmt::Formatter<'_>, lines: &[String]) -> fmt::Result {
+    for line in lines.iter().take(MOST_LINES) {
+        writeln!(f, "{line}")?;
+    }
+    if lines.len() > MOST_LINES {
+        writeln!(f, "  and {} more", lines.len() - MOST_LINES)?;
+    }
+    Ok(())
+}
+
+impl fmt::Display for SweepTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: {} runs of {}, {} time{} each, on {} thread{}",
+            self.study,
+            self.runs.len(),
+            self.scene,
+            self.repeats,
+            if self.repeats == 1 { "" } else { "s" },
+            self.threads,
+            if self.threads == 1 { "" } else { "s" },
+        )?;
+        writeln!(f, "machine      {}", self.machines.join("; "))?;
+        for (at, measure) in self.measures.iter().enumerate() {
+            let front = front_of(self, at);
+            writeln!(
+                f,
+                "front        {}: against {}, {} of {} runs",
+                measure.name,
+                measure.reference,
+                front.len(),
+                self.runs.len()
+            )?;
+            let lines: Vec<String> = front
+                .into_iter()
+                .map(|row| {
+                    let judged = &row.results[at];
+                    format!(
+                        "  {:>9} s  error {:<9} {}",
+                        significant(row.time_s.unwrap_or(f64::NAN), 3),
+                        significant(judged.sure_error().unwrap_or(f64::NAN), 2),
+                        self.named(row)
+                    )
+                })
+                .collect();
+            cut(f, &lines)?;
+        }
+        let lines: Vec<String> = self
+            .orders
+            .iter()
+            .map(|order| {
+                let of = order.of.join(", ");
+                let of = if of.is_empty() {
+                    of
+                } else {
+                    format!(" ({of})")
+                };
+                format!(
+                    "order        {} along {}{of}: {:.2} from {} runs",
+                    order.measure, order.along, order.order, order.runs
+                )
+            })
+            .collect();
+        cut(f, &lines)?;
+        let lines: Vec<String> = self
+            .failed()
+            .map(|row| {
+                let why = row.failed.as_deref().unwrap_or_default();
+                format!(
+                    "failed       run {}, {}: {why}",
+                    row.number,
+                    self.named(row)
+                )
+            })
+            .collect();
+        cut(f, &lines)?;
+        let lines: Vec<String> = self
+            .notes
+            .iter()
+            .map(|note| format!("note         {note}"))
+            .collect();
+        cut(f, &lines)
+    }
+}

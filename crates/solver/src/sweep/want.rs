@@ -1,0 +1,109 @@
+//! The fastest setting that is exact enough.
+
+use dem_io::units::{NUMBER, quantity, significant};
+use dem_io::{Diagnostic, Result};
+
+use super::table::{Row, SweepTable};
+
+/// A wanted error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Want {
+    /// As it was asked for.
+    pub text: String,
+    /// Of this measure. None: of all.
+    pub measure: Option<String>,
+    /// Largest error.
+    pub error: f64,
+}
+
+impl Want {
+    /// From `error=1%` or `NAME=1%`.
+    ///
+    /// # Errors
+    /// No such measure, or no number above 0.
+    pub fn parse(text: &str, table_measures: &[&str]) -> Result<Self> {
+        let place = format!("--want {text}");
+        let form = "write error=1%, or NAME=1% for one measure";
+        let Some((name, error)) = text.split_once('=') else {
+            return Err(Diagnostic::input(place, "there is no =", form));
+        };
+        let name = name.trim();
+        if name != "error" && !table_measures.contains(&name) {
+            return Err(Diagnostic::input(
+                place,
+                format!("nothing that is measured is called '{name}'"),
+                format!("use error for all, or one of {}", table_measures.join(", ")),
+            ));
+        }
+        let error = quantity(error, &NUMBER).map_err(|error| error.within(&place))?;
+        if error <= 0.0 {
+            return Err(Diagnostic::input(place, "the error is not above 0", form));
+        }
+        Ok(Self {
+            text: text.to_owned(),
+            measure: (name != "error").then(|| name.to_owned()),
+            error,
+        })
+    }
+
+    /// The largest error of a run of those that this is about. None: one of them is not known.
+    fn error_of(&self, table: &SweepTable, row: &Row) -> Option<f64> {
+        let meant = table.measures.iter().zip(&row.results);
+        let mut meant = meant
+            .filter(|(column, _)| {
+                self.measure
+                    .as_ref()
+                    .is_none_or(|name| *name == column.name)
+            })
+            .map(|(_, judged)| judged.sure_error());
+        let first = meant.next()??;
+        meant.try_fold(first, |largest: f64, error| Some(largest.max(error?)))
+    }
+}
+
+/// The fastest run whose errors are as small as wanted. Of those that are as fast within their spread, the most exact.
+///
+/// # Errors
+/// None is as exact; times are of several machines.
+pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
+    let place = wants.iter().map(|want| format!("--want {}", want.text));
+    let place = place.collect::<Vec<_>>().join(" ");
+    if table.machines.len() > 1 {
+        return Err(Diagnostic::input(
+            place,
+            "the runs are of several machines, whose times are not compared",
+            "do all of them on machines of one kind",
+        ));
+    }
+    // Largest error over what is wanted: 1 is just enough.
+    let share = |row: &Row| {
+        let shares = wants
+            .iter()
+            .map(|want| Some(want.error_of(table, row)? / want.error));
+        shares.reduce(|a, b| Some(a?.max(b?))).flatten()
+    };
+    let known = || {
+        table
+            .runs
+            .iter()
+            .filter_map(|row| Some((share(row)?, row.time_s?, row)))
+    };
+    let enough = || known().filter(|(share, ..)| *share <= 1.0);
+    let Some((_, least_s, _)) = enough().min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        let best = known().min_by(|a, b| a.0.total_cmp(&b.0));
+        let problem = match best {
+            Some((share, _, row)) => format!(
+                "no run is as exact: the nearest, run {}, has {} times the error",
+                row.number,
+                significant(share, 3)
+            ),
+            None => "no run has an error that is known".to_owned(),
+        };
+        let remedy = "ask for less, or let the study vary further";
+        return Err(Diagnostic::input(place, problem, remedy));
+    };
+    let as_fast = enough().filter(|(_, time, row)| *time <= least_s + row.spread_s.unwrap_or(0.0));
+    let best = as_fast.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(.., row)| row)
+        .ok_or_else(|| Diagnostic::failed(place, "no run is left", ""))
+}
