@@ -13,6 +13,7 @@ pub mod order;
 pub mod page;
 pub mod plot;
 pub mod reference;
+mod scale;
 pub mod table;
 pub mod text;
 pub mod want;
