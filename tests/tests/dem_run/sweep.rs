@@ -530,6 +530,11 @@ fn what_is_refused() {
         bad(&bench, &["--out", "."], 2).contains("this folder holds something else than a sweep")
     );
     assert!(
+        bad(&bench, &["--want", "error=1", "--write", "gone/a.toml"], 2)
+            .contains("there is no folder 'gone'")
+    );
+    assert!(!bench.path("study-sweep").exists());
+    assert!(
         !sweep(&bench, &["--write", "a.toml"])
             .output()
             .unwrap()

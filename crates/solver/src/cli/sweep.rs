@@ -76,6 +76,14 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
             "1 measures run times best",
         ));
     }
+    let of_target = options.write.as_ref().and_then(|target| target.parent());
+    if let Some(missing) = of_target.filter(|f| !f.as_os_str().is_empty() && !f.is_dir()) {
+        return Err(Diagnostic::input(
+            "--write",
+            format!("there is no folder '{}'", missing.display()),
+            "make it first, or write elsewhere",
+        ));
+    }
     let study = read_study(&options.study)?;
     let scene_text = text_of(&study.scene, "a scene")
         .map_err(|error| error.within(&format!("{}: scene", study.source)))?;

@@ -105,6 +105,8 @@ pub struct PopulationSummary {
     pub delayed: u32,
     /// Bodies that an inlet still owes at the end.
     pub waiting: u32,
+    /// Clumps could be replaced, and none was.
+    pub never_replaced: bool,
     /// Bodies and fragments that went through outlets.
     pub left: u32,
     /// Their mass, kg.
@@ -157,6 +159,7 @@ impl PopulationSummary {
             waiting: (rules.inlets.iter())
                 .map(|inlet| inlet.owed(state.time_s))
                 .sum(),
+            never_replaced: rules.replaced == 0 && rules.triggers.iter().any(Option::is_some),
             left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
             left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
             bonds_left_out: over(left_out, done + left_out),
@@ -180,9 +183,12 @@ impl Summary {
         }
         if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
             doubts.push(format!(
-                "{} bodies still wait for a place at their inlet: make its region larger, its bodies faster, or its rate smaller",
+                "{} bodies still wait for a place at their inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller",
                 population.waiting
             ));
+        }
+        if self.population.as_ref().is_some_and(|p| p.never_replaced) {
+            doubts.push("no clump was ever replaced: no trigger of [replacement] fired".to_owned());
         }
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
@@ -305,7 +311,10 @@ impl fmt::Display for Summary {
         }
         let doubts = self.doubts();
         let verdict = if doubts.is_empty() {
-            "sound: nothing to mind".to_owned()
+            match self.notes.len() {
+                0 => "sound: nothing to mind".to_owned(),
+                _ => "sound, but mind what is noted".to_owned(),
+            }
         } else {
             doubts.join("; ")
         };

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use dem_io::scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
+use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -171,7 +172,40 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             ));
         }
     }
+    if let (Some(sleep), g) = (&scene.sleep, Vector3::from(scene.run.gravity_m_s2).norm()) {
+        // On the way up and down again.
+        let turning_s = 2.0 * sleep.speed_m_s / g;
+        if sleep.after_s < turning_s {
+            doubts.push(format!(
+                "sleep: a body that flies is slower than {} m/s for {} s where it turns, and falls asleep there: sleep.after should be longer",
+                significant(sleep.speed_m_s, 4),
+                significant(turning_s, 4)
+            ));
+        }
+    }
     for inlet in &state.rules.inlets {
+        if inlet.between_s[0] >= scene.run.end_time_s {
+            doubts.push(format!(
+                "inlet '{}': it starts at {} s, and the run ends at {} s",
+                inlet.name,
+                significant(inlet.between_s[0], 6),
+                significant(scene.run.end_time_s, 6)
+            ));
+        }
+        let gate = state.rules.regions[inlet.region].bounds();
+        for outlet in state
+            .rules
+            .outlets
+            .iter()
+            .filter(|outlet| outlet.removes_outside)
+        {
+            if is_apart(&gate, &state.rules.regions[outlet.region].bounds()) {
+                doubts.push(format!(
+                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed at once",
+                    outlet.name, inlet.name
+                ));
+            }
+        }
         if let Some(most_per_s) = most_per_s(inlet, state) {
             let wanted = match inlet.feed {
                 Feed::Number(per_s) => per_s,
@@ -184,8 +218,10 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             };
             if wanted > most_per_s {
                 doubts.push(format!(
-                    "inlet '{}': {wanted:.3} bodies per second are wanted, and at its velocity places for about {most_per_s:.3} become free: some will wait",
-                    inlet.name
+                    "inlet '{}': {} bodies per second are wanted, and at its velocity places for about {} become free: some will wait",
+                    inlet.name,
+                    significant(wanted, 4),
+                    significant(most_per_s, 2)
                 ));
             }
         }
@@ -202,7 +238,11 @@ fn is_away(region: &Region, state: &State) -> bool {
     let all = inlets
         .chain(walls)
         .fold(Bounds::of(places), |all, one| all.with(&one));
-    let common = region.bounds().common(&all);
+    is_apart(&region.bounds(), &all)
+}
+
+fn is_apart(a: &Bounds, b: &Bounds) -> bool {
+    let common = a.common(b);
     (0..3).any(|k| common.low[k] > common.high[k])
 }
 

@@ -11,6 +11,7 @@ use crate::stages::clumps::synchronous;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template, numbers, rotation};
 use crate::state::rules::{Feed, Inlet, Trigger};
+use crate::state::walls::Wall;
 
 /// Places looked at for a body in one step.
 const TRIES: u32 = 10;
@@ -270,7 +271,8 @@ fn is_due(inlet: &Inlet, time_s: f64) -> bool {
     }
 }
 
-/// The next body of an inlet, where there is place for it: a random place of the region at which the sphere around it touches no sphere of another body.
+/// The next body of an inlet, where there is place for it: a random place of the region at which the sphere around it touches no sphere of another body, and
+/// none of its spheres a wall.
 fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
     let seed = state.rules.seed;
     let number = u64::from(inlet.come.bodies);
@@ -303,7 +305,7 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
         };
         let turned = numbers(&(as_file * rotation(template.axes)));
         let velocity = Vector3::from(inlet.velocity_m_s) + half_kick(state);
-        return Some(Clump {
+        let clump = Clump {
             template: which,
             instance: state.rules.instances + 1,
             place_m,
@@ -311,9 +313,32 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
             velocity_m_s: velocity.into(),
             angular_momentum: angular_momentum(template, turned, inlet.spin_rad_s),
             ..Clump::default()
-        });
+        };
+        if !state
+            .walls
+            .iter()
+            .any(|wall| is_in_wall(&clump, template, wall))
+        {
+            return Some(clump);
+        }
     }
     None
+}
+
+/// Whether a sphere of a clump touches a wall.
+fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
+    let reach_m = template.reach_m * template.scale.max(1.0);
+    if !wall.bounds_in_space().is_near(&clump.place_m, reach_m) {
+        return false;
+    }
+    let mut touches = Vec::new();
+    template.outer.iter().any(|&sphere| {
+        let pose = template.pose(sphere as usize, clump);
+        let centre = wall.frame.to_wall(pose.place().into());
+        let radius_m = template.scale * pose.radius_m();
+        wall.shape.touches(centre, radius_m, &mut touches);
+        touches.iter().any(|touch| touch.distance_m < radius_m)
+    })
 }
 
 /// Angular momentum of a clump that is turned so and spins so, kg m2/s.

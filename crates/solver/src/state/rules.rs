@@ -73,14 +73,19 @@ impl Inlet {
     pub fn owed(&self, time_s: f64) -> u32 {
         let [start_s, end_s] = self.between_s;
         let since_s = time_s.min(end_s) - start_s;
-        if since_s < 0.0 || self.come.bodies == 0 {
+        if since_s < 0.0 {
             return 0;
         }
-        let should = match self.feed {
-            Feed::Number(per_s) => (since_s * per_s).floor(),
-            Feed::Mass(kg_s) => {
-                (since_s * kg_s / self.come.mass_kg * f64::from(self.come.bodies)).floor()
-            }
+        let per_s = match self.feed {
+            Feed::Number(per_s) => per_s,
+            Feed::Mass(_) if self.come.bodies == 0 => 0.0,
+            Feed::Mass(kg_s) => kg_s / self.come.mass_kg * f64::from(self.come.bodies),
+        };
+        // The first is due at once, and none at the end.
+        let should = if time_s < end_s {
+            (since_s * per_s).floor() + 1.0
+        } else {
+            (since_s * per_s).ceil()
         };
         (should.min(f64::from(self.count)) as u32).saturating_sub(self.come.bodies)
     }

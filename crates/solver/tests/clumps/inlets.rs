@@ -5,7 +5,7 @@ use dem_run::state::State;
 use dem_run::state::clumps::{Clump, rotation};
 use nalgebra::Vector3;
 
-use crate::{HEAD, MEETS, block, happens, lump, planned};
+use crate::{HEAD, MEETS, block, go, happens, lump, planned};
 
 const BALL: &str = "[bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-3]]\n";
 /// Wide enough that nobody waits.
@@ -252,4 +252,64 @@ fn nothing_comes_into_the_middle_of_a_clump() {
     run_to(&mut state, 1e-3);
     assert_eq!(state.rules.inlets[0].come.bodies, 0);
     assert_eq!(state.rules.inlets[0].come.delayed, 1);
+}
+
+/// The region lies half in a floor, and a lump needs room above it.
+#[test]
+fn nothing_comes_into_a_wall() {
+    let text = format!(
+        "{HEAD}{MEETS}{}\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
+         [walls.post]\nbox = {{ min = [0.02, -1, -1], max = [0.03, 1, 1] }}\nmaterial = \"stuff\"\n\
+         [regions.gate]\nbox = {{ min = [0, 0, -0.02], max = [0.05, 0.05, 0.02] }}\n\
+         [inlets.feed]\nbodies = [\"lump\"]\nregion = \"gate\"\nrate = 1e9\ncount = 40\norientation = \"random\"\n",
+        lump("lump", "start_as = \"clump\"")
+    );
+    let mut plan = planned(&text);
+    for _ in 0..200 {
+        go(&mut plan.state, &mut plan.bodies);
+        let state = &plan.state;
+        assert!(state.walls.iter().all(|wall| wall.touching.is_empty()));
+    }
+    let state = &plan.state;
+    let [left, right] = [0, 1].map(|side| {
+        let of_side = |clump: &&Clump| (clump.place_m[0] > 0.025) == (side == 1);
+        state.clumps.all.iter().filter(of_side).count()
+    });
+    eprintln!(
+        "{left} and {right}, {} wait",
+        state.rules.inlets[0].owed(state.time_s)
+    );
+    assert!(left > 3 && right > 3);
+    assert!(state.clumps.all.iter().all(|clump| clump.place_m[2] > 1e-3));
+}
+
+#[test]
+fn who_is_due_and_has_not_come_is_counted() {
+    let text = |rest: &str| {
+        format!(
+            "{HEAD}{MEETS}{}[regions.gate]\nbox = {{ min = [0, 0, 0], max = [1e-6, 1e-6, 1e-6] }}\n\
+             [inlets.feed]\nbodies = [\"lump\"]\nregion = \"gate\"\n{rest}\n",
+            lump("lump", "start_as = \"clump\"")
+        )
+    };
+    // One comes and takes the place. Due are those at 0, 10, 20 ... ms.
+    for (rest, time_s, waiting) in [
+        ("rate = 100", 0.0, 0),
+        ("rate = 100", 0.035, 3),
+        ("rate = 100\nend = 0.035", 0.05, 3),
+        ("rate = 100\nend = 0.04", 0.05, 3),
+        ("rate = 100\nend = 0.041", 0.05, 4),
+        ("rate = 100\ncount = 2", 0.05, 1),
+        ("rate = 100\nstart = 0.02", 0.035, 1),
+    ] {
+        let mut plan = planned(&text(rest));
+        plan.state.time_step_s = 1e-4;
+        while plan.state.time_s < time_s + 1e-5 {
+            go(&mut plan.state, &mut plan.bodies);
+        }
+        let inlet = &plan.state.rules.inlets[0];
+        assert_eq!(inlet.come.bodies, 1, "{rest}");
+        assert_eq!(inlet.owed(time_s), waiting, "{rest} at {time_s} s");
+    }
 }
