@@ -25,12 +25,12 @@ use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
-use crate::output::summary::{PopulationSummary, SleepSummary, Summary};
+use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary};
 use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
 use crate::stages::clumps::place_all;
-use crate::stages::replacement::replace;
+use crate::stages::replacement::{Happened, replace};
 use crate::state::State;
 use crate::step::{act, move_on};
 
@@ -140,7 +140,7 @@ pub fn run(
     let size = state.particles.len() + state.bonds.len();
     let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, &choice);
-    let limits = Limits::of(scene, &state);
+    let mut limits = Limits::of(scene, &state, &choice);
     let mut changed_step = None;
     let is_continued = settings.resume.is_some();
     if let Some(snapshot) = settings.resume {
@@ -160,7 +160,7 @@ pub fn run(
             renumber_gauges(&mut gauges, &[], &bodies, &state);
             order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
-        changed_step = change_step(&mut state, &choice);
+        changed_step = change_step(&mut state, &choice, scene.run.adaptive);
     }
     let columns = series::columns(scene.walls.keys(), &gauges);
     let mut files = match (settings.folder, order) {
@@ -279,7 +279,10 @@ pub fn run(
             state.clock.book_output(since.elapsed());
         }
         state.clock.start(state.steps);
+        let mut replaced = false;
         if let Some((renumbered, happened)) = replace(&mut state) {
+            let is_swap = |one: &Happened| matches!(one, Happened::Replaced { .. });
+            replaced = happened.iter().any(is_swap);
             for by in &renumbered {
                 renumber(&mut bodies, by);
             }
@@ -295,7 +298,8 @@ pub fn run(
             write_sleep(&state, files)?;
         }
 
-        if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {
+        let followed = limits.follow(&mut state, replaced, &mut progress, &bodies, files.as_mut());
+        if let Err(problem) = followed {
             return Err(with_checkpoint(problem, files.as_ref()));
         }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
@@ -344,6 +348,11 @@ pub fn run(
         sleep: state.sleep.as_ref().map(SleepSummary::of),
         steps: state.steps,
         time_step_s: state.time_step_s,
+        adaptive: scene.run.adaptive.then(|| AdaptiveSummary {
+            smallest_step_s: progress.steps_s[0],
+            largest_step_s: progress.steps_s[1],
+            changes: progress.step_changes,
+        }),
         limit_s: progress.limit_s,
         share_of_limit: state.time_step_s / progress.limit_s,
         steps_per_s,
