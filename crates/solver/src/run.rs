@@ -38,7 +38,7 @@ use self::events::{
     change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
 };
 use self::fragments::write_fragments;
-use self::limits::{Limits, went_through};
+use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
@@ -218,8 +218,10 @@ pub fn run(
         let picture_due = (files.as_ref())
             .and_then(|files| files.pictures.as_ref())
             .is_some_and(|pictures| pictures.are_due(&state));
-        let output_due =
-            row_due || frame_due || checkpoint_due || picture_due || watchdog.is_due(&state);
+        let since = state.steps.is_multiple_of(LOOKS_EVERY).then(Instant::now);
+        let is_odd = watchdog.is_due(&state);
+        state.clock.book_checks(since);
+        let output_due = row_due || frame_due || checkpoint_due || picture_due || is_odd;
         let output_since = output_due.then(Instant::now);
         if output_due {
             place_all(&state.clumps, &mut state.particles);
@@ -227,7 +229,7 @@ pub fn run(
         let mut rests = false;
         let mut balanced = None;
         // A checkpoint of a run that has gone unstable would be worth nothing.
-        if row_due || checkpoint_due || watchdog.is_due(&state) {
+        if row_due || checkpoint_due || is_odd {
             let balance = balance(&mut state);
             if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
                 return Err(with_checkpoint(problem, files.as_ref()));
@@ -276,7 +278,7 @@ pub fn run(
             break (why, balance);
         }
         if let Some(since) = output_since {
-            state.clock.book_output(since.elapsed());
+            state.clock.book_all(Stage::Output, since.elapsed());
         }
         state.clock.start(state.steps);
         let mut replaced = false;
@@ -298,7 +300,9 @@ pub fn run(
             write_sleep(&state, files)?;
         }
 
+        let since = state.steps.is_multiple_of(LOOKS_EVERY).then(Instant::now);
         let followed = limits.follow(&mut state, replaced, &mut progress, &bodies, files.as_mut());
+        state.clock.book_checks(since);
         if let Err(problem) = followed {
             return Err(with_checkpoint(problem, files.as_ref()));
         }
@@ -374,7 +378,7 @@ pub fn run(
         left_out: stages
             .iter()
             .filter(|s| !s.needed)
-            .map(|s| s.name.to_owned())
+            .map(|s| s.stage.name().to_owned())
             .collect(),
         notes,
         results: settings

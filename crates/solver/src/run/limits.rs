@@ -19,8 +19,8 @@ const STRAIN_EVERY: u64 = 64;
 /// The limit of the step is looked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
 /// stiffer across.
 const MORE_STRAIN: f64 = 0.02;
-/// Steps between two looks at the contacts: a collision takes more.
-const CONTACTS_EVERY: u64 = 8;
+/// Steps between two looks at the contacts: a collision takes more. All other looks are at multiples of it, too.
+pub(super) const LOOKS_EVERY: u64 = 8;
 /// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
 const STIFFER: f64 = 1.2;
 /// The step is looked at again when bodies are faster by this factor, on the mean of their mass, than the impacts that it allows for.
@@ -98,7 +98,8 @@ impl<'a> Limits<'a> {
             } else if state.steps >= progress.next_look || has_lost_all_bonds {
                 let outlook = Outlook::of(adaptive.scene, state, adaptive.arriving.as_mut());
                 let iterations = outlook.limit.all_iterations as u64;
-                progress.next_look = state.steps + LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
+                let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
+                progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
                 progress.had_bonds = state.bonds.len() > 0;
                 progress.allow_for(&outlook);
                 progress.limit_strain = largest_strain(&state.bonds, &state.particles.poses);
@@ -125,7 +126,7 @@ impl<'a> Limits<'a> {
             }
         }
         let touches = state.contacts.is_some();
-        let look_at_contacts = touches && state.steps.is_multiple_of(CONTACTS_EVERY);
+        let look_at_contacts = touches && state.steps.is_multiple_of(LOOKS_EVERY);
         if look_at_contacts {
             let rate = largest_contact_rate_1_s2(state);
             if rate > STIFFER * progress.contact_rate_1_s2 {
