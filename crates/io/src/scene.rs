@@ -112,7 +112,7 @@ pub struct Run {
     pub rest: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 1).
+    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and more are for trials only.
     pub safety: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
     pub adaptive: bool,

@@ -15,15 +15,15 @@ use std::error::Error;
 use std::path::Path;
 use std::process::Command;
 
+use dem_io::study::Pieces;
+use dem_run::sweep::masses::{by_chance, distance, masses_kg};
+
 const WAYS: [(&str, &str); 3] = [
     ("chute-bonded", "breakable from the start"),
     ("chute", "clumps until they come to the plate"),
     ("chute-back", "quiet fragments rigid again"),
 ];
 const SEEDS: usize = 4;
-
-/// Kolmogorov's and Smirnov's distance that chance alone exceeds in one of twenty cases, times the root of the harmonic sum of the numbers.
-const ONE_OF_TWENTY: f64 = 1.358;
 
 type Failed = Box<dyn Error>;
 
@@ -94,8 +94,7 @@ fn main() -> Result<(), Failed> {
     }
     for (way, (name, _)) in WAYS.iter().enumerate().skip(1) {
         let [a, b] = [way, 0].map(|way| all_masses_kg(&runs[way]));
-        let numbers = [a.len(), b.len()].map(|n| n as f64);
-        let chance = ONE_OF_TWENTY * (1.0 / numbers[0] + 1.0 / numbers[1]).sqrt();
+        let chance = by_chance(a.len(), b.len());
         let [number, mass] = [|_| 1.0, |kg| kg].map(|weight| distance(&a, &b, weight));
         println!(
             "| `{name}.toml`, all seeds together | {number:.3} (by chance, in one of twenty cases: {chance:.3}) | {mass:.2} |"
@@ -118,16 +117,7 @@ fn run(program: &Path, name: &str, seed: usize, out: &Path) -> Result<Run, Faile
     let summary: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.join("summary.json"))?)?;
     let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
-    let mut masses_kg = Vec::new();
-    for line in std::fs::read_to_string(out.join("events.csv"))?.lines() {
-        if line.split(',').nth(2) == Some("left") {
-            let mass = line
-                .rsplit(": ")
-                .next()
-                .and_then(|mass| mass.strip_suffix(" kg"));
-            masses_kg.push(mass.ok_or("no mass in a row of events.csv")?.parse()?);
-        }
-    }
+    let masses_kg = masses_kg(Pieces::Left, out)?;
     Ok(Run {
         wall_s: number(&summary["wall_s"]),
         energy_error: number(&summary["energy_error"]),
@@ -154,23 +144,6 @@ fn pairs(a: &[Run], b: &[Run], counts: impl Fn(usize, usize) -> bool) -> [String
         }
         format!("{least:.3} to {most:.3}")
     })
-}
-
-/// Kolmogorov's and Smirnov's: the largest difference of the cumulative distributions.
-fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
-    let sums = [a, b].map(|all| all.iter().map(|x| weight(*x)).sum::<f64>());
-    let mut all: Vec<(f64, f64)> = (a.iter().map(|x| (*x, weight(*x) / sums[0])))
-        .chain(b.iter().map(|x| (*x, -weight(*x) / sums[1])))
-        .collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
-    for (at, (x, share)) in all.iter().enumerate() {
-        difference += share;
-        if all.get(at + 1).is_none_or(|next| next.0 > *x) {
-            largest = largest.max(difference.abs());
-        }
-    }
-    largest
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {

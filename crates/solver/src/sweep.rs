@@ -1,6 +1,6 @@
 //! A sweep: a scene is run with many settings, each in a process of its own; error against run time comes of it.
 //!
-//! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] what they came to -> [`judge`] errors ->
+//! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] what they came to -> [`judge`] errors (of distributions: [`masses`]) ->
 //! [`table`] medians, [`front`]s, [`order`]s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest that is exact enough.
 
 pub mod collect;
@@ -9,6 +9,7 @@ pub mod folder;
 pub mod front;
 pub mod jobs;
 pub mod judge;
+pub mod masses;
 pub mod order;
 pub mod page;
 pub mod plot;

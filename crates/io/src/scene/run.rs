@@ -60,7 +60,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
         time_step_s,
         safety: table
             .read("safety", |field| {
-                field.between(0.0, 1.0, "a usual value is 0.9")
+                field.between(0.0, 2.0, "a usual value is 0.9")
             })?
             .unwrap_or(SAFETY),
         adaptive,

@@ -33,6 +33,8 @@ pub struct Study {
     pub repeats: u32,
     /// `threads` of each run; 1 unless given.
     pub threads: u32,
+    /// `force_step`: steps above the largest stable one are taken; not unless given.
+    pub force_step: bool,
     /// `time`, "wall" unless given.
     pub time: RunTime,
     /// `combine`, "grid" unless given.
@@ -125,8 +127,19 @@ pub enum MeasureOf {
     Measure(String),
     /// `figure`: a figure of the scene's laboratory test.
     Figure(String),
+    /// `masses`: how many pieces there are, and how far the distribution of their masses is from that of the finest run.
+    Masses(Pieces),
     /// `ledger`: "energy", "momentum" or "angular-momentum": its largest relative error, which needs no reference.
     Ledger(&'static str),
+}
+
+/// Which pieces' masses are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pieces {
+    /// "left": those that went through outlets.
+    Left,
+    /// "at-end": those that are there at the end of the run.
+    AtEnd,
 }
 
 /// What a measure is compared with.
@@ -147,6 +160,8 @@ const LEDGERS: [(&str, &str); 3] = [
     ("momentum", "momentum_error"),
     ("angular-momentum", "angular_momentum_error"),
 ];
+
+const PIECES: [(&str, Pieces); 2] = [("left", Pieces::Left), ("at-end", Pieces::AtEnd)];
 
 const TIMES: [(&str, RunTime); 2] = [("wall", RunTime::Wall), ("processor", RunTime::Processor)];
 
@@ -175,8 +190,18 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         return Err(version.wrong(&format!("at most {STUDY_VERSION}"), "use a newer program"));
     }
     root.refuse_unknown(&[
-        "version", "scene", "repeats", "threads", "time", "combine", "set", "vary", "together",
-        "measures", "page",
+        "version",
+        "scene",
+        "repeats",
+        "threads",
+        "force_step",
+        "time",
+        "combine",
+        "set",
+        "vary",
+        "together",
+        "measures",
+        "page",
     ])?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
     let mut axes = Vec::new();
@@ -236,6 +261,9 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         scene: tidy(named_path(&root.need("scene", "\"scene.toml\"")?, folder)?),
         repeats: count("repeats", 3)?,
         threads: count("threads", 1)?,
+        force_step: root
+            .read("force_step", |field| field.boolean())?
+            .unwrap_or_default(),
         time: root
             .read("time", |field| field.choice(&TIMES))?
             .unwrap_or(RunTime::Wall),
@@ -291,8 +319,9 @@ fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
 }
 
 fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure> {
-    let table = field.table(&["measure", "figure", "ledger", "reference"])?;
-    let given: Vec<_> = table.given(&["measure", "figure", "ledger"]).collect();
+    let table = field.table(&["measure", "figure", "masses", "ledger", "reference"])?;
+    let kinds = ["measure", "figure", "masses", "ledger"];
+    let given: Vec<_> = table.given(&kinds).collect();
     if let [(one, _), (_, other), ..] = given.as_slice() {
         let problem = format!("{} stands beside {one}", other.path);
         return Err(other.refuse(problem, "a measure is of one of them: remove the other"));
@@ -301,6 +330,7 @@ fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure>
         None => MeasureOf::Measure(name.to_owned()),
         Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
         Some(("figure", field)) => MeasureOf::Figure(field.text()?.to_owned()),
+        Some(("masses", field)) => MeasureOf::Masses(field.choice(&PIECES)?),
         Some((_, field)) => MeasureOf::Ledger(field.choice(&LEDGERS)?),
     };
     let reference = match table.get("reference") {
@@ -311,6 +341,10 @@ fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure>
         Some(field) => reference(&field, axes)?,
         None => Reference::ClosedForm,
     };
+    if let (MeasureOf::Masses(_), false) = (&of, matches!(reference, Reference::Finest(_))) {
+        let problem = format!("{} has no run to be compared with", field.path);
+        return Err(field.refuse(problem, "add reference = { finest = \"AXIS\" }"));
+    }
     Ok(StudyMeasure {
         name: name.to_owned(),
         of,

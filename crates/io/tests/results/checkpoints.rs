@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dem_io::checkpoint::{read_checkpoint, write_checkpoint};
+use dem_io::checkpoint::{FORMAT_VERSION, read_checkpoint, write_checkpoint};
 use dem_io::{Diagnostic, Result};
 use proptest::prelude::*;
 use tempfile::tempdir;
@@ -51,9 +51,10 @@ fn each_kind_of_bad_file_has_its_message() {
     let turned = refusal(&turned);
     assert!(turned.problem.contains("check sum"), "{turned}");
     let mut newer = good;
-    newer[16] = 3;
+    newer[16] = FORMAT_VERSION as u8 + 1;
     let newer = refusal(&newer);
-    assert!(newer.problem.contains("format 3"), "{newer}");
+    let named = format!("format {}", FORMAT_VERSION + 1);
+    assert!(newer.problem.contains(&named), "{newer}");
     assert!(newer.problem.contains("'dem-run "), "{newer}");
 }
 

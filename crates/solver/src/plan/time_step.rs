@@ -129,6 +129,16 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             "check the units of places, radii, density, modulus and damping",
         ));
     }
+    if run.time_step_s.is_none() && run.safety >= 1.0 && !allow_any_step {
+        return Err(Diagnostic::input(
+            format!("{}: run.safety", scene.source),
+            format!(
+                "{} is no share of the largest stable step that is stable",
+                run.safety
+            ),
+            "write 0.9, or --force-step to see what happens",
+        ));
+    }
     let step_s = match run.time_step_s {
         Some(given) => {
             if given > foreseen_s && !allow_any_step {

@@ -7,6 +7,7 @@ use dem_io::scene::study::{MeasureOf, Reference, RunTime, Study};
 use serde_json::Value;
 
 use super::jobs::Job;
+use super::masses::masses_kg;
 
 /// What one process came to.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Reading {
     pub unit: String,
     /// What the scene or the theory says it should be.
     pub closed_form: Option<f64>,
+    /// Of masses of pieces: each, kg. Otherwise empty.
+    pub masses_kg: Vec<f64>,
 }
 
 /// What came of a process.
@@ -58,17 +61,17 @@ pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
             Outcome::Failed(line.strip_prefix("error: ").unwrap_or(line).to_owned())
         });
     };
-    done(study, &summary).map_or_else(Outcome::Failed, Outcome::Done)
+    done(study, &summary, &job.folder(runs)).map_or_else(Outcome::Failed, Outcome::Done)
 }
 
-fn done(study: &Study, summary: &Value) -> Result<Done, String> {
+fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> {
     let number = |key: &str| {
         let value = summary[key].as_f64();
         value.ok_or_else(|| format!("its summary has no {key}"))
     };
     let mut readings = Vec::new();
     for measure in &study.measures {
-        let mut read = reading(summary, &measure.of)?;
+        let mut read = reading(summary, results, &measure.of)?;
         if !read.value.is_finite() {
             return Err(format!("the measure '{}' is not a number", measure.name));
         }
@@ -97,14 +100,21 @@ fn done(study: &Study, summary: &Value) -> Result<Done, String> {
 }
 
 /// What is no number in JSON is null there.
-fn reading(summary: &Value, of: &MeasureOf) -> Result<Reading, String> {
+fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
+    let plain = |value: f64, masses_kg: Vec<f64>| Reading {
+        value,
+        unit: String::new(),
+        closed_form: None,
+        masses_kg,
+    };
     let (list, name, reference) = match of {
         MeasureOf::Ledger(key) => {
-            return Ok(Reading {
-                value: summary[*key].as_f64().unwrap_or(f64::NAN),
-                unit: String::new(),
-                closed_form: None,
-            });
+            let value = summary[*key].as_f64().unwrap_or(f64::NAN);
+            return Ok(plain(value, Vec::new()));
+        }
+        MeasureOf::Masses(pieces) => {
+            let masses_kg = masses_kg(*pieces, results)?;
+            return Ok(plain(masses_kg.len() as f64, masses_kg));
         }
         MeasureOf::Measure(name) => (&summary["measures"], name, "reference"),
         MeasureOf::Figure(name) => (&summary["test"]["figures"], name, "theory"),
@@ -118,5 +128,6 @@ fn reading(summary: &Value, of: &MeasureOf) -> Result<Reading, String> {
         value: entry["value"].as_f64().unwrap_or(f64::NAN),
         unit: entry["unit"].as_str().unwrap_or_default().to_owned(),
         closed_form: entry[reference].as_f64(),
+        masses_kg: Vec::new(),
     })
 }

@@ -83,6 +83,9 @@ pub fn scene_arguments(study: &Study, run: &Run) -> Vec<String> {
             }
         }
     }
+    if study.force_step {
+        arguments.push("--force-step".to_owned());
+    }
     arguments
 }
 

@@ -7,6 +7,7 @@ use dem_io::units::significant;
 
 use super::collect::Done;
 use super::expand::{Run, group};
+use super::masses::{by_chance, distance};
 use super::reference::{Extrapolated, richardson};
 use super::table::{Judged, Row};
 
@@ -62,8 +63,16 @@ pub fn judge(
             for &at in members {
                 if let Some(judged) = rows[at].results.get_mut(measure) {
                     judged.is_reference = at == finest;
-                    if at != finest {
-                        set_error(judged, reference, None);
+                    if at == finest {
+                        continue;
+                    }
+                    set_error(judged, reference, None);
+                    if let (MeasureOf::Masses(_), [Some(own), Some(other)]) =
+                        (&of.of, [done[at], done[finest]])
+                    {
+                        let [own, other] = [own, other].map(|d| &d.readings[measure].masses_kg);
+                        judged.error = Some(distance(own, other, |_| 1.0));
+                        judged.uncertainty = Some(by_chance(own.len(), other.len()));
                     }
                 }
             }
@@ -132,6 +141,10 @@ pub fn in_words(study: &Study, measure: usize) -> String {
         (MeasureOf::Figure(_), Reference::ClosedForm) => "the theory of the test".to_owned(),
         (_, Reference::ClosedForm) => "the reference of the scene".to_owned(),
         (_, Reference::Value(text)) => text.clone(),
+        (MeasureOf::Masses(_), Reference::Finest(at)) => format!(
+            "the masses of the finest run along {} (distance of Kolmogorov and Smirnov, by number; below its uncertainty it is chance)",
+            study.axes[*at].name
+        ),
         (_, Reference::Finest(at)) => format!("the finest run along {}", study.axes[*at].name),
         (_, Reference::Richardson(at)) => {
             format!("Richardson extrapolation along {}", study.axes[*at].name)

@@ -1,0 +1,279 @@
+//! The table of doc/leave-out.md: what each feature of a scene costs when it is there, and that it costs nothing when it is not.
+//! `cargo bench -p dem-tests --bench features`. A minute.
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark stops where it fails, and prints a table"
+)]
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use dem_io::Body;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::make::{MakeSettings, make_body};
+use dem_pack::pack::PackSettings;
+use dem_pack::sizes::{By, Sizes};
+use dem_run::clock::Stage;
+use dem_run::plan::plan;
+use dem_run::stages::replacement::replace;
+use dem_run::state::State;
+use dem_run::state::memory::bytes;
+use dem_run::step::{act, move_on};
+
+const SHAPE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../data/shapes/bending-sample.stl"
+);
+
+/// Rounds of which the median is taken, and steps of each.
+const ROUNDS: usize = 15;
+const STEPS: u32 = 60;
+
+/// What is compared: a free, turning body without anything else; or what a feature is compared with.
+const PLAIN: &str = "a free body";
+
+/// A scene: its name, what it is compared with, what it does more, and its text in place of run, bonds, body and tables.
+struct Case {
+    name: &'static str,
+    beside: &'static str,
+    stage: Stage,
+    run: &'static str,
+    bonds: &'static str,
+    body: &'static str,
+    tables: &'static str,
+}
+
+const CASE: Case = Case {
+    name: PLAIN,
+    beside: PLAIN,
+    stage: Stage::Bonds,
+    run: "",
+    bonds: "",
+    body: "",
+    tables: "",
+};
+const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n";
+const FLOOR: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n[walls.floor]\nplane = { point = [0, 0, -1e-4], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";
+
+const CASES: [Case; 13] = [
+    CASE,
+    Case {
+        name: "bond history",
+        stage: Stage::Histories,
+        bonds: "formulation = \"incremental\"",
+        ..CASE
+    },
+    Case {
+        name: "bond damping",
+        stage: Stage::BondDamping,
+        bonds: "damping = { viscous = 0.1 }",
+        ..CASE
+    },
+    Case {
+        name: "failure",
+        stage: Stage::Failure,
+        bonds: "failure = { von_mises = 1e12 }",
+        ..CASE
+    },
+    Case {
+        name: "scattered strength",
+        beside: "failure",
+        stage: Stage::Scatter,
+        bonds: "failure = { von_mises = 1e12, weibull_modulus = 5 }",
+        ..CASE
+    },
+    Case {
+        name: "strength by rate",
+        beside: "failure",
+        stage: Stage::Rates,
+        bonds: "failure = { von_mises = 1e12, rate_strengthening = true }",
+        ..CASE
+    },
+    Case {
+        name: "particle damping",
+        stage: Stage::ParticleDamping,
+        run: ", particle_damping = 0.1",
+        ..CASE
+    },
+    Case {
+        name: "gravity",
+        stage: Stage::Gravity,
+        run: ", gravity = [0, 0, -9.81]",
+        ..CASE
+    },
+    Case {
+        name: "loads",
+        stage: Stage::Loads,
+        tables: "[loads.push]\nof = \"cake\"\nforce = [0, 0, 1e-3]\n",
+        ..CASE
+    },
+    Case {
+        name: "supports",
+        stage: Stage::Supports,
+        tables: "[supports.hold]\nof = \"cake\"\nfixed = [\"x\"]\n",
+        ..CASE
+    },
+    Case {
+        name: "walls",
+        stage: Stage::Walls,
+        tables: FLOOR,
+        ..CASE
+    },
+    Case {
+        name: "contacts of particles",
+        beside: "failure",
+        stage: Stage::Contacts,
+        bonds: "failure = { von_mises = 1e12 }",
+        tables: MEETS,
+        ..CASE
+    },
+    Case {
+        name: "rigid clump in place of bonds",
+        stage: Stage::Clumps,
+        body: "start_as = \"clump\"",
+        ..CASE
+    },
+];
+
+impl Case {
+    fn state(&self, body: &Body) -> State {
+        let Self {
+            run,
+            bonds,
+            body: of_body,
+            tables,
+            ..
+        } = self;
+        let text = format!(
+            "version = 1
+[run]
+end_time = 1
+RUN
+[materials.stuff]
+density = 2050
+young_modulus = 1e7
+[bonds.stuff]
+young_modulus = 1.2e7
+poisson_ratio = 0.3
+{bonds}
+[bodies.cake]
+file = \"cake.vtp\"
+material = \"stuff\"
+bonds = \"stuff\"
+angular_velocity = [1, 0, 0]
+{of_body}
+{tables}"
+        );
+        let text = text.replace("RUN", run.trim_start_matches(", "));
+        let scene = dem_io::scene_from_text(&text, "bench.toml", &[]).expect("a good scene");
+        let bodies = BTreeMap::from([("cake".to_owned(), body.clone())]);
+        plan(&scene, bodies, 1, false).expect("plans").state
+    }
+}
+
+/// Steps as a run does; ns for each.
+fn time_ns(state: &mut State) -> f64 {
+    let clock = Instant::now();
+    for _ in 0..STEPS {
+        act(state);
+        replace(state);
+        move_on(state);
+    }
+    1e9 * clock.elapsed().as_secs_f64() / f64::from(STEPS)
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn main() {
+    let body = packed("2mm..3mm");
+    let mut states: Vec<State> = CASES.iter().map(|case| case.state(&body)).collect();
+    let mut times = vec![Vec::new(); CASES.len()];
+    for state in &mut states {
+        time_ns(state);
+    }
+    // In turns, so that a machine that becomes slower is so for all.
+    for _ in 0..ROUNDS {
+        for (state, times) in states.iter_mut().zip(&mut times) {
+            times.push(time_ns(state));
+        }
+    }
+    println!(
+        "A free, turning body of {} particles and {} bonds on one thread: {:.3} ms per step, {:.1} ns per bond.\n",
+        states[0].particles.len(),
+        states[0].bonds.len(),
+        1e-6 * median(times[0].clone()),
+        median(times[0].clone()) / states[0].bonds.len() as f64,
+    );
+    println!(
+        "| feature | beside | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
+    );
+    println!("|---|---|---|---|---|---|---|");
+    for (at, case) in CASES.iter().enumerate().skip(1) {
+        let beside = CASES.iter().position(|other| other.name == case.beside);
+        let base = beside.expect("one of the cases");
+        // Round by round, so that what disturbs a round disturbs both.
+        let pairs = times[at].iter().zip(&times[base]);
+        let more_ns = median(
+            pairs
+                .clone()
+                .map(|(with, without)| with - without)
+                .collect(),
+        );
+        let ratio = median(pairs.map(|(with, without)| with / without).collect());
+        let steps = states[at].steps as f64;
+        let items = states[at].clock.done(case.stage) as f64 / steps;
+        let absent = [
+            states[base].clock.done(case.stage),
+            bytes(&states[base], case.stage) as u64,
+        ];
+        println!(
+            "| {} | {} | {}, {} | {items:.0} | {} | {} | {ratio:.2} |",
+            case.name,
+            case.beside,
+            absent[0],
+            absent[1],
+            if items > 0.0 {
+                format!("{:.0}", bytes(&states[at], case.stage) as f64 / items)
+            } else {
+                "-".to_owned()
+            },
+            if items > 0.0 {
+                format!("{:.1}", more_ns / items)
+            } else {
+                "-".to_owned()
+            },
+        );
+    }
+}
+
+/// The bending sample of spheres of these diameters.
+fn packed(diameters: &str) -> Body {
+    let bytes = std::fs::read(SHAPE).expect("the shape is in the repository");
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let surface = surface_from_stl(&bytes, "", reading).expect("the shape is sound");
+    let settings = MakeSettings {
+        packing: PackSettings {
+            sizes: Sizes::parse(diameters, By::Number).expect("good diameters"),
+            overlap: 0.25,
+            seed: 1,
+            settle: None,
+            seed_point_m: None,
+        },
+        bonding_radius: 1.1,
+        bonds_per_particle: None,
+        bond_radius_factor: 1.0,
+        particle_density_kg_m3: None,
+        solid_density_kg_m3: None,
+    };
+    make_body(&surface, &settings, &|_, _| Ok(()))
+        .expect("packs")
+        .0
+}
