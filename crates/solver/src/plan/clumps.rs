@@ -37,10 +37,19 @@ pub(super) fn templates(
     read: &mut BTreeMap<String, Body>,
     ball_m: f64,
 ) -> Result<Vec<Arc<Template>>> {
-    let mut templates = Vec::new();
+    let mut templates: Vec<Arc<Template>> = Vec::new();
     for name in names {
         if let Some(body) = read.remove(name) {
-            templates.push(Arc::new(template(scene, name, &body, ball_m)?));
+            let mut template = template(scene, name, &body)?;
+            // Which spheres are outer ones takes longest to find, and bodies of one file have the same.
+            let same = |other: &&Arc<Template>| {
+                other.scale == template.scale && other.spheres == template.spheres
+            };
+            template.outer = match templates.iter().rev().find(same) {
+                Some(other) => other.outer.clone(),
+                None => outer(&template, ball_m),
+            };
+            templates.push(Arc::new(template));
         }
     }
     Ok(templates)
@@ -67,7 +76,17 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     room_m.fold(SHARE_OF_SMALLEST * smallest_m, f64::min)
 }
 
-fn template(scene: &Scene, name: &str, body: &Body, ball_m: f64) -> Result<Template> {
+/// The spheres of a template that something in the scene can touch.
+fn outer(template: &Template, ball_m: f64) -> Vec<u32> {
+    let spheres = template.spheres.iter();
+    let (centres, touching): (Vec<[f64; 3]>, Vec<f64>) = spheres
+        .map(|sphere| (sphere.place_m, template.scale * sphere.radius_m))
+        .unzip();
+    outer_layer(&centres, &touching, HIDDEN, ball_m)
+}
+
+/// All of a template but its outer spheres.
+fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     let entry = &scene.bodies[name];
     // As in its file: where and how it stands is said of each clump.
     let in_file = BodyEntry {
@@ -100,7 +119,6 @@ fn template(scene: &Scene, name: &str, body: &Body, ball_m: f64) -> Result<Templ
         ClumpMass::Union => of_union(&centres, &radii, particles.density_kg_m3(0)),
     };
     let spheres = sub_spheres(particles.poses.iter().zip(&particles.motions), &properties);
-    let touching: Vec<f64> = radii.iter().map(|r| settings.scale * r).collect();
     let mut file_number = vec![0; spheres.len()];
     for (number, &i) in (0..).zip(&placed.particles) {
         file_number[i as usize] = number;
@@ -119,7 +137,7 @@ fn template(scene: &Scene, name: &str, body: &Body, ball_m: f64) -> Result<Templ
         axes: properties.axes,
         centre_m: properties.centre_m,
         reach_m: reach_m(&spheres),
-        outer: outer_layer(&centres, &touching, HIDDEN, ball_m),
+        outer: Vec::new(),
         spheres,
         scale: settings.scale,
         material: scene
