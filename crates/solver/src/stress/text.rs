@@ -1,0 +1,1 @@
+//! The suite as a table for a person, in Markdown.
