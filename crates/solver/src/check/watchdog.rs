@@ -113,19 +113,16 @@ fn contact_culprit(state: &State) -> Option<String> {
     let energy = |at: usize| contact_energy_j(contacts, p, at);
     let at = (0..contacts.pairs.len()).max_by(|&a, &b| energy(a).total_cmp(&energy(b)));
     let of_pairs: f64 = (0..contacts.pairs.len()).map(energy).sum();
-    let wall = (0..state.walls.len()).max_by(|&a, &b| {
-        state.walls[a]
-            .elastic_j
-            .total_cmp(&state.walls[b].elastic_j)
-    });
+    let walls = state.walls.iter();
+    let wall = walls.max_by(|a, b| a.elastic_j.total_cmp(&b.elastic_j));
     let of_walls: f64 = state.walls.iter().map(|wall| wall.elastic_j).sum();
     if of_pairs + of_walls <= elastic_energy(state).total() {
         return None;
     }
     if let Some(wall) = wall.filter(|_| of_walls > of_pairs) {
         return Some(format!(
-            "; most of it in contacts with wall {} of the scene (in the order of their names)",
-            wall + 1
+            "; most of it in contacts with the wall '{}'",
+            wall.name
         ));
     }
     let [x, y, z, _] = p.poses[contacts.pairs[at?][0] as usize].position_m;

@@ -125,6 +125,8 @@ pub struct Contacts {
     pub lost_j: Vec<[f64; 2]>,
     /// The same of particles that are no more, J.
     pub lost_by_gone_j: [f64; 2],
+    /// The first pair that is pressed into each other by more than the radius of the smaller one, of this step.
+    pub swallowed: Option<[u32; 2]>,
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.
@@ -142,6 +144,8 @@ pub struct ContactShare {
     pub touching: Vec<[Vec<u32>; 2]>,
     /// Which of its contacts touched in the step before: a bit for each, four to a byte.
     pub touched: Vec<u8>,
+    /// See [`Contacts::swallowed`].
+    pub swallowed: Option<[u32; 2]>,
 }
 
 impl Contacts {
@@ -206,6 +210,7 @@ impl Contacts {
                     own,
                     border: Vec::new(),
                     border_memories: Vec::new(),
+                    swallowed: None,
                     touching: vec![Default::default(); self.kinds.len()],
                 }
             })

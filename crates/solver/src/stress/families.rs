@@ -80,7 +80,7 @@ pub fn coordinates() -> Result<Vec<Member>> {
         ..Impact::usual()
     };
     let trial = lost.trial("\"auto\"");
-    let words = ["particle 0", "coordinates are rounded"];
+    let words = ["particle 0", "its coordinates are rounded by"];
     members.push(lost.ended_by("1 um at 1e6 m".to_owned(), trial, true, &words));
     Ok(members)
 }
@@ -142,7 +142,7 @@ pub fn short_bonds() -> Result<Vec<Member>> {
         (BondModel::ElasticSolid, "elastic-solid"),
     ];
     let mut members = Vec::new();
-    for share in [1e-2, 1e-4, 1e-6] {
+    for share in [1e-2, 1e-6, 1e-9] {
         for model in models {
             let row = Row {
                 distances_m: vec![share * 1e-3],
@@ -150,7 +150,7 @@ pub fn short_bonds() -> Result<Vec<Member>> {
             };
             let member = row.member(format!("{}, {share:e} of a radius", model.1), model)?;
             let mut trial = member.trial.clone();
-            // Small enough for a step at which it grows a thousandfold to be linear still.
+            // So little that a thousandfold amplitude is still linear.
             for (_, body) in &mut trial.bodies {
                 let [a, b] = [0, 1].map(|i| body.positions[i][0]);
                 body.bond_lengths[0] = (b - a) / (1.0 + 1e-8);

@@ -192,10 +192,10 @@ pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
 pub fn beside_the_limit() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for eta in ["0", "0.3", "3"] {
-        let text = |time_step: &str| {
+        let text = |time_step: &str, end_s: f64| {
             format!(
                 "version = 1
-run = {{ end_time = \"10 ms\", time_step = {time_step} }}
+run = {{ end_time = {end_s:e}, time_step = {time_step} }}
 materials.rock.density = 2500
 bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
 bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
@@ -203,29 +203,30 @@ measures.stored = {{ quantity = \"elastic_energy\", at = \"largest\" }}
 "
             )
         };
-        let trial = |time_step: &str, force_step: bool| -> Result<Trial> {
+        let trial = |time_step: &str, end_s: f64, force_step: bool| -> Result<Trial> {
             Ok(Trial {
                 bodies: vec![("block.vtp", block(3, 0.0, 1e-6)?)],
                 force_step,
-                ..Trial::of(text(time_step))
+                ..Trial::of(text(time_step, end_s))
             })
         };
-        let (_, plan, _) = trial("\"auto\"", false)?.planned()?;
+        let (_, plan, _) = trial("\"auto\"", 1.0, false)?.planned()?;
         let limit_s = plan.step.limit.step_s;
         let start_j = elastic_energy(&plan.state).total();
         let share = 0.98;
+        let end_s = STEPS as f64 * limit_s;
         // What leapfrog keeps of a mode is its energy less (w dt / 2)^2 of the elastic part.
         let most_j = start_j / (1.0 - share * share);
         members.push(Member {
             what: format!("0.98, damping {eta}"),
-            trial: trial(&format!("{:e}", share * limit_s), false)?,
+            trial: trial(&format!("{:e}", share * limit_s), end_s, false)?,
             way: Way::Run,
             prediction: Prediction::Ends(vec![Shown::measure("stored", "J", 0.0, most_j)]),
         });
         let above = format!("{:e}", 1.02 * limit_s);
         members.push(Member {
             what: format!("1.02, damping {eta}"),
-            trial: trial(&above, false)?,
+            trial: trial(&above, end_s, false)?,
             way: Way::Run,
             prediction: Prediction::Refused(vec![format!(
                 "is above the largest stable step of {limit_s:.4e} s"
@@ -233,7 +234,7 @@ measures.stored = {{ quantity = \"elastic_energy\", at = \"largest\" }}
         });
         members.push(Member {
             what: format!("1.02 by force, damping {eta}"),
-            trial: trial(&above, true)?,
+            trial: trial(&above, end_s, true)?,
             way: Way::Run,
             prediction: Prediction::Stopped(vec![
                 "have come from nowhere".to_owned(),
