@@ -96,7 +96,7 @@ pub const CASES: [Case; 15] = [
     },
     Case {
         name: "short-bonds",
-        extreme: "bonds down to a millionth of a radius long",
+        extreme: "bonds down to a billionth of a radius long",
         members: |_| families::short_bonds(),
     },
     Case {
@@ -111,7 +111,10 @@ pub const CASES: [Case; 15] = [
 /// # Errors
 /// A name that no case has.
 pub fn chosen(names: &[String]) -> Result<Vec<Case>> {
-    if let Some(unknown) = names.iter().find(|name| CASES.iter().all(|case| case.name != **name)) {
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| CASES.iter().all(|case| case.name != **name))
+    {
         let known: Vec<&str> = CASES.iter().map(|case| case.name).collect();
         return Err(Diagnostic::input(
             "dem-run stress",

@@ -10,8 +10,6 @@ use super::trial::Trial;
 
 /// Duration of an elastic impact times speed over largest overlap: 2 sqrt(pi) Gamma(7/5) / Gamma(9/10).
 const DURATION: f64 = 2.943_275_4;
-/// Free way before the impact, over the radius.
-const GAP: f64 = 0.5;
 /// How well speeds are met, over that of the impact: damping goes by velocities half a step old, which is an error of first order in the step.
 const SPEED: f64 = 1e-2;
 /// How well overlaps and durations are met: with a quarter of the largest step, w dt = 0.5, leapfrog's frequency is off by (w dt)^2 / 24.
@@ -45,6 +43,10 @@ pub struct Impact {
     pub target: Target,
     /// Height of what is hit, m.
     pub at_m: f64,
+    /// Speed of a sphere that is hit, upwards, m/s.
+    pub other_m_s: f64,
+    /// Free way before the impact, over the radius.
+    pub gap: f64,
     /// "bonded" or "clump".
     pub start_as: &'static str,
 }
@@ -60,6 +62,8 @@ impl Impact {
             restitution: 1.0,
             target: Target::Plane,
             at_m: 0.0,
+            other_m_s: 0.0,
+            gap: 0.5,
             start_as: "bonded",
         }
     }
@@ -76,6 +80,11 @@ impl Impact {
         }
     }
 
+    /// Speed at which the two meet, m/s.
+    fn closing_m_s(&self) -> f64 {
+        self.speed_m_s + self.other_m_s
+    }
+
     /// Largest overlap without damping, m.
     pub fn overlap_m(&self) -> f64 {
         let mass_kg = self.density_kg_m3 * 4.0 / 3.0 * PI * self.radius_m.powi(3);
@@ -85,18 +94,23 @@ impl Impact {
             Target::Sphere(other_m) => self.radius_m * other_m / (self.radius_m + other_m),
         };
         let reduced_pa = self.young_modulus_pa / (2.0 * (1.0 - 0.3 * 0.3));
-        let energy = 15.0 * reduced_kg * self.speed_m_s.powi(2);
+        let energy = 15.0 * reduced_kg * self.closing_m_s().powi(2);
         (energy / (16.0 * reduced_pa * reduced_m.sqrt())).powf(0.4)
     }
 
     /// Without damping, s.
     fn duration_s(&self) -> f64 {
-        DURATION * self.overlap_m() / self.speed_m_s
+        DURATION * self.overlap_m() / self.closing_m_s()
+    }
+
+    /// When the two touch, s.
+    fn touched_s(&self) -> f64 {
+        self.gap * self.radius_m / self.closing_m_s()
     }
 
     /// When it is looked at, s: some time after the two have parted, also where damping makes that take longer.
     fn end_s(&self) -> f64 {
-        GAP * self.radius_m / self.speed_m_s + 3.0 * self.duration_s()
+        self.touched_s() + 3.0 * self.duration_s()
     }
 
     /// Its scene. `time_step`: of `[run]`.
@@ -107,16 +121,16 @@ run = {{ end_time = {:e}, time_step = {time_step} }}
 materials.m = {{ density = {}, young_modulus = {:e}, poisson_ratio = 0.3 }}
 contacts.m-m = {{ restitution = {} }}
 bodies.ball = {{ particles = [[0, 0, {:e}, {:e}]], material = \"m\", velocity = [0, 0, {}], start_as = \"{}\" }}
-measures.velocity = {{ of = \"ball\", quantity = \"velocity_z\" }}
-measures.deepest = {{ of = \"ball\", quantity = \"position_z\", at = \"smallest\" }}
-measures.place = {{ of = \"ball\", quantity = \"position_z\" }}
+measures.rebound = {{ of = \"ball\", quantity = \"velocity_z\" }}
+measures.lowest_place = {{ of = \"ball\", quantity = \"position_z\", at = \"smallest\" }}
+measures.last_place = {{ of = \"ball\", quantity = \"position_z\" }}
 output = {{ series = {:e} }}
 ",
             self.end_s(),
             self.density_kg_m3,
             self.young_modulus_pa,
             self.restitution,
-            self.at_m + (1.0 + GAP) * self.radius_m,
+            self.at_m + (1.0 + self.gap) * self.radius_m,
             self.radius_m,
             -self.speed_m_s,
             self.start_as,
@@ -136,10 +150,11 @@ output = {{ series = {:e} }}
             }
             Target::Sphere(other_m) => {
                 text += &format!(
-                    "bodies.other = {{ particles = [[0, 0, {:e}, {other_m:e}]], material = \"m\" }}
-measures.of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
+                    "bodies.other = {{ particles = [[0, 0, {:e}, {other_m:e}]], material = \"m\", velocity = [0, 0, {}] }}
+measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
 ",
-                    self.at_m - other_m
+                    self.at_m - other_m,
+                    self.other_m_s,
                 );
             }
         }
@@ -149,23 +164,40 @@ measures.of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         }
     }
 
-    /// It comes back with the restitution asked for; an elastic one also from the depth and after the time of Hertz.
+    /// It comes back with the restitution asked for; an elastic one also after the time of Hertz, and from a wall at rest from the depth of Hertz.
     pub fn member(&self, what: String) -> Member {
-        let v = self.speed_m_s;
-        let gain = self.shares().map(|share| (1.0 + self.restitution) * share);
-        let after = Shown::measure("velocity", "m/s", (gain[0] - 1.0) * v, SPEED * v);
-        let mut shown = vec![after];
+        let closing = self.closing_m_s();
+        let shares = self.shares();
+        let gain = shares.map(|share| (1.0 + self.restitution) * share * closing);
+        let (before, after) = (-self.speed_m_s, gain[0] - self.speed_m_s);
+        let mut shown = vec![Shown::measure("rebound", "m/s", after, SPEED * closing)];
         if let Target::Sphere(_) = self.target {
-            let after = -gain[1] * v;
-            shown.push(Shown::measure("of_other", "m/s", after, SPEED * v));
+            let after = self.other_m_s - gain[1];
+            shown.push(Shown::measure(
+                "rebound_of_other",
+                "m/s",
+                after,
+                SPEED * closing,
+            ));
         } else if self.restitution == 1.0 {
-            let (overlap_m, parted_s) = (self.overlap_m(), self.duration_s());
-            let touched_s = GAP * self.radius_m / v;
+            let overlap_m = self.overlap_m();
             let deepest = self.at_m + self.radius_m - overlap_m;
-            let place = self.at_m + self.radius_m + v * (self.end_s() - touched_s - parted_s);
-            shown.push(Shown::measure("deepest", "m", deepest, TIME * overlap_m));
-            let way = TIME * v * parted_s + SPEED * v * self.end_s();
-            shown.push(Shown::measure("place", "m", place, way));
+            shown.push(Shown::measure(
+                "lowest_place",
+                "m",
+                deepest,
+                TIME * overlap_m,
+            ));
+        }
+        if self.restitution == 1.0 {
+            // While the two touch, their common centre of mass goes on.
+            let (touched_s, together_s) = (self.touched_s(), self.duration_s());
+            let centre = before + shares[0] * closing;
+            let start = self.at_m + (1.0 + self.gap) * self.radius_m;
+            let apart_s = self.end_s() - touched_s - together_s;
+            let place = start + before * touched_s + centre * together_s + after * apart_s;
+            let way = closing * (TIME * together_s + SPEED * apart_s);
+            shown.push(Shown::measure("last_place", "m", place, way));
         }
         Member {
             what,
@@ -197,7 +229,8 @@ fn sheet(half_m: f64, at_m: f64) -> String {
     let facet = |a: String, b: String, c: String| {
         format!("facet normal 0 0 1\nouter loop\n{a}{b}{c}endloop\nendfacet\n")
     };
-    let [a, b, c, d] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| corner(x, y));
+    let [a, b, c, d] =
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| corner(x, y));
     format!(
         "solid sheet\n{}{}endsolid sheet\n",
         facet(a.clone(), b, c.clone()),
@@ -213,13 +246,29 @@ pub fn impacts() -> Vec<Member> {
     };
     let mut members = Vec::new();
     for restitution in [1.0, 0.5, 0.1] {
-        let wall = Impact { restitution, ..hard };
+        let wall = Impact {
+            restitution,
+            ..hard
+        };
         members.push(wall.member(format!("on a wall, restitution {restitution}")));
         let ball = Impact {
             target: Target::Sphere(1e-3),
             ..wall
         };
         members.push(ball.member(format!("on a sphere, restitution {restitution}")));
+    }
+    // Half a step's way more or less before the impact: nothing may depend on when the two are first seen to be near.
+    for n in 0..24 {
+        let gap = 1.0 + f64::from(n) * 0.0107;
+        let gel = Impact {
+            young_modulus_pa: 1e7,
+            speed_m_s: 10.0,
+            other_m_s: 10.0,
+            target: Target::Sphere(1e-3),
+            gap,
+            ..hard
+        };
+        members.push(gel.member(format!("of two gel spheres, {gap:.4} radii apart")));
     }
     let soft = Impact {
         young_modulus_pa: 1e7,
@@ -233,8 +282,17 @@ pub fn impacts() -> Vec<Member> {
         ..soft
     };
     let trial = soft.trial("\"auto\"");
-    let gone = ["particle 0 of the body 'ball'", "particle 0 of the body 'other'"];
+    let gone = [
+        "particle 0 of the body 'ball' and particle 0 of the body 'other' are pressed into each other",
+    ];
     members.push(soft.ended_by("on a sphere, 10 MPa".to_owned(), trial, false, &gone));
+    let absurd = Impact {
+        speed_m_s: 1e5,
+        ..hard
+    };
+    let trial = absurd.trial("\"auto\"");
+    let gone = ["has gone through the wall 'floor'"];
+    members.push(absurd.ended_by("on a wall, 1e5 m/s".to_owned(), trial, false, &gone));
     members
 }
 
@@ -260,12 +318,25 @@ pub fn at_mesh() -> Vec<Member> {
     let jump = format!("{:e}", 1.5 * fast.radius_m / fast.speed_m_s);
     let trial = fast.trial(&jump);
     let words = ["run.time_step", "is above the largest stable step of"];
-    members.push(fast.ended_by("1.5 radii in a step".to_owned(), trial.clone(), true, &words));
+    members.push(fast.ended_by(
+        "1.5 radii in a step".to_owned(),
+        trial.clone(),
+        true,
+        &words,
+    ));
     let forced = Trial {
         force_step: true,
         ..trial
     };
-    let words = ["particle 0 of the body 'ball' moves by", "contacts would miss it"];
-    members.push(fast.ended_by("1.5 radii in a step by force".to_owned(), forced, false, &words));
+    let words = [
+        "particle 0 of the body 'ball' moves by",
+        "contacts would miss it",
+    ];
+    members.push(fast.ended_by(
+        "1.5 radii in a step by force".to_owned(),
+        forced,
+        false,
+        &words,
+    ));
     members
 }

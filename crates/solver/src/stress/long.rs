@@ -38,7 +38,8 @@ pub fn spin() -> Result<Vec<Member>> {
         end_radii_m: [radius_m; 2],
     };
     let answer = stiffness(BondModel::Timoshenko, &shape, young_pa, 0.25);
-    let step_s = 0.25 * frequencies(&answer, [1.0 / mass_kg; 2], [1.0 / own_kg_m2; 2]).critical_step_s();
+    let step_s =
+        0.25 * frequencies(&answer, [1.0 / mass_kg; 2], [1.0 / own_kg_m2; 2]).critical_step_s();
     // The stretch at which k x = m w^2 (L + x) / 2, where w falls as the moment of inertia grows.
     let inertia = |stretch_m: f64| 2.0 * own_kg_m2 + 0.5 * mass_kg * (length_m + stretch_m).powi(2);
     let mut stretch_m = 0.0;
@@ -59,7 +60,7 @@ pub fn spin() -> Result<Vec<Member>> {
 run = {{ end_time = {:e}, time_step = {step_s:e} }}
 materials.rock.density = {density}
 bonds.rock = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
-measures.stored = {{ quantity = \"elastic_energy\", at = \"{}\" }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"{}\" }}
 [bodies.pair]
 particles = [[0, 0, 0, {radius_m:e}], [{length_m:e}, 0, 0, {radius_m:e}]]
 bond_list = [[0, 1]]
@@ -73,10 +74,20 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
         let carried = chen(&answer, &reduced, eta).normal * step_s / mass_kg;
         let at_rest_j = 0.5 * answer.normal * (stretch_m * (1.0 - carried)).powi(2);
         let stored = if eta > 0.0 {
-            Shown::measure("stored", "J", at_rest_j, 2.0 * turn.powi(2) * at_rest_j)
+            Shown::measure(
+                "elastic_energy",
+                "J",
+                at_rest_j,
+                2.0 * turn.powi(2) * at_rest_j,
+            )
         } else {
             // A swing of twice the stretch is off by its share of the length, and a row of the time series can miss its top.
-            Shown::measure("stored", "J", 4.0 * at_rest_j, (10.0 * strain + 1e-3) * 4.0 * at_rest_j)
+            Shown::measure(
+                "elastic_energy",
+                "J",
+                4.0 * at_rest_j,
+                (10.0 * strain + 1e-3) * 4.0 * at_rest_j,
+            )
         };
         Member {
             what: if eta > 0.0 { "damped" } else { "undamped" }.to_owned(),
@@ -108,16 +119,17 @@ materials.m = {{ density = {density}, young_modulus = {young_pa:e}, poisson_rati
 contacts.m-m = {{ restitution = 0.3, friction = 0.6 }}
 bonds.m = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.3, damping = {{ viscous = 0.3 }} }}
 walls.floor = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"m\" }}
-measures.place = {{ quantity = \"position_z\" }}
-measures.along = {{ quantity = \"position_x\" }}
-measures.speed = {{ quantity = \"velocity_x\" }}
+measures.height = {{ quantity = \"position_z\" }}
+measures.way = {{ quantity = \"position_x\" }}
 {body}"
         )
     };
     let mass_kg = density * 4.0 / 3.0 * PI * radius_m.powi(3);
     let reduced_pa = young_pa / (2.0 * (1.0 - 0.3 * 0.3));
     let overlap_m = (mass_kg * g / (4.0 / 3.0 * reduced_pa * radius_m.sqrt())).powf(2.0 / 3.0);
-    let ball = format!("bodies.ball = {{ particles = [[0, 0, {radius_m}, {radius_m}]], material = \"m\" }}\n");
+    let ball = format!(
+        "bodies.ball = {{ particles = [[0, 0, {radius_m}, {radius_m}]], material = \"m\" }}\n"
+    );
     // Where forces balance, but for the rounding of the place.
     let rounding_m = 100.0 * f64::EPSILON * radius_m;
     // Every step rounds every coordinate once.
@@ -127,8 +139,8 @@ measures.speed = {{ quantity = \"velocity_x\" }}
         trial: Trial::of(scene(DAY, &format!("[0, 0, {}]", -g), &ball)),
         way: Way::Run,
         prediction: Prediction::Ends(vec![
-            Shown::measure("place", "m", radius_m - overlap_m, rounding_m),
-            Shown::measure("along", "m", 0.0, 0.0),
+            Shown::measure("height", "m", radius_m - overlap_m, rounding_m),
+            Shown::measure("way", "m", 0.0, 0.0),
         ]),
     }];
     let (sine, cosine) = 15.0_f64.to_radians().sin_cos();
@@ -138,9 +150,16 @@ measures.speed = {{ quantity = \"velocity_x\" }}
         [0.0, 0.0, radius_m],
         [side, 0.0, radius_m],
         [0.5 * side, side * 0.75_f64.sqrt(), radius_m],
-        [0.5 * side, side * (1.0 / 12.0_f64).sqrt(), radius_m + side * (2.0 / 3.0_f64).sqrt()],
+        [
+            0.5 * side,
+            side * (1.0 / 12.0_f64).sqrt(),
+            radius_m + side * (2.0 / 3.0_f64).sqrt(),
+        ],
     ];
-    let spheres: Vec<String> = rows.iter().map(|[x, y, z]| format!("[{x:e}, {y:e}, {z:e}, {radius_m}]")).collect();
+    let spheres: Vec<String> = rows
+        .iter()
+        .map(|[x, y, z]| format!("[{x:e}, {y:e}, {z:e}, {radius_m}]"))
+        .collect();
     for start_as in ["bonded", "clump"] {
         let body = format!(
             "[bodies.stone]
@@ -164,7 +183,7 @@ start_as = \"{start_as}\"
             what: format!("a tetrahedron on a slope of 15 degrees, {start_as}"),
             trial: Trial::of(scene(DAY, &slope, &body)),
             way: Way::Run,
-            prediction: Prediction::Ends(vec![of("place"), of("along")]),
+            prediction: Prediction::Ends(vec![of("height"), of("way")]),
         });
     }
     Ok(members)

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use dem_io::{Body, Result};
 
-use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::prediction::{Member, Prediction, Shown, Way};
 use super::trial::Trial;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -107,13 +107,9 @@ impl Row {
         let determinant = of_fast[0] * of_slow[1] - of_fast[1] * of_slow[0];
         // From the start [0, 1].
         let parts = [-of_slow[0] / determinant, of_fast[0] / determinant];
-        let mode = |square: f64, vector: [f64; 2], part: f64| {
-            (square, vector.map(|v| part * v).to_vec())
-        };
-        vec![
-            mode(fast, of_fast, parts[0]),
-            mode(slow, of_slow, parts[1]),
-        ]
+        let mode =
+            |square: f64, vector: [f64; 2], part: f64| (square, vector.map(|v| part * v).to_vec());
+        vec![mode(fast, of_fast, parts[0]), mode(slow, of_slow, parts[1])]
     }
 
     /// A scene of it, with bonds of this model, and where each sphere will have gone.
@@ -144,9 +140,7 @@ impl Row {
         let names = ["first_moved", "second_moved", "third_moved"];
         let shown = moved_m.iter().zip(names);
         let shown = shown.map(|(moved, name)| Shown::measure(name, "m", *moved, rounding_m));
-        let mut shown: Vec<Shown> = shown.collect();
-        // Of the energy that the modes had at first, as x_n = x_0 cos(n theta) has it: E (w dt / 2)^2 at most is missing.
-        shown.push(Shown::at_most(Quantity::EnergyError, self.share.powi(2)));
+        let shown: Vec<Shown> = shown.collect();
         Ok(Member {
             what,
             trial: self.trial(name, step_s, steps)?,

@@ -1,1 +1,112 @@
-//! The suite as a table for a person, in Markdown.
+//! The suite as a table for a person, in Markdown: of each case the run that is farthest off.
+
+use std::fmt::Write;
+
+use dem_io::units::significant;
+
+use super::prediction::{Prediction, Shown};
+use super::verdict::{CaseResult, Judged, Observation};
+
+/// The head of the table.
+pub const HEAD: &str =
+    "| case | what is extreme | predicted | observed | verdict |\n|---|---|---|---|---|\n";
+
+/// The row of a case.
+pub fn row(result: &CaseResult) -> String {
+    let [predicted, observed] = cells(result);
+    format!(
+        "| {} | {} | {predicted} | {observed} | {} |\n",
+        result.name,
+        result.extreme,
+        verdict(result)
+    )
+}
+
+/// What was predicted and observed: in the run that is farthest off, and how many were refused and stopped.
+fn cells(result: &CaseResult) -> [String; 2] {
+    let ends = |m: &&Judged| matches!(m.predicted, Prediction::Ends(_));
+    let ended: Vec<&Judged> = result.members.iter().filter(ends).collect();
+    let worst = ended
+        .iter()
+        .filter_map(|member| Some((member, worst_of(member)?)))
+        .max_by(|a, b| a.1.2.total_cmp(&b.1.2));
+    let mut cells = [String::new(), String::new()];
+    if let Some((member, (shown, value, _))) = worst {
+        let unit = if shown.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", shown.unit)
+        };
+        let name = shown.quantity.name().replace('_', " ");
+        let limits = if shown.value == 0.0 {
+            format!("at most {}{unit}", significant(shown.tolerance, 3))
+        } else {
+            format!(
+                "{}{unit} +- {}",
+                significant(shown.value, 5),
+                significant(shown.tolerance, 2)
+            )
+        };
+        let (of, s) = (ended.len(), if ended.len() == 1 { "" } else { "s" });
+        let _ = write!(cells[0], "{of} run{s}; {}: {name} {limits}", member.what);
+        let _ = write!(
+            cells[1],
+            "{}{unit}{}",
+            significant(value, 5),
+            match shown.value {
+                0.0 => String::new(),
+                predicted => format!(", off by {}", significant(value - predicted, 2)),
+            }
+        );
+    }
+    let counts: [(&str, fn(&Prediction) -> bool, fn(&Observation) -> bool); 2] = [
+        (
+            "refused",
+            |p| matches!(p, Prediction::Refused(_)),
+            |o| matches!(o, Observation::Refused(_)),
+        ),
+        (
+            "stopped",
+            |p| matches!(p, Prediction::Stopped(_)),
+            |o| matches!(o, Observation::Stopped(_)),
+        ),
+    ];
+    for (name, predicted, observed) in counts {
+        let members = result.members.iter();
+        let numbers = [
+            members.clone().filter(|m| predicted(&m.predicted)).count(),
+            members.filter(|m| observed(&m.observed)).count(),
+        ];
+        if numbers != [0, 0] {
+            for (cell, number) in cells.iter_mut().zip(numbers) {
+                let comma = if cell.is_empty() { "" } else { "; " };
+                let _ = write!(cell, "{comma}{number} {name}");
+            }
+        }
+    }
+    cells
+}
+
+/// The value of a run that is farthest off, and how far in tolerances.
+fn worst_of(member: &Judged) -> Option<(&Shown, f64, f64)> {
+    let (Prediction::Ends(all), Observation::Ended(values)) = (&member.predicted, &member.observed)
+    else {
+        return None;
+    };
+    let off = all.iter().zip(values);
+    let off = off.map(|(shown, value)| (shown, *value, shown.deviation(*value)));
+    off.max_by(|a, b| a.2.total_cmp(&b.2))
+}
+
+fn verdict(result: &CaseResult) -> String {
+    let mut wrong = result.wrong();
+    let Some(first) = wrong.next() else {
+        return "as predicted".to_owned();
+    };
+    let more = match wrong.count() {
+        0 => String::new(),
+        count => format!("; {count} more"),
+    };
+    let why = first.wrong.as_deref().unwrap_or_default();
+    format!("WRONG: {}: {}{more}", first.what, why.replace('|', "/"))
+}

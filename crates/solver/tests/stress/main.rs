@@ -1,4 +1,4 @@
-//! The stress suite.
+//! The stress suite: every case does as predicted, and a case that does not is told so.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -7,18 +7,25 @@
     reason = "a test stops where it fails, and says what it measured"
 )]
 
+mod sabotage;
+mod suite;
+
 use std::sync::atomic::AtomicBool;
 
 use dem_run::stress::cases::CASES;
-use dem_run::stress::verdict::try_case;
+use dem_run::stress::prediction::Member;
 
-#[test]
-fn look() {
-    for case in CASES {
-        let result = try_case(&case, &AtomicBool::new(false)).unwrap();
-        eprintln!("== {} {:.2} s", result.name, result.wall_s);
-        for m in result.members {
-            if m.wrong.is_some() || std::env::var("ALL").is_ok() { eprintln!("{:40} {:.3} {:?}\n      {:?}\n      {:?}", m.what, m.deviation, m.wrong, m.predicted, m.observed); } else { eprintln!("{:40} {:.3}", m.what, m.deviation); }
-        }
-    }
+/// Members of a case.
+fn members(case: &str) -> Vec<Member> {
+    let found = CASES.iter().find(|one| one.name == case).unwrap();
+    found.members(&AtomicBool::new(false)).unwrap()
+}
+
+/// The member of a case that is called so.
+fn member(case: &str, what: &str) -> Member {
+    let all = members(case).into_iter();
+    let mut found = all.filter(|member| member.what == what);
+    let one = found.next();
+    assert!(found.next().is_none(), "{case}: {what} twice");
+    one.unwrap_or_else(|| panic!("{case} has no {what}"))
 }
