@@ -7,6 +7,7 @@
     reason = "a test stops where it fails, and says what it measured"
 )]
 
+mod mended;
 mod sabotage;
 mod suite;
 
