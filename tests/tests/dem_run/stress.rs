@@ -59,7 +59,7 @@ fn every_run_as_json() {
     assert_eq!(case["name"], "impact");
     assert!(case["wall_s"].as_f64().unwrap() > 0.0);
     let members = case["members"].as_array().unwrap();
-    assert_eq!(members.len(), 33);
+    assert_eq!(members.len(), 45);
     let first = &members[0];
     assert_eq!(first["what"], "on a wall, restitution 1");
     assert_eq!(

@@ -46,7 +46,7 @@ fn nothing_is_missing() {
         ("shatter", [1, 0, 0]),
         ("one-particle", [5, 0, 0]),
         ("spin", [2, 0, 0]),
-        ("impact", [30, 0, 3]),
+        ("impact", [42, 0, 3]),
         ("mesh-wall", [4, 1, 1]),
         ("coordinates", [4, 1, 0]),
         ("size", [8, 0, 0]),
