@@ -172,3 +172,75 @@ fn every_good_scene_of_the_corpus_runs() {
         assert!(said.contains("verdict"), "{said}");
     }
 }
+
+/// How far each scene is run to see whether anything is stopped that should not be, and where its body comes from if it asks for one: shape and diameters. Tests
+/// of the laboratory load as fast as one period of the body.
+const SHORT: [(&str, &str, Option<(&str, &str)>); 16] = [
+    ("brazilian-disc", "", Some(("disc", "4mm..6mm"))),
+    ("cantilever", "4 s", None),
+    ("chute", "0.2 s", None),
+    ("chute-back", "20 ms", None),
+    ("chute-bonded", "20 ms", None),
+    ("clamped", "2 ms", Some(("bending-sample", "5mm..7mm"))),
+    ("compression", "", Some(("bar", "4mm..6mm"))),
+    ("drop-flat", "10 ms", None),
+    ("drop-inclined", "5 ms", None),
+    (
+        "four-point-bending",
+        "",
+        Some(("bending-sample", "5mm..7mm")),
+    ),
+    ("jaw-crusher", "0.1 s", None),
+    ("one-cake", "60 ms", None),
+    ("shatter", "5 ms", None),
+    ("spinning-bar", "50 ms", None),
+    ("tension", "", Some(("bar", "4mm..6mm"))),
+    (
+        "three-point-bending",
+        "",
+        Some(("bending-sample", "5mm..7mm")),
+    ),
+];
+
+/// The watchdog, walls and contacts stop none of them: no false alarm.
+#[test]
+fn no_scene_of_data_is_stopped() {
+    let bench = Bench::new();
+    let mut known: Vec<String> = SHORT
+        .iter()
+        .map(|(name, ..)| format!("{name}.toml"))
+        .collect();
+    known.sort();
+    assert_eq!(names_in(&root().join("data/scenes")), known);
+    for (name, end, body) in SHORT {
+        let mut options = Vec::new();
+        if let Some((shape, diameters)) = body {
+            let packed = format!("{shape}.vtp");
+            let done = dem_tests::program("dem-pack")
+                .current_dir(bench.path(""))
+                .arg(root().join(format!("data/shapes/{shape}.stl")))
+                .args(["--diameter", diameters, "--overlap", "0.296", "--quiet"])
+                .args(["--bonding-radius", "1.0", "-o", &packed])
+                .status();
+            assert!(done.unwrap().success(), "{shape}");
+            options.extend(["--body".to_owned(), packed]);
+        }
+        let set: &[String] = if end.is_empty() {
+            &[
+                "test.periods=1".to_owned(),
+                "test.rate_check=false".to_owned(),
+            ]
+        } else {
+            &[format!("run.end_time=\"{end}\"")]
+        };
+        options.extend(set.iter().flat_map(|set| ["--set".to_owned(), set.clone()]));
+        let out = format!("{name}-short");
+        options.extend(["--json", "--quiet", "--out", &out].map(str::to_owned));
+        let options: Vec<&str> = options.iter().map(String::as_str).collect();
+        let said = bench.good(&scene_of_data(&format!("{name}.toml")), &options);
+        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let error = summary["energy_error"].as_f64().unwrap();
+        // A tensile test breaks at its first blow when it is so fast.
+        assert!(error < 0.01, "{name}: {error}");
+    }
+}
