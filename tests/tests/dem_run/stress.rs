@@ -4,7 +4,7 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use super::dem_run;
+use super::{dem_run, root};
 
 fn stress(options: &[&str]) -> Output {
     dem_run().arg("stress").args(options).output().unwrap()
@@ -47,6 +47,27 @@ fn a_table_of_the_cases_asked_for() {
         said(&stress(&["size", "mesh-wall", "--threads", "1"])),
         table
     );
+}
+
+/// The pages have the table as it is printed, with all cases.
+#[test]
+fn pages_have_the_table() {
+    let table = said(&stress(&["mesh-wall", "size"]));
+    let refused = String::from_utf8(stress(&["?"]).stderr).unwrap();
+    let (_, known) = refused.split_once("take some of ").unwrap();
+    let (known, _) = known.split_once(';').unwrap();
+    for page in ["README.md", "doc/stress.md"] {
+        let text = std::fs::read_to_string(root().join(page)).unwrap();
+        for line in table.lines() {
+            assert!(text.contains(line), "{page} lacks {line}");
+        }
+        let rows = text
+            .lines()
+            .filter(|line| line.ends_with(" | as predicted |"));
+        let names: Vec<&str> = rows.map(|row| row.split(" | ").next().unwrap()).collect();
+        let wanted: Vec<String> = known.split(", ").map(|name| format!("| {name}")).collect();
+        assert_eq!(names, wanted, "{page}");
+    }
 }
 
 #[test]

@@ -7,6 +7,9 @@ use dem_io::units::significant;
 use super::prediction::{Prediction, Shown};
 use super::verdict::{CaseResult, Judged, Observation};
 
+/// Share of the largest deviation from which on runs count as equally far off.
+const AS_FAR: f64 = 0.99;
+
 /// The head of the table.
 pub const HEAD: &str =
     "| case | what is extreme | predicted | observed | verdict |\n|---|---|---|---|---|\n";
@@ -26,10 +29,14 @@ pub fn row(result: &CaseResult) -> String {
 fn cells(result: &CaseResult) -> [String; 2] {
     let ends = |m: &&Judged| matches!(m.predicted, Prediction::Ends(_));
     let ended: Vec<&Judged> = result.members.iter().filter(ends).collect();
-    let worst = ended
-        .iter()
-        .filter_map(|member| Some((member, worst_of(member)?)))
-        .max_by(|a, b| a.1.2.total_cmp(&b.1.2));
+    let off = ended.iter();
+    let off = off.filter_map(|member| Some((member, worst_of(member)?)));
+    let off: Vec<_> = off.collect();
+    let farthest = off.iter().map(|(_, (.., deviation))| *deviation);
+    let farthest = farthest.fold(0.0, f64::max);
+    // The first of those that are as far off, but for rounding.
+    let mut off = off.into_iter();
+    let worst = off.find(|(_, (.., deviation))| *deviation >= AS_FAR * farthest);
     let mut cells = [String::new(), String::new()];
     if let Some((member, (shown, value, _))) = worst {
         let unit = if shown.unit.is_empty() {
