@@ -173,33 +173,25 @@ fn every_good_scene_of_the_corpus_runs() {
     }
 }
 
-/// How far each scene is run to see whether anything is stopped that should not be, and where its body comes from if it asks for one: shape and diameters. Tests
-/// of the laboratory load as fast as one period of the body.
-const SHORT: [(&str, &str, Option<(&str, &str)>); 16] = [
-    ("brazilian-disc", "", Some(("disc", "4mm..6mm"))),
-    ("cantilever", "4 s", None),
-    ("chute", "0.2 s", None),
-    ("chute-back", "20 ms", None),
-    ("chute-bonded", "20 ms", None),
-    ("clamped", "2 ms", Some(("bending-sample", "5mm..7mm"))),
-    ("compression", "", Some(("bar", "4mm..6mm"))),
-    ("drop-flat", "10 ms", None),
-    ("drop-inclined", "5 ms", None),
-    (
-        "four-point-bending",
-        "",
-        Some(("bending-sample", "5mm..7mm")),
-    ),
-    ("jaw-crusher", "0.1 s", None),
-    ("one-cake", "60 ms", None),
-    ("shatter", "5 ms", None),
-    ("spinning-bar", "50 ms", None),
-    ("tension", "", Some(("bar", "4mm..6mm"))),
-    (
-        "three-point-bending",
-        "",
-        Some(("bending-sample", "5mm..7mm")),
-    ),
+/// How far each scene is run to see whether anything is stopped that should not be, and of which shape and diameters its body is if it asks for one. Tests of the
+/// laboratory, which have no end of their own, load within one period of the body.
+const SHORT: [[&str; 4]; 16] = [
+    ["brazilian-disc", "", "disc", "4mm..6mm"],
+    ["cantilever", "4 s", "", ""],
+    ["chute", "0.2 s", "", ""],
+    ["chute-back", "20 ms", "", ""],
+    ["chute-bonded", "20 ms", "", ""],
+    ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
+    ["compression", "", "bar", "4mm..6mm"],
+    ["drop-flat", "10 ms", "", ""],
+    ["drop-inclined", "5 ms", "", ""],
+    ["four-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["jaw-crusher", "0.1 s", "", ""],
+    ["one-cake", "60 ms", "", ""],
+    ["shatter", "5 ms", "", ""],
+    ["spinning-bar", "50 ms", "", ""],
+    ["tension", "", "bar", "4mm..6mm"],
+    ["three-point-bending", "", "bending-sample", "5mm..7mm"],
 ];
 
 /// The watchdog, walls and contacts stop none of them: no false alarm.
@@ -208,13 +200,13 @@ fn no_scene_of_data_is_stopped() {
     let bench = Bench::new();
     let mut known: Vec<String> = SHORT
         .iter()
-        .map(|(name, ..)| format!("{name}.toml"))
+        .map(|[name, ..]| format!("{name}.toml"))
         .collect();
     known.sort();
     assert_eq!(names_in(&root().join("data/scenes")), known);
-    for (name, end, body) in SHORT {
+    for [name, end, shape, diameters] in SHORT {
         let mut options = Vec::new();
-        if let Some((shape, diameters)) = body {
+        if !shape.is_empty() {
             let packed = format!("{shape}.vtp");
             let done = dem_tests::program("dem-pack")
                 .current_dir(bench.path(""))

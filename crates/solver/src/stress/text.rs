@@ -66,23 +66,12 @@ fn cells(result: &CaseResult) -> [String; 2] {
             }
         );
     }
-    let counts: [(&str, fn(&Prediction) -> bool, fn(&Observation) -> bool); 2] = [
-        (
-            "refused",
-            |p| matches!(p, Prediction::Refused(_)),
-            |o| matches!(o, Observation::Refused(_)),
-        ),
-        (
-            "stopped",
-            |p| matches!(p, Prediction::Stopped(_)),
-            |o| matches!(o, Observation::Stopped(_)),
-        ),
-    ];
-    for (name, predicted, observed) in counts {
-        let members = result.members.iter();
+    for name in ["refused", "stopped"] {
+        let predicted = result.members.iter().map(|m| end_predicted(&m.predicted));
+        let observed = result.members.iter().map(|m| end_observed(&m.observed));
         let numbers = [
-            members.clone().filter(|m| predicted(&m.predicted)).count(),
-            members.filter(|m| observed(&m.observed)).count(),
+            predicted.filter(|end| *end == name).count(),
+            observed.filter(|end| *end == name).count(),
         ];
         if numbers != [0, 0] {
             for (cell, number) in cells.iter_mut().zip(numbers) {
@@ -92,6 +81,22 @@ fn cells(result: &CaseResult) -> [String; 2] {
         }
     }
     cells
+}
+
+fn end_predicted(prediction: &Prediction) -> &'static str {
+    match prediction {
+        Prediction::Ends(_) => "ended",
+        Prediction::Refused(_) => "refused",
+        Prediction::Stopped(_) => "stopped",
+    }
+}
+
+fn end_observed(observation: &Observation) -> &'static str {
+    match observation {
+        Observation::Ended(_) => "ended",
+        Observation::Refused(_) => "refused",
+        Observation::Stopped(_) => "stopped",
+    }
 }
 
 /// The value of a run that is farthest off, and how far in tolerances.
