@@ -19,9 +19,9 @@ const RESOLUTION: f64 = 0.002;
 const GROWN: f64 = 1e6;
 /// Strain of the bonds at the start.
 const DISTURBANCE: f64 = 1e-8;
-/// Steps after which what has not grown is taken for stable. The slowest to grow is a mode with damping alone: by 2 `RESOLUTION` a step where the step is
-/// longer than the limit by `RESOLUTION`. So a millionth of the amplitude, a thousandth of it in the fastest mode, grows a millionfold in
-/// ln(1e6) / (2 RESOLUTION) = 3450 steps.
+/// Steps after which what has not grown is taken for stable. Slowest to grow is a mode with damping alone: by 2 `RESOLUTION` a step where the step is longer than
+/// the limit by `RESOLUTION`. With a thousandth of the disturbance in it, the whole has grown a thousandfold when it has grown a millionfold, after
+/// ln(1e6) / (2 `RESOLUTION`) = 3450 steps.
 const STEPS: usize = 3500;
 /// Steps between two looks at the energy.
 const EVERY: usize = 25;
