@@ -6,6 +6,7 @@ use super::clumps;
 use super::contacts::list_contacts;
 use super::sleep::{begins_to_move, disturbed, keep_touches, wake};
 use super::walls::list_near;
+use crate::clock::Stage;
 use crate::state::State;
 
 /// Makes the lists anew if something may have come near since they were made.
@@ -62,7 +63,12 @@ fn list_awake(state: &mut State) {
     };
     // Room for two steps at least: who is first seen when it overlaps already would be taken for the piece of a body, and relax.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
+    state.clock.did(Stage::Search, p.len());
     list_near(&mut state.walls, p, skin_m);
+    if contacts.alone {
+        contacts.room_m = 0.5 * skin_m;
+        return;
+    }
     let clusters = state.clusters.as_ref();
     let of_particle = clusters.map_or(&[][..], |c| &c.of_particle);
     if p.asleep.is_empty() {
@@ -73,6 +79,9 @@ fn list_awake(state: &mut State) {
         let of_one = |(&id, &asleep): (&u32, &bool)| if asleep { none } else { id };
         let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();
         list_contacts(contacts, &numbers, p, skin_m);
+    }
+    if contacts.relaxes {
+        state.clock.did(Stage::Relaxation, contacts.relaxing());
     }
 }
 
