@@ -2,6 +2,7 @@
 
 mod check;
 mod fragment;
+mod stress;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -66,6 +67,10 @@ enum Command {
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
     )]
     Sweep(sweep::SweepArguments),
+    /// Try the solver on stiff and extreme scenes, each with a prediction made before its run: a table of case, predicted, observed, verdict
+    #[command(after_help = "Exit code 0 if all cases do as predicted, else 1.\n\
+                      Example:\n  dem-run stress spin mass-ratio")]
+    Stress(stress::StressArguments),
 }
 
 #[derive(Debug, Args)]
@@ -119,7 +124,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             "this is no scene (.toml)",
             "name one; what a body holds, dem-run says without check",
         )),
-        Some(Command::Check { scene }) => in_pool(scene, |threads| {
+        Some(Command::Check { scene }) => in_pool(scene.threads, |threads| {
             let (scene_data, bodies) = scene.read()?;
             let scene_data = match lowest_in_test_hz(&scene_data, &bodies, threads)? {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
@@ -129,9 +134,12 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
-        None if arguments.run.scene.names_a_scene() => in_pool(&arguments.run.scene, |threads| {
-            run_scene(&arguments.run, threads, interrupt)
-        }),
+        Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
+        None if arguments.run.scene.names_a_scene() => {
+            in_pool(arguments.run.scene.threads, |threads| {
+                run_scene(&arguments.run, threads, interrupt)
+            })
+        }
         None => {
             arguments.run.refuse_scene_options()?;
             body_information(&arguments.run.scene)
@@ -139,8 +147,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     }
 }
 
-fn in_pool(scene: &SceneArguments, work: impl FnOnce(usize) -> Result<()> + Send) -> Result<()> {
-    if let Some(threads @ (0 | 1025..)) = scene.threads {
+fn in_pool(wanted: Option<usize>, work: impl FnOnce(usize) -> Result<()> + Send) -> Result<()> {
+    if let Some(threads @ (0 | 1025..)) = wanted {
         return Err(Diagnostic::input(
             "--threads",
             format!("{threads} is not between 1 and 1024"),
@@ -148,7 +156,7 @@ fn in_pool(scene: &SceneArguments, work: impl FnOnce(usize) -> Result<()> + Send
         ));
     }
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(scene.threads.unwrap_or(0))
+        .num_threads(wanted.unwrap_or(0))
         .build()
         .map_err(|error| {
             Diagnostic::failed(

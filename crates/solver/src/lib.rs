@@ -19,4 +19,5 @@ pub mod snapshot;
 pub mod stages;
 pub mod state;
 pub mod step;
+pub mod stress;
 pub mod sweep;

@@ -73,7 +73,7 @@ impl Measured {
 
 /// The gauges of a plan that has not been stepped.
 pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
-    scene
+    let mut gauges: Vec<Gauge> = scene
         .measures
         .iter()
         .map(|(name, measure)| {
@@ -89,7 +89,15 @@ pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
                 history: History::default(),
             }
         })
-        .collect()
+        .collect();
+    if !plan.state.clumps.templates.is_empty() {
+        // The sets of a plan know no spheres of clumps.
+        renumber(&mut gauges, &[], &plan.bodies, &plan.state);
+        for gauge in &mut gauges {
+            gauge.start_m = mean_position(&plan.state, &gauge.particles);
+        }
+    }
+    gauges
 }
 
 /// Reads all gauges between a kick and the drift after it, and notes what they show. One value for each.

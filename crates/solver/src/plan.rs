@@ -97,6 +97,7 @@ pub fn plan(
     let step = choose_step(scene, &mut state, allow_any_step)?;
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
+    state.fastest_m_s = step.impact_speed_m_s;
     let stages = stages::stages(&state, scene);
     Ok(Plan {
         state,

@@ -52,7 +52,8 @@ fn heaps(criterion: &mut Criterion) {
         bench("relist", &|state| {
             let contacts = state.contacts.as_mut().expect("has contacts");
             let clusters = state.clusters.as_ref().expect("can touch");
-            list_contacts(contacts, &clusters.of_particle, &state.particles);
+            let skin_m = contacts.skin_m;
+            list_contacts(contacts, &clusters.of_particle, &state.particles, skin_m);
         });
         group.finish();
     }

@@ -172,3 +172,67 @@ fn every_good_scene_of_the_corpus_runs() {
         assert!(said.contains("verdict"), "{said}");
     }
 }
+
+/// How far each scene is run to see whether anything is stopped that should not be, and of which shape and diameters its body is if it asks for one. Tests of the
+/// laboratory, which have no end of their own, load within one period of the body.
+const SHORT: [[&str; 4]; 16] = [
+    ["brazilian-disc", "", "disc", "4mm..6mm"],
+    ["cantilever", "4 s", "", ""],
+    ["chute", "0.2 s", "", ""],
+    ["chute-back", "20 ms", "", ""],
+    ["chute-bonded", "20 ms", "", ""],
+    ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
+    ["compression", "", "bar", "4mm..6mm"],
+    ["drop-flat", "10 ms", "", ""],
+    ["drop-inclined", "5 ms", "", ""],
+    ["four-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["jaw-crusher", "0.1 s", "", ""],
+    ["one-cake", "60 ms", "", ""],
+    ["shatter", "5 ms", "", ""],
+    ["spinning-bar", "50 ms", "", ""],
+    ["tension", "", "bar", "4mm..6mm"],
+    ["three-point-bending", "", "bending-sample", "5mm..7mm"],
+];
+
+/// The watchdog, walls and contacts stop none of them: no false alarm.
+#[test]
+fn no_scene_of_data_is_stopped() {
+    let bench = Bench::new();
+    let mut known: Vec<String> = SHORT
+        .iter()
+        .map(|[name, ..]| format!("{name}.toml"))
+        .collect();
+    known.sort();
+    assert_eq!(names_in(&root().join("data/scenes")), known);
+    for [name, end, shape, diameters] in SHORT {
+        let mut options = Vec::new();
+        if !shape.is_empty() {
+            let packed = format!("{shape}.vtp");
+            let done = dem_tests::program("dem-pack")
+                .current_dir(bench.path(""))
+                .arg(root().join(format!("data/shapes/{shape}.stl")))
+                .args(["--diameter", diameters, "--overlap", "0.296", "--quiet"])
+                .args(["--bonding-radius", "1.0", "-o", &packed])
+                .status();
+            assert!(done.unwrap().success(), "{shape}");
+            options.extend(["--body".to_owned(), packed]);
+        }
+        let set: &[String] = if end.is_empty() {
+            &[
+                "test.periods=1".to_owned(),
+                "test.rate_check=false".to_owned(),
+            ]
+        } else {
+            &[format!("run.end_time=\"{end}\"")]
+        };
+        options.extend(set.iter().flat_map(|set| ["--set".to_owned(), set.clone()]));
+        let out = format!("{name}-short");
+        options.extend(["--json", "--quiet", "--out", &out].map(str::to_owned));
+        let options: Vec<&str> = options.iter().map(String::as_str).collect();
+        let said = bench.good(&scene_of_data(&format!("{name}.toml")), &options);
+        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let error = summary["energy_error"].as_f64().unwrap();
+        // A tensile test breaks at its first blow when it is so fast.
+        assert!(error < 0.01, "{name}: {error}");
+    }
+}

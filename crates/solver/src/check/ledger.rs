@@ -572,14 +572,18 @@ fn momenta(particles: &Particles, clumps: &Clumps, about_m: [f64; 3]) -> ([[f64;
         ]
     });
     for clump in &clumps.all {
-        let mass = clumps.template(clump).mass_kg;
-        let parts = momenta_of(
+        let template = clumps.template(clump);
+        let mass = template.mass_kg;
+        let mut parts = momenta_of(
             mass,
             clump.place_m,
             clump.velocity_m_s,
             clump.angular_momentum,
             about_m,
         );
+        // Of its parts on either side of its centre as well, as a bonded body has it: else a clump that flies straight has none but rounding.
+        let gyration_m = (0.5 * template.moments_kg_m2.iter().sum::<f64>() / mass).sqrt();
+        parts[7] += gyration_m * parts[6];
         for (sum, part) in sums.iter_mut().zip(parts) {
             *sum += part;
         }

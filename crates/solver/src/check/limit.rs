@@ -16,7 +16,7 @@ const EVERY: usize = 5;
 /// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second largest eigenvalue, 1e-3 below the largest, in a
 /// damped body; ten iterations more cost little.
 const RESIDUAL: f64 = 1e-5;
-/// Displacement for the difference quotient, in radii, and rotation, in radians.
+/// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes of bonds, in radians.
 const STEP: f64 = 1e-5;
 
 /// Largest distance from 1 of the eigenvalue at which the search for a damped limit ends, and most eigenvalues computed for it.
@@ -313,6 +313,13 @@ pub(super) fn add_stiffness_times(
             [x.max(y).max(z) / poses[i].radius_m(), rx, ry, rz]
         })
         .fold(0.0, f64::max);
+    // A bond that is much shorter than a radius is turned and stretched by much less.
+    let turned = (state.bonds.ends.iter().enumerate()).map(|(at, ends)| {
+        let [a, b] = ends.map(|end| moved(end as usize));
+        let apart = [0, 1, 2].map(|k| (b[k] - a[k]).abs());
+        apart.into_iter().fold(0.0, f64::max) / state.bonds.initial_length_m(at)
+    });
+    let largest = turned.fold(largest, f64::max);
     if largest == 0.0 {
         return;
     }

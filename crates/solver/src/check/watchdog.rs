@@ -77,7 +77,10 @@ fn unstable(
         "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere; the time step is {:.4e} s and began at {:.3} of the largest stable one",
         state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
     );
-    if let Some(contact) = contact_culprit(state) {
+    let contact = contact_culprit(state);
+    let parted = state.broken_count > 0 && state.contacts.as_ref().is_some_and(|c| !c.relaxes);
+    let is_unrelaxed = contact.is_some() && parted;
+    if let Some(contact) = contact {
         problem += &contact;
     } else if let Some((at, own_step_s)) = culprit(state) {
         let [a, b] = state.bonds.ends[at];
@@ -98,7 +101,9 @@ fn unstable(
             "; most of it in bond{which}{where_}, whose two particles alone, undamped, could take a step of {own_step_s:.4e} s"
         );
     }
-    let remedy = if share_of_limit > 1.0 {
+    let remedy = if is_unrelaxed {
+        "set relaxation.enabled = true: without it, pieces that part while they overlap are pushed apart with energy that nothing gave them"
+    } else if share_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {
         "take a smaller run.safety or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
@@ -113,19 +118,16 @@ fn contact_culprit(state: &State) -> Option<String> {
     let energy = |at: usize| contact_energy_j(contacts, p, at);
     let at = (0..contacts.pairs.len()).max_by(|&a, &b| energy(a).total_cmp(&energy(b)));
     let of_pairs: f64 = (0..contacts.pairs.len()).map(energy).sum();
-    let wall = (0..state.walls.len()).max_by(|&a, &b| {
-        state.walls[a]
-            .elastic_j
-            .total_cmp(&state.walls[b].elastic_j)
-    });
+    let walls = state.walls.iter();
+    let wall = walls.max_by(|a, b| a.elastic_j.total_cmp(&b.elastic_j));
     let of_walls: f64 = state.walls.iter().map(|wall| wall.elastic_j).sum();
     if of_pairs + of_walls <= elastic_energy(state).total() {
         return None;
     }
     if let Some(wall) = wall.filter(|_| of_walls > of_pairs) {
         return Some(format!(
-            "; most of it in contacts with wall {} of the scene (in the order of their names)",
-            wall + 1
+            "; most of it in contacts with the wall '{}'",
+            wall.name
         ));
     }
     let [x, y, z, _] = p.poses[contacts.pairs[at?][0] as usize].position_m;

@@ -20,8 +20,10 @@ use crate::stages::population::{Born, GONE, Renumbered};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::clumps::Clumps;
 use crate::state::order::spatial_order;
-use crate::state::particles::Particles;
+use crate::state::particles::{Particles, Pose};
 
+/// Largest share of a radius by which a coordinate may be rounded: a strain of a thousandth is known to a thousandth then.
+const ROUNDING: f64 = 1e-6;
 /// A length in a file is taken as that of the bond at rest where it stands if the two differ by less than this part.
 const SAME_LENGTH: f64 = 1e-9;
 
@@ -259,9 +261,10 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
         particles.motions[i].inverse_mass,
         particles.motions[i].inverse_inertia,
     ];
-    let is_placed = particles.poses[i].position_m.iter().all(|x| x.is_finite());
+    let pose = &particles.poses[i];
+    let is_placed = pose.position_m.iter().all(|x| x.is_finite());
     if is_placed && inert.into_iter().all(f64::is_normal) {
-        return Ok(());
+        return check_place(number, pose);
     }
     Err(Diagnostic::input(
         format!("particle {number}"),
@@ -271,6 +274,23 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
             1.0 / inert[0]
         ),
         "check the units of places, radii and density",
+    ))
+}
+
+/// Whether a particle of a body's file is so near to the origin that its place can be told.
+fn check_place(number: usize, pose: &Pose) -> Result<()> {
+    let farthest_m = pose.place().amax();
+    let rounded_m = f64::EPSILON * farthest_m;
+    if rounded_m <= ROUNDING * pose.radius_m() {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("particle {number}"),
+        format!(
+            "{farthest_m:.3e} m from the origin its coordinates are rounded by {rounded_m:.1e} m, more than {ROUNDING:e} of its radius of {:.3e} m",
+            pose.radius_m()
+        ),
+        "move the scene to the origin, or check the units of places and radii",
     ))
 }
 

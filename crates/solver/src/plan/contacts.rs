@@ -166,7 +166,8 @@ pub(super) fn place_contacts(
     };
     contacts.divide(p.len(), state.shares.len().max(1));
     // What overlaps now is no fruit of a break: it relaxes whenever it is let in at all.
-    list_contacts(&mut contacts, &clusters.of_particle, p);
+    let skin_m = contacts.skin_m;
+    list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
     refuse_same_place(scene, &contacts, bodies, state)?;
     if scene.run.start_overlap == dem_io::scene::StartOverlap::Refuse {
         refuse_overlaps(scene, &contacts, bodies, state)?;

@@ -54,6 +54,7 @@ pub(super) fn place_walls(
         question_size(name, entry, &shape, extent_m, notes);
         let material = kinds.material(&entry.material);
         let mut wall = Wall {
+            name: name.clone(),
             kind_of: kinds.row(material).to_vec(),
             kinds: kinds.kinds.clone(),
             surface_velocity_m_s: entry.surface_velocity_m_s,

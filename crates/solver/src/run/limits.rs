@@ -228,12 +228,25 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
     ))
 }
 
-/// A particle that has gone through a wall, as a reason to stop.
+/// A particle that has gone through a wall, or two that are pressed into each other so far that they would go through each other, as a reason to stop.
 pub(super) fn went_through(
     state: &State,
     scene: &Scene,
     bodies: &[PlacedBody],
 ) -> Option<Diagnostic> {
+    if let Some(pair) = state.contacts.as_ref().and_then(|c| c.swallowed) {
+        let [a, b] = pair.map(|particle| called(bodies, &state.clumps, particle));
+        let radii = pair.map(|particle| state.particles.poses[particle as usize].radius_m());
+        return Some(Diagnostic::unstable(
+            "",
+            format!(
+                "at {:.6e} s {a} and {b} are pressed into each other by more than the radius of the smaller, {:.3e} m",
+                state.time_s,
+                radii[0].min(radii[1])
+            ),
+            "make their contact stiffer, push less hard, or take a smaller run.time_step",
+        ));
+    }
     let (n, particle) = (state.walls.iter().enumerate())
         .find_map(|(n, wall)| wall.crossed.map(|particle| (n, particle)))?;
     Some(Diagnostic::unstable(

@@ -33,6 +33,7 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     for share in &mut shares {
         // Their owners take down what comes next while others still need what was.
         let remembered = share.border.iter().map(|&at| memories[at as usize]);
+        share.swallowed = None;
         share.border_memories.clear();
         share.border_memories.extend(remembered);
     }
@@ -49,15 +50,21 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         lost_j: &mut lost_j,
     };
     for_each(&mut shares, books, &scene);
+    contacts.swallowed = shares.iter().filter_map(|share| share.swallowed).min();
     contacts.shares = shares;
     contacts.memories = memories;
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again. `clusters`: a number for each particle; those of one number do not touch each other.
-pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Particles) {
+/// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for each particle; those of one number do not touch each other.
+pub fn list_contacts(
+    contacts: &mut Contacts,
+    clusters: &[u32],
+    particles: &Particles,
+    skin_m: f64,
+) {
     let poses = &particles.poses;
-    let pairs = near_pairs(poses, clusters, contacts.skin_m);
+    let pairs = near_pairs(poses, clusters, skin_m);
     let relaxes = contacts.relaxes;
     contacts.relist(
         pairs,
@@ -66,7 +73,7 @@ pub fn list_contacts(contacts: &mut Contacts, clusters: &[u32], particles: &Part
         },
     );
     contacts.divide(particles.len(), contacts.wanted_shares.max(1));
-    contacts.room_m = 0.5 * contacts.skin_m;
+    contacts.room_m = 0.5 * skin_m;
 }
 
 /// Overlap of two particles, m; below 0 where they are apart.
@@ -417,6 +424,7 @@ impl ShareWork<'_> {
         let memories = &mut books.memories[..];
         let wrenches = &mut books.wrenches[..];
         let lost_j = &mut books.lost_j[..];
+        let mut swallowed = share.swallowed;
         for some in touching.chunks(T::COUNT) {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
             let numbers = [number(0), number(1), number(2), number(3)];
@@ -429,6 +437,11 @@ impl ShareWork<'_> {
                 |lane| ends[lane],
                 |lane| &memories[numbers[lane] - own.start],
             );
+            if met.swallowed != 0 {
+                // Lanes to spare repeat the last contact.
+                let pair = ends[met.swallowed.trailing_zeros() as usize];
+                swallowed = Some(swallowed.map_or(pair, |other| other.min(pair)));
+            }
             for lane in 0..T::COUNT {
                 if lane < some.len() {
                     let a = ends[lane][0] as usize - particles.start;
@@ -453,6 +466,7 @@ impl ShareWork<'_> {
                 }
             }
         }
+        share.swallowed = swallowed;
     }
 }
 
@@ -465,6 +479,8 @@ struct Met {
     friction_j: [f64; FOUR],
     damping_j: [f64; FOUR],
     forces: Forces,
+    /// A bit for each, from the lowest on: whether the two are pressed into each other by more than the radius of the smaller one.
+    swallowed: u8,
 }
 
 /// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
@@ -548,6 +564,7 @@ impl Scene<'_> {
         let Triple(sx, sy, sz) = history.tangential_m;
         let Triple(dx, dy, dz) = damped.force_n;
         Met {
+            swallowed: (touch.overlap_m).above(a.radius_m.smaller(b.radius_m)),
             slid: T::rows([sx, sy, sz, history.overlap_m]),
             damped: T::rows([dx, dy, dz, relaxed.origin_m]),
             rolled: R::REMEMBERS.then(|| [rows(history.rolling_rad), rows(damped.moment_n_m)]),

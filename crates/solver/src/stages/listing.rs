@@ -57,25 +57,28 @@ pub fn renew_lists(state: &mut State) {
 
 /// Lists walls and pairs. Of two that sleep no pair is made.
 fn list_awake(state: &mut State) {
+    let moved_m = state.fastest_m_s * state.time_step_s;
     let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
         return;
     };
+    // Room for two steps at least: who is first seen when it overlaps already would be taken for the piece of a body, and relax.
+    let skin_m = contacts.skin_m.max(4.0 * moved_m);
     state.clock.did(Stage::Search, p.len());
-    list_near(&mut state.walls, p, contacts.skin_m);
+    list_near(&mut state.walls, p, skin_m);
     if contacts.alone {
-        contacts.room_m = 0.5 * contacts.skin_m;
+        contacts.room_m = 0.5 * skin_m;
         return;
     }
     let clusters = state.clusters.as_ref();
     let of_particle = clusters.map_or(&[][..], |c| &c.of_particle);
     if p.asleep.is_empty() {
-        list_contacts(contacts, of_particle, p);
+        list_contacts(contacts, of_particle, p, skin_m);
     } else {
         // All that sleep are as one body.
         let none = clusters.map_or(0, |c| c.history.len() as u32);
         let of_one = |(&id, &asleep): (&u32, &bool)| if asleep { none } else { id };
         let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();
-        list_contacts(contacts, &numbers, p);
+        list_contacts(contacts, &numbers, p, skin_m);
     }
     if contacts.relaxes {
         state.clock.did(Stage::Relaxation, contacts.relaxing());

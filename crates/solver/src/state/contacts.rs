@@ -127,6 +127,8 @@ pub struct Contacts {
     pub lost_j: Vec<[f64; 2]>,
     /// The same of particles that are no more, J.
     pub lost_by_gone_j: [f64; 2],
+    /// The first pair that is pressed into each other by more than the radius of the smaller one, of this step.
+    pub swallowed: Option<[u32; 2]>,
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.
@@ -148,6 +150,8 @@ pub struct ContactShare {
     pub computed: usize,
     /// How many of those with rolling friction.
     pub rolled: usize,
+    /// See [`Contacts::swallowed`].
+    pub swallowed: Option<[u32; 2]>,
 }
 
 impl Contacts {
@@ -218,6 +222,7 @@ impl Contacts {
                     own,
                     border: Vec::new(),
                     border_memories: Vec::new(),
+                    swallowed: None,
                     touching: vec![Default::default(); self.kinds.len()],
                     computed: 0,
                     rolled: 0,

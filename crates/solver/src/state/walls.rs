@@ -9,6 +9,8 @@ use crate::geometry::{Bounds, Frame, Shape};
 /// A wall of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
+    /// Its name in the scene.
+    pub name: String,
     /// In its own frame, whose origin is the pivot.
     pub shape: Shape,
     /// Where it stands now.
@@ -55,6 +57,7 @@ impl Wall {
     /// A wall that stands still and that nothing touches, of no material.
     pub fn standing(shape: Shape, frame: Frame) -> Self {
         Self {
+            name: String::new(),
             shape,
             frame,
             motion: WallMotion::Fixed,

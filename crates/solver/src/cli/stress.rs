@@ -1,0 +1,92 @@
+//! `dem-run stress`: the suite of stiff and extreme scenes.
+
+use std::io::IsTerminal;
+
+use clap::Args;
+use dem_io::safe_write::write_standard_output;
+use dem_io::{Diagnostic, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::in_pool;
+use crate::interrupt::Interrupt;
+use crate::stress::cases::chosen;
+use crate::stress::text::{HEAD, row};
+use crate::stress::verdict::{CaseResult, try_case};
+
+#[derive(Debug, Args)]
+pub(super) struct StressArguments {
+    /// Cases to try; all unless given
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// Threads; all cores unless given. The results are the same for any number
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Say all runs as JSON
+    #[arg(long)]
+    json: bool,
+    /// Say nothing unless something is wrong: no progress, no table; --json is printed all the same
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Tries the cases and prints their table.
+///
+/// # Errors
+/// An unknown case, interrupted, cases that did not do as predicted: the table is printed all the same.
+pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result<()> {
+    let cases = chosen(&options.cases)?;
+    let bar = if options.quiet || !std::io::stderr().is_terminal() {
+        ProgressBar::hidden()
+    } else {
+        progress_bar(cases.len())
+    };
+    let mut results: Vec<CaseResult> = Vec::new();
+    let tried = in_pool(options.threads, |_| {
+        interrupt.heeded_by(|interrupted| {
+            for case in &cases {
+                bar.set_message(case.name);
+                results.push(try_case(case, interrupted)?);
+                bar.inc(1);
+            }
+            Ok(())
+        })
+    });
+    bar.finish_and_clear();
+    tried?;
+    write_standard_output(|out| {
+        if options.json {
+            serde_json::to_writer_pretty(&mut *out, &results)?;
+            return writeln!(out);
+        }
+        if options.quiet {
+            return Ok(());
+        }
+        write!(out, "{HEAD}")?;
+        results
+            .iter()
+            .try_for_each(|one| write!(out, "{}", row(one)))
+    })?;
+    let wrong = results.iter().filter(|one| one.wrong().next().is_some());
+    let wrong: Vec<&str> = wrong.map(|one| one.name).collect();
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(Diagnostic::failed(
+        "dem-run stress",
+        format!(
+            "{} of {} cases did not do as predicted: {}",
+            wrong.len(),
+            results.len(),
+            wrong.join(", ")
+        ),
+        "--json says of every run what was predicted and what was observed",
+    ))
+}
+
+fn progress_bar(count: usize) -> ProgressBar {
+    let bar = ProgressBar::new(count as u64);
+    if let Ok(style) = ProgressStyle::with_template("stress [{bar:40}] {pos}/{len}  {msg}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}

@@ -1,0 +1,127 @@
+//! The cases of the suite: what is extreme about each, and its members.
+
+use std::sync::atomic::AtomicBool;
+
+use dem_io::{Diagnostic, Result};
+
+use super::prediction::Member;
+use super::{breakage, families, impact, limit_map, long};
+
+/// A case of the suite.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// Its name, as it is asked for.
+    pub name: &'static str,
+    /// What is extreme about it, a sentence.
+    pub extreme: &'static str,
+    members: fn(&AtomicBool) -> Result<Vec<Member>>,
+}
+
+impl Case {
+    /// Its members with what is predicted of each, from closed forms and from plans; where one run is predicted from another, that other is run.
+    ///
+    /// # Errors
+    /// A scene that cannot be planned although it should; interrupted.
+    pub fn members(&self, interrupted: &AtomicBool) -> Result<Vec<Member>> {
+        (self.members)(interrupted)
+    }
+}
+
+/// All cases.
+pub const CASES: [Case; 15] = [
+    Case {
+        name: "stiffness-ratio",
+        extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
+        members: |_| families::stiffness_ratios(),
+    },
+    Case {
+        name: "mass-ratio",
+        extreme: "bonded and colliding spheres whose masses differ by 1e3 to 1e6",
+        members: |_| families::mass_ratios(),
+    },
+    Case {
+        name: "damping",
+        extreme: "bonds damped by nothing to ten times the critical damping",
+        members: |_| limit_map::map(),
+    },
+    Case {
+        name: "step",
+        extreme: "a time step of 0.98 and of 1.02 of the limit",
+        members: |_| limit_map::beside_the_limit(),
+    },
+    Case {
+        name: "overlap",
+        extreme: "spheres that overlap by up to 0.9 when all bonds fail",
+        members: |_| breakage::overlaps(),
+    },
+    Case {
+        name: "shatter",
+        extreme: "more than 1e5 bonds that fail in one step",
+        members: |_| breakage::shatter(),
+    },
+    Case {
+        name: "one-particle",
+        extreme: "clusters and clumps of one particle",
+        members: |_| breakage::one_particle(),
+    },
+    Case {
+        name: "spin",
+        extreme: "a spin of 1e4 rad/s for 1e6 steps",
+        members: |_| long::spin(),
+    },
+    Case {
+        name: "impact",
+        extreme: "impacts at 300 m/s, on what is hard and on what is soft",
+        members: |_| Ok(impact::impacts()),
+    },
+    Case {
+        name: "mesh-wall",
+        extreme: "a sphere faster than its radius per step against a sheet of triangles",
+        members: |_| Ok(impact::at_mesh()),
+    },
+    Case {
+        name: "coordinates",
+        extreme: "1e6 m from the origin",
+        members: |_| families::coordinates(),
+    },
+    Case {
+        name: "size",
+        extreme: "particles of 1e-6 m to 1e3 m",
+        members: |_| families::sizes(),
+    },
+    Case {
+        name: "modulus",
+        extreme: "Young's modulus of 1 kPa to 1 TPa",
+        members: |_| families::moduli(),
+    },
+    Case {
+        name: "short-bonds",
+        extreme: "bonds down to a billionth of a radius long",
+        members: |_| families::short_bonds(),
+    },
+    Case {
+        name: "rest",
+        extreme: "a day at rest",
+        members: long::rest,
+    },
+];
+
+/// The cases of these names, in the order of the suite; all for no names.
+///
+/// # Errors
+/// A name that no case has.
+pub fn chosen(names: &[String]) -> Result<Vec<Case>> {
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| CASES.iter().all(|case| case.name != **name))
+    {
+        let known: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+        return Err(Diagnostic::input(
+            "dem-run stress",
+            format!("there is no case '{unknown}'"),
+            format!("take some of {}; none means all", known.join(", ")),
+        ));
+    }
+    let is_chosen = |case: &&Case| names.is_empty() || names.iter().any(|name| name == case.name);
+    Ok(CASES.iter().filter(is_chosen).copied().collect())
+}

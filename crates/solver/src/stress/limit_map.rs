@@ -1,0 +1,257 @@
+//! The largest stable step as it is seen: the one below which a small disturbance stays small, and above which it grows.
+//!
+//! Neither the program's limit nor its watchdog has a say in it: the scene's state is stepped as it is, and its energy is looked at. Both sides of
+//! the map, five bond models by damping from none to ten times the critical one, have to agree within a hundredth.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use dem_io::{Body, Diagnostic, Result};
+
+use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::trial::Trial;
+use crate::check::ledger::{elastic_energy, kinetic_energy};
+use crate::state::State;
+use crate::step::step;
+
+/// How near the largest stable and the smallest unstable step come to each other, over the step.
+const RESOLUTION: f64 = 0.002;
+/// Energy over that of the start at which a disturbance has grown: a thousandfold amplitude. So small a disturbance is still linear then.
+const GROWN: f64 = 1e6;
+/// Strain of the bonds at the start.
+const DISTURBANCE: f64 = 1e-8;
+/// Steps after which what has not grown is taken for stable. Slowest to grow is a mode with damping alone: by 2 `RESOLUTION` a step where the step is longer than
+/// the limit by `RESOLUTION`. With a thousandth of the disturbance in it, the whole has grown a thousandfold when it has grown a millionfold, after
+/// ln(1e6) / (2 `RESOLUTION`) = 3450 steps.
+const STEPS: usize = 3500;
+/// Steps between two looks at the energy.
+const EVERY: usize = 25;
+/// By how much predicted and observed limits may differ.
+const AGREEMENT: f64 = 0.01;
+
+/// Largest stable step of a scene, s, within `RESOLUTION`, from half the program's limit to twice that; not a number where all of those steps are stable,
+/// or none.
+///
+/// # Errors
+/// Interrupted; a scene that is refused.
+pub fn largest_step_s(trial: &Trial, interrupted: &AtomicBool) -> Result<f64> {
+    let (_, plan, _) = trial.planned()?;
+    let predicted_s = plan.step.limit.step_s;
+    let mut bracket = [0.5 * predicted_s, 2.0 * predicted_s];
+    let nearby = [0.995, 1.005].map(|share| share * predicted_s);
+    let grows = |step_s: f64| grows(&plan.state, step_s, interrupted);
+    // Most are near: two runs instead of a dozen.
+    for near_s in nearby {
+        bracket[usize::from(grows(near_s)?)] = near_s;
+    }
+    let ends = [0, 1].map(|end| bracket[end] != nearby[end]);
+    for end in (0..2).filter(|end| ends[*end]) {
+        if grows(bracket[end])? != (end == 1) {
+            return Ok(f64::NAN);
+        }
+    }
+    while bracket[1] - bracket[0] > RESOLUTION * bracket[0] {
+        let middle = 0.5 * (bracket[0] + bracket[1]);
+        bracket[usize::from(grows(middle)?)] = middle;
+    }
+    Ok(0.5 * (bracket[0] + bracket[1]))
+}
+
+/// Whether the disturbance of a state grows with this step, s.
+fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
+    let mut state = state.clone();
+    state.time_step_s = step_s;
+    let energy_j = |state: &State| {
+        let p = &state.particles;
+        kinetic_energy(p, |i| p.motions[i]) + elastic_energy(state).total()
+    };
+    let start_j = energy_j(&state);
+    for _ in 0..STEPS / EVERY {
+        for _ in 0..EVERY {
+            step(&mut state);
+        }
+        // What is no number has grown as well.
+        let is_small = energy_j(&state) <= GROWN * start_j;
+        if !is_small {
+            return Ok(true);
+        }
+        if interrupted.load(Ordering::Relaxed) {
+            return Err(Diagnostic::failed("", "interrupted", ""));
+        }
+    }
+    Ok(false)
+}
+
+/// The map: five models, damped by nothing, lightly, critically and far beyond; other kinds of damping beside.
+///
+/// # Errors
+/// Those of [`Trial::planned`].
+pub fn map() -> Result<Vec<Member>> {
+    let models = [
+        "parallel",
+        "euler-bernoulli",
+        "timoshenko",
+        "elastic-solid",
+        "shear-coefficient",
+    ];
+    let etas = ["0", "0.1", "0.3", "1", "3", "10"];
+    let mut members = Vec::new();
+    for model in models {
+        for eta in etas {
+            members.push(of(model, &format!("viscous = {eta}"), "0")?);
+        }
+    }
+    for damping in [
+        "viscous = 0.3, each_mode = true",
+        "viscous = 10, each_mode = true",
+        "force = \"30 N s/m\", torque = 1",
+    ] {
+        members.push(of("timoshenko", damping, "0")?);
+    }
+    for particle_damping in ["0.1", "0.5", "0.9"] {
+        members.push(of("timoshenko", "viscous = 0", particle_damping)?);
+    }
+    Ok(members)
+}
+
+/// A disturbed block with bonds of a model, damped so.
+///
+/// # Errors
+/// Those of [`Trial::planned`].
+pub fn of(model: &str, damping: &str, particle_damping: &str) -> Result<Member> {
+    let scene = format!(
+        "version = 1
+run = {{ end_time = \"1 s\", particle_damping = {particle_damping} }}
+materials.rock.density = 2500
+bonds.rock = {{ model = \"{model}\", young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ {damping} }} }}
+bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
+"
+    );
+    let trial = Trial {
+        bodies: vec![("block.vtp", block(3, 0.0, DISTURBANCE)?)],
+        ..Trial::of(scene)
+    };
+    let of_particles = match particle_damping {
+        "0" => String::new(),
+        gamma => format!(", particle_damping = {gamma}"),
+    };
+    program_limit(format!("{model}, {damping}{of_particles}"), trial)
+}
+
+/// The limit that the program finds for a scene is predicted to be the one observed.
+///
+/// # Errors
+/// Those of [`Trial::planned`].
+pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
+    let (_, plan, _) = trial.planned()?;
+    let predicted_s = plan.step.limit.step_s;
+    Ok(Member {
+        what,
+        trial,
+        way: Way::LargestStep,
+        prediction: Prediction::Ends(vec![Shown {
+            quantity: Quantity::LargestStep,
+            unit: "s",
+            value: predicted_s,
+            tolerance: AGREEMENT * predicted_s,
+        }]),
+    })
+}
+
+/// A block of `side` spheres each way on a cubic grid, about 1 mm in radius, no two alike, bonded to their neighbours along the edges and the diagonals of
+/// the faces of the grid; neighbours overlap as spheres do that touch at r/(1 + overlap). Bonds are stretched by `strain`, each second one pressed.
+///
+/// # Errors
+/// None, as the body is one.
+pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
+    let pitch_m = 2.0e-3 / (1.0 + overlap);
+    let mut spheres = Vec::new();
+    let mut cells = Vec::new();
+    for n in 0..side * side * side {
+        let cell = [n % side, n / side % side, n / (side * side)];
+        let [x, y, z] = cell.map(|k| k as f64 * pitch_m);
+        // Seven sizes in turn: no two neighbours are alike.
+        let radius_m = 1.0e-3 * (1.0 - 0.02 * (n * 3 % 7) as f64);
+        spheres.push([x, y, z, radius_m]);
+        cells.push(cell);
+    }
+    let is_near = |a: &[usize; 3], b: &[usize; 3]| {
+        let apart = [0, 1, 2].map(|k| a[k].abs_diff(b[k]));
+        apart.iter().max() == Some(&1) && apart.iter().sum::<usize>() <= 2
+    };
+    let mut bonds = Vec::new();
+    let farthest = side * side + side + 1;
+    for a in 0..cells.len() {
+        let later = a + 1..cells.len().min(a + farthest + 1);
+        let near = later.filter(|&b| is_near(&cells[a], &cells[b]));
+        bonds.extend(near.map(|b| [a as u32, b as u32]));
+    }
+    let mut body = Body::from_spheres(&spheres, &bonds)?;
+    for (n, length) in body.bond_lengths.iter_mut().enumerate() {
+        *length *= if n % 2 == 0 {
+            1.0 - strain
+        } else {
+            1.0 + strain
+        };
+    }
+    Ok(body)
+}
+
+/// A step just below the limit, just above it, and the latter by force.
+///
+/// # Errors
+/// Those of [`Trial::planned`].
+pub fn beside_the_limit() -> Result<Vec<Member>> {
+    let mut members = Vec::new();
+    for eta in ["0", "0.3", "3"] {
+        let text = |time_step: &str, end_s: f64| {
+            format!(
+                "version = 1
+run = {{ end_time = {end_s:e}, time_step = {time_step} }}
+materials.rock.density = 2500
+bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
+bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"largest\" }}
+"
+            )
+        };
+        let trial = |time_step: &str, end_s: f64, force_step: bool| -> Result<Trial> {
+            Ok(Trial {
+                bodies: vec![("block.vtp", block(3, 0.0, 1e-6)?)],
+                force_step,
+                ..Trial::of(text(time_step, end_s))
+            })
+        };
+        let (_, plan, _) = trial("\"auto\"", 1.0, false)?.planned()?;
+        let limit_s = plan.step.limit.step_s;
+        let start_j = elastic_energy(&plan.state).total();
+        let share = 0.98;
+        let end_s = STEPS as f64 * limit_s;
+        // What leapfrog keeps of a mode is its energy less (w dt / 2)^2 of the elastic part.
+        let most_j = start_j / (1.0 - share * share);
+        members.push(Member {
+            what: format!("0.98, damping {eta}"),
+            trial: trial(&format!("{:e}", share * limit_s), end_s, false)?,
+            way: Way::Run,
+            prediction: Prediction::Ends(vec![Shown::measure("elastic_energy", "J", 0.0, most_j)]),
+        });
+        let above = format!("{:e}", 1.02 * limit_s);
+        members.push(Member {
+            what: format!("1.02, damping {eta}"),
+            trial: trial(&above, end_s, false)?,
+            way: Way::Run,
+            prediction: Prediction::Refused(vec![format!(
+                "is above the largest stable step of {limit_s:.4e} s"
+            )]),
+        });
+        members.push(Member {
+            what: format!("1.02 by force, damping {eta}"),
+            trial: trial(&above, end_s, true)?,
+            way: Way::Run,
+            prediction: Prediction::Stopped(vec![
+                "have come from nowhere".to_owned(),
+                "began at 1.020 of the largest stable one".to_owned(),
+            ]),
+        });
+    }
+    Ok(members)
+}

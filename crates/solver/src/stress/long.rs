@@ -1,0 +1,190 @@
+//! Runs of many steps: what must not drift does not.
+
+use std::f64::consts::PI;
+use std::sync::atomic::AtomicBool;
+
+use dem_io::Result;
+
+use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::trial::{Outcome, Trial};
+use crate::physics::bond::damping::{Reduced, chen};
+use crate::physics::bond::pair::frequencies;
+use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
+
+/// Of the spin.
+const STEPS: f64 = 1e6;
+/// s
+const DAY: f64 = 86_400.0;
+/// s
+const HOUR: f64 = 3600.0;
+
+/// Of what rests, s: the same for an hour and for a day, as friction holds bodies where they came to rest, step by step.
+const REST_STEP_S: f64 = 0.05;
+
+/// Two bonded spheres of 1 mm turn about the middle between them. Undamped, they swing about the stretch at which the bond holds them on their circle, to twice that;
+/// damped, they come to it, but for what damping carries: it goes by velocities half a step old, which on a circle point outwards by w dt / 2, and so takes the share
+/// c dt / m of what the bond would have to hold.
+///
+/// # Errors
+/// None.
+pub fn spin() -> Result<Vec<Member>> {
+    let (radius_m, density, young_pa, spin_rad_s) = (1e-3_f64, 2500.0, 1e9, 1e4_f64);
+    let mass_kg = density * 4.0 / 3.0 * PI * radius_m.powi(3);
+    let own_kg_m2 = 0.4 * mass_kg * radius_m.powi(2);
+    let length_m = 2.0 * radius_m;
+    let shape = BondShape {
+        length_m,
+        radius_m,
+        end_radii_m: [radius_m; 2],
+    };
+    let answer = stiffness(BondModel::Timoshenko, &shape, young_pa, 0.25);
+    let step_s =
+        0.25 * frequencies(&answer, [1.0 / mass_kg; 2], [1.0 / own_kg_m2; 2]).critical_step_s();
+    // The stretch at which k x = m w^2 (L + x) / 2, where w falls as the moment of inertia grows.
+    let inertia = |stretch_m: f64| 2.0 * own_kg_m2 + 0.5 * mass_kg * (length_m + stretch_m).powi(2);
+    let mut stretch_m = 0.0;
+    for _ in 0..100 {
+        let spin = spin_rad_s * inertia(0.0) / inertia(stretch_m);
+        stretch_m = 0.5 * mass_kg * spin.powi(2) * (length_m + stretch_m) / answer.normal;
+    }
+    let strain = stretch_m / length_m;
+    let reduced = Reduced {
+        mass_kg: 0.5 * mass_kg,
+        inertia_kg_m2: 0.5 * own_kg_m2,
+    };
+    // A turn of w dt in a step: of its square are the errors of a circle that is stepped through.
+    let turn = spin_rad_s * step_s;
+    let member = |eta: f64| {
+        let scene = format!(
+            "version = 1
+run = {{ end_time = {:e}, time_step = {step_s:e} }}
+materials.rock.density = {density}
+bonds.rock = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"{}\" }}
+[bodies.pair]
+particles = [[0, 0, 0, {radius_m:e}], [{length_m:e}, 0, 0, {radius_m:e}]]
+bond_list = [[0, 1]]
+material = \"rock\"
+bonds = \"rock\"
+angular_velocity = [0, 0, {spin_rad_s:e}]
+",
+            STEPS * step_s,
+            if eta > 0.0 { "end" } else { "largest" },
+        );
+        let carried = chen(&answer, &reduced, eta).normal * step_s / mass_kg;
+        let at_rest_j = 0.5 * answer.normal * (stretch_m * (1.0 - carried)).powi(2);
+        let stored = if eta > 0.0 {
+            Shown::measure(
+                "elastic_energy",
+                "J",
+                at_rest_j,
+                2.0 * turn.powi(2) * at_rest_j,
+            )
+        } else {
+            // A swing of twice the stretch is off by its share of the length, and a row of the time series can miss its top.
+            Shown::measure(
+                "elastic_energy",
+                "J",
+                4.0 * at_rest_j,
+                (10.0 * strain + 1e-3) * 4.0 * at_rest_j,
+            )
+        };
+        Member {
+            what: if eta > 0.0 { "damped" } else { "undamped" }.to_owned(),
+            trial: Trial::of(scene),
+            way: Way::Run,
+            prediction: Prediction::Ends(vec![
+                stored,
+                // Each step rounds.
+                Shown::at_most(Quantity::AngularMomentumError, STEPS * f64::EPSILON),
+                Shown::at_most(Quantity::EnergyError, turn.powi(2)),
+            ]),
+        }
+    };
+    Ok(vec![member(0.0), member(0.1)])
+}
+
+/// Large soft spheres under their weight for a day, so that a step is some milliseconds: one, which stands as deep as Hertz says; and a tetrahedron on a slope, bonded and
+/// as a clump, which friction holds. Where that stands after a day is predicted from where it stands after an hour.
+///
+/// # Errors
+/// Interrupted.
+pub fn rest(interrupted: &AtomicBool) -> Result<Vec<Member>> {
+    let (radius_m, density, young_pa, g) = (20.0_f64, 2000.0, 1.5e7, 9.81);
+    let scene = |end_s: f64, gravity: &str, body: &str| {
+        format!(
+            "version = 1
+run = {{ end_time = {end_s:e}, time_step = {REST_STEP_S}, gravity = {gravity} }}
+materials.m = {{ density = {density}, young_modulus = {young_pa:e}, poisson_ratio = 0.3 }}
+contacts.m-m = {{ restitution = 0.3, friction = 0.6 }}
+bonds.m = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.3, damping = {{ viscous = 0.3 }} }}
+walls.floor = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"m\" }}
+measures.height = {{ quantity = \"position_z\" }}
+measures.way = {{ quantity = \"position_x\" }}
+{body}"
+        )
+    };
+    let mass_kg = density * 4.0 / 3.0 * PI * radius_m.powi(3);
+    let reduced_pa = young_pa / (2.0 * (1.0 - 0.3 * 0.3));
+    let overlap_m = (mass_kg * g / (4.0 / 3.0 * reduced_pa * radius_m.sqrt())).powf(2.0 / 3.0);
+    let ball = format!(
+        "bodies.ball = {{ particles = [[0, 0, {radius_m}, {radius_m}]], material = \"m\" }}\n"
+    );
+    // Where forces balance, but for the rounding of the place.
+    let rounding_m = 100.0 * f64::EPSILON * radius_m;
+    // Every step rounds every coordinate once.
+    let grown_m = DAY / REST_STEP_S * f64::EPSILON * 4.0 * radius_m;
+    let mut members = vec![Member {
+        what: "a sphere".to_owned(),
+        trial: Trial::of(scene(DAY, &format!("[0, 0, {}]", -g), &ball)),
+        way: Way::Run,
+        prediction: Prediction::Ends(vec![
+            Shown::measure("height", "m", radius_m - overlap_m, rounding_m),
+            Shown::measure("way", "m", 0.0, 0.0),
+        ]),
+    }];
+    let (sine, cosine) = 15.0_f64.to_radians().sin_cos();
+    let slope = format!("[{}, 0, {}]", g * sine, -g * cosine);
+    let side = 2.0 * radius_m;
+    let rows = [
+        [0.0, 0.0, radius_m],
+        [side, 0.0, radius_m],
+        [0.5 * side, side * 0.75_f64.sqrt(), radius_m],
+        [
+            0.5 * side,
+            side * (1.0 / 12.0_f64).sqrt(),
+            radius_m + side * (2.0 / 3.0_f64).sqrt(),
+        ],
+    ];
+    let spheres: Vec<String> = rows
+        .iter()
+        .map(|[x, y, z]| format!("[{x:e}, {y:e}, {z:e}, {radius_m}]"))
+        .collect();
+    for start_as in ["bonded", "clump"] {
+        let body = format!(
+            "[bodies.stone]
+particles = [{}]
+bond_list = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+material = \"m\"
+bonds = \"m\"
+start_as = \"{start_as}\"
+",
+            spheres.join(", ")
+        );
+        let hour = Trial::of(scene(HOUR, &slope, &body)).run(interrupted)?;
+        let Outcome::Ended(hour) = hour else {
+            continue;
+        };
+        let of = |name: &'static str| {
+            let value = Quantity::Measure(name).of(&hour);
+            Shown::measure(name, "m", value, grown_m)
+        };
+        members.push(Member {
+            what: format!("a tetrahedron on a slope of 15 degrees, {start_as}"),
+            trial: Trial::of(scene(DAY, &slope, &body)),
+            way: Way::Run,
+            prediction: Prediction::Ends(vec![of("height"), of("way")]),
+        });
+    }
+    Ok(members)
+}

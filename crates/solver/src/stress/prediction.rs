@@ -1,0 +1,147 @@
+//! What is predicted of a scene of the suite before it is run, and what its run shows.
+
+use serde::Serialize;
+
+use super::trial::Trial;
+use crate::output::summary::Summary;
+
+/// A scene of a case and what is predicted of it.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// What sets it apart from the others of its case.
+    pub what: String,
+    /// The scene.
+    pub trial: Trial,
+    /// What is observed of it.
+    pub way: Way,
+    /// What will come of it.
+    pub prediction: Prediction,
+}
+
+/// How a scene is observed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// It is run, once.
+    Run,
+    /// It is stepped with larger and smaller steps, see [`limit_map`](super::limit_map).
+    LargestStep,
+}
+
+/// What will come of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Prediction {
+    /// The run ends and shows these values.
+    Ends(Vec<Shown>),
+    /// It is refused before it starts (exit code 2), and the message has these words.
+    Refused(Vec<String>),
+    /// It is stopped (exit code 3), and the message has these words.
+    Stopped(Vec<String>),
+}
+
+/// A value that a run shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Shown {
+    /// What it is of.
+    pub quantity: Quantity,
+    /// SI unit; empty for plain numbers.
+    pub unit: &'static str,
+    /// What it will be, in that unit.
+    pub value: f64,
+    /// By how much it may be off, in that unit.
+    pub tolerance: f64,
+}
+
+/// What a value is of.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// A measure of the scene, by its name.
+    Measure(&'static str),
+    /// Largest relative error of the energy.
+    EnergyError,
+    /// Largest relative error of the momentum.
+    MomentumError,
+    /// Largest relative error of the angular momentum.
+    AngularMomentumError,
+    /// Bonds that broke.
+    BrokenBonds,
+    /// Fragments at the end.
+    Fragments,
+    /// Largest stable time step.
+    LargestStep,
+}
+
+impl Shown {
+    /// A measure of the scene, in this SI unit.
+    pub fn measure(name: &'static str, unit: &'static str, value: f64, tolerance: f64) -> Self {
+        Self {
+            quantity: Quantity::Measure(name),
+            unit,
+            value,
+            tolerance,
+        }
+    }
+
+    /// A plain number that is 0 but for this, at most.
+    pub fn at_most(quantity: Quantity, limit: f64) -> Self {
+        Self {
+            quantity,
+            unit: "",
+            value: 0.0,
+            tolerance: limit,
+        }
+    }
+
+    /// A count, which must be met.
+    pub fn count(quantity: Quantity, count: usize) -> Self {
+        Self {
+            value: count as f64,
+            ..Self::at_most(quantity, 0.0)
+        }
+    }
+
+    /// How far a value is off, in tolerances; infinite for what is no number.
+    pub fn deviation(&self, observed: f64) -> f64 {
+        let off = (observed - self.value).abs();
+        match off {
+            _ if off.is_nan() => f64::INFINITY,
+            _ if off <= self.tolerance && self.tolerance == 0.0 => 0.0,
+            _ => off / self.tolerance,
+        }
+    }
+}
+
+impl Quantity {
+    /// For a person.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Measure(name) => name,
+            Self::EnergyError => "energy error",
+            Self::MomentumError => "momentum error",
+            Self::AngularMomentumError => "angular momentum error",
+            Self::BrokenBonds => "broken bonds",
+            Self::Fragments => "fragments",
+            Self::LargestStep => "largest stable step",
+        }
+    }
+
+    /// What a run shows of it; not a number where it shows nothing.
+    pub fn of(&self, summary: &Summary) -> f64 {
+        match self {
+            Self::Measure(name) => {
+                let found = summary.measures.iter().find(|m| m.name == *name);
+                found.map_or(f64::NAN, |measured| measured.value)
+            }
+            Self::EnergyError => summary.energy_error,
+            Self::MomentumError => summary.momentum_error,
+            Self::AngularMomentumError => summary.angular_momentum_error,
+            Self::BrokenBonds => summary.broken_bonds as f64,
+            Self::Fragments => {
+                let fragments = summary.fragments.as_ref();
+                fragments.map_or(f64::NAN, |fragments| fragments.count as f64)
+            }
+            Self::LargestStep => f64::NAN,
+        }
+    }
+}

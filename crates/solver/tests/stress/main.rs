@@ -1,0 +1,32 @@
+//! The stress suite: every case does as predicted, and a case that does not is told so.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops where it fails, and says what it measured"
+)]
+
+mod mended;
+mod sabotage;
+mod suite;
+
+use std::sync::atomic::AtomicBool;
+
+use dem_run::stress::cases::CASES;
+use dem_run::stress::prediction::Member;
+
+/// Members of a case.
+fn members(case: &str) -> Vec<Member> {
+    let found = CASES.iter().find(|one| one.name == case).unwrap();
+    found.members(&AtomicBool::new(false)).unwrap()
+}
+
+/// The member of a case that is called so.
+fn member(case: &str, what: &str) -> Member {
+    let all = members(case).into_iter();
+    let mut found = all.filter(|member| member.what == what);
+    let one = found.next();
+    assert!(found.next().is_none(), "{case}: {what} twice");
+    one.unwrap_or_else(|| panic!("{case} has no {what}"))
+}
