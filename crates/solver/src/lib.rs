@@ -18,5 +18,6 @@ pub mod shape;
 pub mod snapshot;
 pub mod stages;
 pub mod state;
+pub mod statics;
 pub mod step;
 pub mod sweep;

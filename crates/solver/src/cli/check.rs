@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use dem_io::safe_write::write_standard_output;
-use dem_io::scene::Scene;
+use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use dem_io::{Body, Result};
 use serde_json::json;
@@ -25,6 +25,9 @@ pub(super) fn check(
     as_json: bool,
 ) -> Result<()> {
     let plan = plan(scene, bodies, threads, force_step)?;
+    if scene.run.integrator == Integrator::Static {
+        return super::statics::check(scene, &plan, memory_bytes(&plan.state), as_json);
+    }
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
     // What the first steps take says nothing where bodies come, go, or become others.
@@ -141,13 +144,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> Strin
     for note in &plan.notes {
         line("note", note.clone());
     }
-    line(
-        "memory",
-        match bytes as f64 {
-            few if few < 1e6 => format!("about {} kB", significant(few * 1e-3, 3)),
-            many => format!("about {} MB", significant(many * 1e-6, 3)),
-        },
-    );
+    line("memory", memory_text(bytes));
     line(
         "run time",
         per_step_s.map_or(
@@ -159,6 +156,14 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> Strin
         ),
     );
     text
+}
+
+/// A number of bytes, for a person.
+pub(super) fn memory_text(bytes: usize) -> String {
+    match bytes as f64 {
+        few if few < 1e6 => format!("about {} kB", significant(few * 1e-3, 3)),
+        many => format!("about {} MB", significant(many * 1e-6, 3)),
+    }
 }
 
 /// What the arrays of a state take, bytes.

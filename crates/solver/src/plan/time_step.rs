@@ -46,6 +46,26 @@ pub struct StepChoice {
 }
 
 impl StepChoice {
+    /// Of a run that goes to its equilibrium at once, in one step to its end.
+    pub fn none(end_s: f64) -> Self {
+        Self {
+            step_s: end_s,
+            given: false,
+            limit: Limit {
+                step_s: f64::INFINITY,
+                undamped_step_s: f64::INFINITY,
+                omega_rad_s: 0.0,
+                damping_1_s: 0.0,
+                iterations: 0,
+            },
+            foreseen_s: f64::INFINITY,
+            impact_speed_m_s: 0.0,
+            contact_rate_1_s2: 0.0,
+            rayleigh_s: f64::INFINITY,
+            thesis_s: f64::INFINITY,
+        }
+    }
+
     /// Step over the smaller of both limits.
     pub fn share_of_limit(&self) -> f64 {
         self.step_s / self.foreseen_s.min(self.limit.step_s)
