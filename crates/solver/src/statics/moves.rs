@@ -14,28 +14,41 @@ pub struct Moves<'a> {
     pub ways: &'a [(u32, [f64; 6])],
 }
 
-/// Puts `poses` where `from` comes to by `part` of the moves. A turn that is prescribed together with others about other axes is one rotation vector.
-pub fn displace(
-    poses: &mut [Pose],
-    from: &[Pose],
-    freedoms: &Freedoms,
-    moves: &Moves<'_>,
-    part: f64,
-) {
-    let mut ways = moves.ways.iter().peekable();
-    for (i, (pose, from)) in poses.iter_mut().zip(from).enumerate() {
-        let mut all = match ways.next_if(|(moved, _)| *moved as usize == i) {
-            Some((_, way)) => *way,
-            None => [0.0; 6],
-        };
-        for (all, &unknown) in all.iter_mut().zip(&freedoms.unknown[i]) {
-            if unknown != HELD {
-                *all = moves.by[unknown];
-            }
-        }
-        let [x, y, z, rx, ry, rz] = all.map(|move_or_turn| part * move_or_turn);
+impl Moves<'_> {
+    /// Those of all particles, six for each.
+    fn of_all<'a>(&'a self, freedoms: &'a Freedoms) -> impl Iterator<Item = [f64; 6]> + 'a {
+        let mut ways = self.ways.iter().peekable();
+        freedoms
+            .unknown
+            .iter()
+            .enumerate()
+            .map(move |(i, unknown)| {
+                let way = ways.next_if(|(moved, _)| *moved as usize == i);
+                let mut six = way.map_or([0.0; 6], |(_, way)| *way);
+                for (one, &unknown) in six.iter_mut().zip(unknown) {
+                    if unknown != HELD {
+                        *one = self.by[unknown];
+                    }
+                }
+                six
+            })
+    }
+}
+
+/// Puts `poses` where `from` comes to by the moves.
+pub fn displace(poses: &mut [Pose], from: &[Pose], freedoms: &Freedoms, moves: &Moves<'_>) {
+    let all = moves.of_all(freedoms);
+    for ((pose, from), [x, y, z, rx, ry, rz]) in poses.iter_mut().zip(from).zip(all) {
         let [px, py, pz, radius_m] = from.position_m;
         pose.position_m = [px + x, py + y, pz + z, radius_m];
         pose.turned = turn(from.turned, [rx, ry, rz]);
     }
+}
+
+/// The largest turn of a particle, rad.
+pub fn largest_turn(moves: &Moves<'_>, freedoms: &Freedoms) -> f64 {
+    let turns = moves
+        .of_all(freedoms)
+        .map(|[.., x, y, z]| x.hypot(y).hypot(z));
+    turns.fold(0.0, f64::max)
 }

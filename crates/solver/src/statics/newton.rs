@@ -1,10 +1,11 @@
 //! Newton's method to an equilibrium, with the exact tangent of the bonds' energy.
 //!
-//! The residual is what acts on the freedoms that are not held: bonds, loads and gravity. A step solves for the moves and turns that take it to 0, halved as long as they lead far
-//! beyond the lowest energy on their way (a line search on the work of the residual, Matthies and Strang 1979: for forces that have a potential, on the slope of the
-//! energy). Supports that move take their first step with the tangent as well, so that the body follows them as a whole.
+//! The residual is what acts on the freedoms that are not held: bonds, loads and gravity. A step solves for the moves and turns that take it to 0. Supports that move take
+//! their first step with the tangent as well, so that the body follows them as a whole.
 //!
-//! The whole load is tried at once. Where that fails, half of it, and so on from there (load stepping).
+//! The whole load is tried at once. Where a step would turn a particle far, or the steps do not come to an end, half of it is, and so on from there (load stepping): small turns lead
+//! to the equilibrium that the body comes to as the load rises. There is no line search on the energy: a slender body that bends is first stretched by the square of its turns, which costs
+//! much energy and is gone a step later. A search that forbids it takes fifty times as many steps.
 //!
 //! Off equilibrium the tangent is not symmetric: where a torque acts on a particle, by the cross product with it. In equilibrium these torques are those of loads and supports.
 //! Where none can be (see [`Freedoms::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky: exact at the solution, so that the convergence is quadratic, and a
@@ -13,32 +14,29 @@
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::loads::add_loads;
 use crate::state::State;
-use crate::state::particles::{Pose, Wrench};
+use crate::state::particles::{Motion, Wrench};
 
 use rayon::prelude::*;
 
 use super::factor::{Factor, NoFactor};
 use super::freedoms::Freedoms;
 use super::matrix::{Matrix, pulled_by_supports};
-use super::moves::{Moves, displace};
+use super::moves::{Moves, displace, largest_turn};
 
 /// Newton steps in a load step, at most.
-const STEPS: usize = 50;
+const STEPS: usize = 20;
+/// Largest turn of a particle in a Newton step, rad.
+const TURN: f64 = 0.5;
 /// Smallest load step, as a share of all loads and displacements.
 const SMALLEST: f64 = 1.0 / 1024.0;
 /// Residual over the largest bond force at which factors are good for the equilibrium itself: its stability is judged by them.
 const NEAR: f64 = 1e-4;
-/// The same from which on factors that are near serve for further steps, and steps are not halved.
+/// The same from which on factors that are near serve for further steps.
 const NEARER: f64 = 1e-6;
 /// Largest residual over the largest bond force of an equilibrium, unless it is rounding.
 const LARGEST: f64 = 1e-9;
 /// A step that leaves more than this share of the residual shows that only rounding is left.
 const STALLED: f64 = 0.5;
-/// Halvings of a step, at most.
-const HALVINGS: usize = 10;
-/// A step is halved if the residual does more than this share of its first work against the step at its end.
-const BACKWARDS: f64 = 0.5;
-
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
@@ -234,53 +232,26 @@ impl Search<'_> {
                 is_near = residual <= NEAR && !pulls;
             }
             poses.clone_from(&self.state.particles.poses);
-            let mut by = net.clone();
+            let mut by = net;
             if pulls {
                 let pulled = pulled_by_supports(&self.state.bonds, &self.freedoms, &poses, &ways);
                 by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
             }
             self.factor.solve(&mut by);
             self.newton_steps += 1;
-            if pulls {
-                let moves = Moves {
-                    by: &by,
-                    ways: &ways,
-                };
-                displace(
-                    &mut self.state.particles.poses,
-                    &poses,
-                    &self.freedoms,
-                    &moves,
-                    1.0,
-                );
-            } else {
-                self.advance(&poses, &net, &by, to, residual > NEARER);
+            let moves = Moves {
+                by: &by,
+                ways: if pulls { &ways } else { &[] },
+            };
+            if largest_turn(&moves, &self.freedoms) > TURN {
+                return Err(Cause::NoConvergence);
             }
+            let new = &mut self.state.particles.poses;
+            displace(new, &poses, &self.freedoms, &moves);
             before_n = if pulls { f64::INFINITY } else { residual_n };
             pulls = false;
         }
         Err(Cause::NoConvergence)
-    }
-
-    /// Takes a step from these poses, where `net` acts; all of it, or if `searches` as much as does not lead far beyond the lowest energy.
-    fn advance(&mut self, poses: &[Pose], net: &[f64], by: &[f64], share: f64, searches: bool) {
-        let work = dot(net, by);
-        let moves = Moves { by, ways: &[] };
-        let mut part = 1.0;
-        for _ in 0..HALVINGS {
-            displace(
-                &mut self.state.particles.poses,
-                poses,
-                &self.freedoms,
-                &moves,
-                part,
-            );
-            // Where torques act, a step need not go down.
-            if !searches || work <= 0.0 || dot(&self.net(share), by) >= -BACKWARDS * work {
-                return;
-            }
-            part *= 0.5;
-        }
     }
 
     /// What acts on the unknowns at this share of the loads, N and N m.
@@ -343,7 +314,7 @@ impl Search<'_> {
 pub(super) fn loads(state: &State, end_s: f64) -> Vec<[f64; 6]> {
     let mut wrenches = vec![Wrench::default(); state.particles.len()];
     add_loads(&state.loads, end_s, &mut wrenches);
-    let with_weight = |(wrench, motion): (&Wrench, &crate::state::particles::Motion)| {
+    let with_weight = |(wrench, motion): (&Wrench, &Motion)| {
         let mut load = six(wrench);
         for (k, g) in state.gravity_m_s2.iter().enumerate() {
             load[k] += g / motion.inverse_mass;
@@ -373,8 +344,4 @@ fn rounding_n(state: &State) -> f64 {
 pub(super) fn six(wrench: &Wrench) -> [f64; 6] {
     let ([fx, fy, fz, _], [tx, ty, tz, _]) = (wrench.force_n, wrench.torque_n_m);
     [fx, fy, fz, tx, ty, tz]
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -4,50 +4,46 @@ use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 
 use crate::bars::{ELASTIC, MODELS, random_body, with_threads};
-use crate::{bar, fix, load, rest};
+use crate::{fix, load, rest};
 
-/// Asserts that each residual is at most as large as fifty times the square of the one before: of those that a tangent of their own is made for. (Steps that bend
-/// also stretch, by the square of the angle, which is stiffer: hence the fifty.)
+/// Asserts that each residual is at most as large as the square of the one before: of those that a tangent of their own is made for.
 fn assert_quadratic(residuals: &[f64]) {
     let mut seen = 0;
-    for pair in residuals
-        .windows(2)
-        .filter(|pair| pair[0] < 0.1 && pair[0] > 1e-6)
-    {
+    for pair in residuals.windows(2).filter(|p| p[0] < 0.2 && p[0] > 1e-6) {
         seen += 1;
-        assert!(pair[1] < 50.0 * pair[0].powi(2) + 1e-11, "{residuals:?}");
+        assert!(pair[1] < pair[0].powi(2) + 1e-10, "{residuals:?}");
     }
     assert!(seen >= 2, "too few to tell: {residuals:?}");
 }
 
-/// With the symmetric part of the tangent, which is exact where no torque acts.
+/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as it is long: in a slender one every other step stretches what the one before has bent.
 #[test]
 fn residuals_fall_quadratically_under_forces() {
     for (model, name) in MODELS {
-        let mut state = bar(model, 10, 1.0);
-        fix(&mut state, &[0]);
-        load(&mut state, &[10], [0.0, 4e6, 2e6], [0.0; 3]);
+        let mut state = random(model, 1);
+        state.loads[0].force_n = [0.0, 0.05, -0.1];
         let found = rest(&mut state);
         eprintln!("{name}: {} {:?}", found.load_steps, found.residuals);
         assert_quadratic(&found.residuals);
     }
 }
 
-/// With the tangent itself, which is not symmetric where torques act. Across and along together, so that what is not symmetric matters.
+/// With the tangent itself, which is not symmetric where torques act. Along and across together, so that what is not symmetric matters.
 #[test]
 fn residuals_fall_quadratically_under_torques() {
     for (model, name) in MODELS {
-        let mut state = bar(model, 10, 1.0);
-        fix(&mut state, &[0]);
-        load(&mut state, &[10], [0.0, 1e6, 0.0], [6e6, 8e6, 9e6]);
+        let mut state = random(model, 1);
+        state.loads[0].force_n = [0.0, 0.02, 0.0];
+        state.loads[0].torque_n_m = [2e-5, 3e-5, 4e-5];
         let found = rest(&mut state);
         eprintln!("{name}: {} {:?}", found.load_steps, found.residuals);
         assert_quadratic(&found.residuals);
     }
 }
 
-fn random(threads: usize) -> State {
-    let mut state = random_body(BondModel::Timoshenko, ELASTIC, 1e-6);
+/// The random body, clamped on one side and loaded on the other.
+fn random(model: BondModel, threads: usize) -> State {
+    let mut state = random_body(model, ELASTIC, 1e-6);
     let mut state = State::new(
         state.particles,
         std::mem::take(&mut state.bonds),
@@ -68,7 +64,7 @@ fn random(threads: usize) -> State {
 fn bits_are_the_same_for_any_number_of_threads() {
     let solved = |threads: usize| {
         with_threads(threads, || {
-            let mut state = random(threads);
+            let mut state = random(BondModel::Timoshenko, threads);
             let found = rest(&mut state);
             assert_eq!(state.shares.len(), threads);
             (found, state)
@@ -87,7 +83,7 @@ fn bits_are_the_same_for_any_number_of_threads() {
 /// Forces and moments of loads, weight and supports are in balance.
 #[test]
 fn reactions_balance_the_loads() {
-    let mut state = random(1);
+    let mut state = random(BondModel::Timoshenko, 1);
     rest(&mut state);
     let mut sums = [nalgebra::Vector3::<f64>::zeros(); 2];
     let mut size = [0.0_f64; 2];

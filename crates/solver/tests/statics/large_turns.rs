@@ -16,7 +16,7 @@ fn assert_arc(state: &State, angle: f64) {
     for (i, pose) in state.particles.poses.iter().enumerate() {
         let found = pose.position_m;
         let off = (found[0] - x).hypot(found[1] - y).hypot(found[2]);
-        assert!(off < 1e-9, "particle {i} is off by {off:.1e} m");
+        assert!(off < 1e-8, "particle {i} is off by {off:.1e} m");
         let middle = (i as f64 + 0.5) * angle;
         x += 0.4 * middle.cos();
         y += 0.4 * middle.sin();
