@@ -15,6 +15,7 @@ mod random;
 mod results;
 mod resume;
 mod scenes;
+mod statics;
 mod sweep;
 mod threads;
 mod unstable;
