@@ -222,13 +222,7 @@ impl Search<'_> {
             }
             is_fresh = pulls || !is_near || stalls || residual > NEARER;
             if is_fresh {
-                let poses = &self.state.particles.poses;
-                self.matrix
-                    .assemble(&self.state.bonds, &self.freedoms, poses);
-                self.factor.compute(&self.matrix).map_err(|why| match why {
-                    NoFactor::Pivot => Cause::Pivot,
-                    NoFactor::Memory => Cause::Memory,
-                })?;
+                self.factorise()?;
                 is_near = residual <= NEAR && !pulls;
             }
             poses.clone_from(&self.state.particles.poses);
@@ -252,6 +246,19 @@ impl Search<'_> {
             pulls = false;
         }
         Err(Cause::NoConvergence)
+    }
+
+    /// Takes the tangent where the particles are, and its factors.
+    fn factorise(&mut self) -> Result<(), Cause> {
+        let State {
+            bonds, particles, ..
+        } = &*self.state;
+        self.matrix
+            .assemble(bonds, &self.freedoms, &particles.poses);
+        self.factor.compute(&self.matrix).map_err(|why| match why {
+            NoFactor::Pivot => Cause::Pivot,
+            NoFactor::Memory => Cause::Memory,
+        })
     }
 
     /// What acts on the unknowns at this share of the loads, N and N m.
@@ -278,10 +285,13 @@ impl Search<'_> {
             _ => net.abs() / poses[i].radius_m(),
         });
         // Not f64::max, which would lose what is not a number.
-        sizes.fold(
-            0.0,
-            |largest, size| if size <= largest { largest } else { size },
-        )
+        sizes.fold(0.0, |largest: f64, size| {
+            if size > largest || size.is_nan() {
+                size
+            } else {
+                largest
+            }
+        })
     }
 
     /// The largest that a bond carries, N; moments over its radius.

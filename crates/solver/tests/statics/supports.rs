@@ -116,3 +116,28 @@ fn hinges_hold_places_only() {
         assert_near(support.held[0].reactions[0][2], 500.0, 1e-9, "reaction");
     }
 }
+
+/// Both ends of a bond are moved: nothing is unknown, and the supports carry it all.
+#[test]
+fn nothing_is_left_to_find_where_all_is_held() {
+    let mut state = bar(BondModel::Timoshenko, 1, 1.0);
+    fix(&mut state, &[0]);
+    let mut holds = [Some(Hold::Fixed); 6];
+    holds[0] = Some(Hold::Displacement(1e-3));
+    hold(&mut state, &[1], holds, Factor::Ramp { until_s: END_S });
+    let found = rest(&mut state);
+    assert_eq!((found.unknowns, found.held), (0, 12));
+    let force_n = 1e-3 * state.bonds.stiffness(0).normal;
+    assert_near(
+        state.supports[1].held[0].reactions[0][0],
+        force_n,
+        1e-9,
+        "reaction",
+    );
+    assert_near(
+        state.supports[0].held[0].reactions[0][0],
+        -force_n,
+        1e-9,
+        "reaction",
+    );
+}
