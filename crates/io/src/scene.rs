@@ -117,6 +117,8 @@ pub struct Run {
     pub time_step_s: Option<f64>,
     /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 1).
     pub safety: f64,
+    /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
+    pub adaptive: bool,
     /// `gravity`, m/s2; none unless given. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// `particle_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).

@@ -63,6 +63,17 @@ pub struct Clusters {
 }
 
 impl Clusters {
+    /// Bytes of the arrays.
+    pub fn bytes(&self) -> usize {
+        let of_particles = [&self.of_particle, &self.members, &self.starts, &self.names];
+        of_particles
+            .map(|list| size_of_val(&list[..]))
+            .iter()
+            .sum::<usize>()
+            + size_of_val(&self.history[..])
+            + size_of_val(&self.first_bonds[..])
+    }
+
     /// The clusters of so many particles with these bonds, of which some may be broken, at time 0.
     pub fn new(particles: usize, bonds: &Bonds) -> Self {
         let mut clusters = Self::default();

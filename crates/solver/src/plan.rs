@@ -4,6 +4,7 @@ pub mod bodies;
 mod clumps;
 mod contacts;
 mod rules;
+pub mod savings;
 pub mod sets;
 mod stages;
 pub mod time_step;

@@ -25,12 +25,12 @@ use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
-use crate::output::summary::{PopulationSummary, SleepSummary, Summary};
+use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary};
 use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
 use crate::stages::clumps::place_all;
-use crate::stages::replacement::replace;
+use crate::stages::replacement::{Happened, replace};
 use crate::state::State;
 use crate::step::{act, move_on};
 
@@ -38,7 +38,7 @@ use self::events::{
     change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
 };
 use self::fragments::write_fragments;
-use self::limits::{Limits, went_through};
+use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
 pub use self::progress::Progress;
 use self::progress::{Rhythm, due, next};
@@ -143,7 +143,7 @@ pub fn run(
     let size = state.particles.len() + state.bonds.len();
     let rhythm = Rhythm::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, &choice);
-    let limits = Limits::of(scene, &state);
+    let mut limits = Limits::of(scene, &state, &choice);
     let mut changed_step = None;
     let is_continued = settings.resume.is_some();
     if let Some(snapshot) = settings.resume {
@@ -163,7 +163,7 @@ pub fn run(
             renumber_gauges(&mut gauges, &[], &bodies, &state);
             order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
-        changed_step = change_step(&mut state, &choice);
+        changed_step = change_step(&mut state, &choice, scene.run.adaptive);
     }
     let columns = series::columns(scene.walls.keys(), &gauges);
     let mut files = match (settings.folder, order) {
@@ -221,8 +221,10 @@ pub fn run(
         let picture_due = (files.as_ref())
             .and_then(|files| files.pictures.as_ref())
             .is_some_and(|pictures| pictures.are_due(&state));
-        let output_due =
-            row_due || frame_due || checkpoint_due || picture_due || watchdog.is_due(&state);
+        let since = state.steps.is_multiple_of(LOOKS_EVERY).then(Instant::now);
+        let is_odd = watchdog.is_due(&state);
+        state.clock.book_checks(since);
+        let output_due = row_due || frame_due || checkpoint_due || picture_due || is_odd;
         let output_since = output_due.then(Instant::now);
         if output_due {
             place_all(&state.clumps, &mut state.particles);
@@ -230,7 +232,7 @@ pub fn run(
         let mut rests = false;
         let mut balanced = None;
         // A checkpoint of a run that has gone unstable would be worth nothing.
-        if row_due || checkpoint_due || watchdog.is_due(&state) {
+        if row_due || checkpoint_due || is_odd {
             let balance = balance(&mut state);
             if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
                 return Err(with_checkpoint(problem, files.as_ref()));
@@ -279,10 +281,13 @@ pub fn run(
             break (why, balance);
         }
         if let Some(since) = output_since {
-            state.clock.book_output(since.elapsed());
+            state.clock.book_all(Stage::Output, since.elapsed());
         }
         state.clock.start(state.steps);
+        let mut replaced = false;
         if let Some((renumbered, happened)) = replace(&mut state) {
+            let is_swap = |one: &Happened| matches!(one, Happened::Replaced { .. });
+            replaced = happened.iter().any(is_swap);
             for by in &renumbered {
                 renumber(&mut bodies, by);
             }
@@ -298,7 +303,10 @@ pub fn run(
             write_sleep(&state, files)?;
         }
 
-        if let Err(problem) = limits.follow(&mut state, &mut progress, &bodies, files.as_mut()) {
+        let since = state.steps.is_multiple_of(LOOKS_EVERY).then(Instant::now);
+        let followed = limits.follow(&mut state, replaced, &mut progress, &bodies, files.as_mut());
+        state.clock.book_checks(since);
+        if let Err(problem) = followed {
             return Err(with_checkpoint(problem, files.as_ref()));
         }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
@@ -347,6 +355,11 @@ pub fn run(
         sleep: state.sleep.as_ref().map(SleepSummary::of),
         steps: state.steps,
         time_step_s: state.time_step_s,
+        adaptive: scene.run.adaptive.then(|| AdaptiveSummary {
+            smallest_step_s: progress.steps_s[0],
+            largest_step_s: progress.steps_s[1],
+            changes: progress.step_changes,
+        }),
         limit_s: progress.limit_s,
         share_of_limit: state.time_step_s / progress.limit_s,
         steps_per_s,
@@ -368,7 +381,7 @@ pub fn run(
         left_out: stages
             .iter()
             .filter(|s| !s.needed)
-            .map(|s| s.name.to_owned())
+            .map(|s| s.stage.name().to_owned())
             .collect(),
         notes,
         results: settings

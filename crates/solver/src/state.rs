@@ -3,6 +3,7 @@
 pub mod bonds;
 pub mod clumps;
 pub mod contacts;
+pub mod memory;
 pub mod order;
 pub mod particles;
 pub mod regions;

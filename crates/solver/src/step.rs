@@ -27,44 +27,51 @@ pub fn act(state: &mut State) {
     let before_s = state.previous_time_step_s;
     state.clock.start(state.steps);
     renew_lists(state);
-    state.clock.book(Stage::Contacts);
+    state.clock.book(Stage::Search);
 
     let p = &mut state.particles;
-    if !state.bonds.histories.is_empty() && before_s > 0.0 {
-        advance_histories(&mut state.bonds, p, before_s);
-    }
     bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
-    if !state.bonds.histories.is_empty() {
-        add_incremental_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
-    }
     state.clock.book(Stage::Bonds);
+    if !state.bonds.histories.is_empty() {
+        if before_s > 0.0 {
+            advance_histories(&mut state.bonds, p, before_s);
+        }
+        add_incremental_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+        state.clock.book(Stage::Histories);
+    }
     if let Some(contacts) = &mut state.contacts {
-        contact_wrenches(contacts, p, before_s);
+        if !contacts.alone {
+            contact_wrenches(contacts, p, before_s);
+            state.clock.book(Stage::Contacts);
+        }
         wall_wrenches(&mut state.walls, contacts, p, before_s);
+        state.clock.book(Stage::Walls);
         clumps::gather(&mut state.clumps, p, before_s);
-        state.clock.book(Stage::Contacts);
+        state.clock.book(Stage::Clumps);
     }
 
     // Before bonds break: a break gives its ends their half of the kick at once.
     remember(&mut state.supports, &p.motions);
+    state.clock.book(Stage::Supports);
     state.broken.clear();
-    break_bonds(
+    let rates = break_bonds(
         &mut state.bonds,
         p,
         &state.shares,
         0.5 * before_s,
         &mut state.broken,
     );
+    state.clock.did(Stage::Rates, rates);
     state.broken_count += state.broken.len() as u64;
     if !state.broken.is_empty() {
         leave_out_broken(state);
     }
-    state.clock.book(Stage::Rest);
+    state.clock.book(Stage::Failure);
     find_pieces(state);
     state.clock.book(Stage::Clusters);
     let p = &mut state.particles;
     add_loads(&state.loads, state.time_s, &mut p.wrenches);
-    state.clock.book(Stage::Rest);
+    state.clock.book(Stage::Loads);
 
     if !state.bond_resistance.is_empty() {
         damping_wrenches(
@@ -74,6 +81,7 @@ pub fn act(state: &mut State) {
             &mut state.shares,
             &mut state.bond_resistance,
         );
+        state.clock.book(Stage::BondDamping);
     }
     if !state.particle_resistance.is_empty() {
         state.particle_resistance.fill(Wrench::default());
@@ -83,17 +91,19 @@ pub fn act(state: &mut State) {
             state.particle_damping,
             &mut state.particle_resistance,
         );
+        state.clock.did(Stage::ParticleDamping, p.free);
+        state.clock.book(Stage::ParticleDamping);
     }
-    state.clock.book(Stage::Damping);
 
     let kick_s = state.kick_s();
     crate::check::ledger::before_kick(state);
-    state.clock.book(Stage::Rest);
+    state.clock.book(Stage::Ledger);
     let p = &mut state.particles;
     let resistance = [&state.bond_resistance[..], &state.particle_resistance];
     kick(p, resistance, state.gravity_m_s2, kick_s);
-    clumps::kick(&mut state.clumps, state.gravity_m_s2, kick_s);
     state.clock.book(Stage::Motion);
+    clumps::kick(&mut state.clumps, state.gravity_m_s2, kick_s);
+    state.clock.book(Stage::Clumps);
     hold(
         &mut state.supports,
         p,
@@ -101,27 +111,34 @@ pub fn act(state: &mut State) {
         state.time_s,
         [before_s, state.time_step_s],
     );
+    state.clock.book(Stage::Supports);
     plan_motions(&mut state.walls, state.time_s, state.time_step_s);
+    state.clock.book(Stage::Walls);
     crate::check::ledger::after_kick(state);
-    state.clock.book(Stage::Rest);
+    count_done(state);
+    state.clock.book(Stage::Ledger);
 }
 
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
     sleep::look(state);
+    state.clock.book(Stage::Sleep);
     let of_clumps_m_s = clumps::drift(&mut state.clumps, &mut state.particles, state.time_step_s);
+    state.clock.book(Stage::Clumps);
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s).max(of_clumps_m_s);
+    state.clock.book(Stage::Motion);
     if let Some(contacts) = &mut state.contacts {
         let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
         state.fastest_m_s += of_walls_m_s;
         contacts.room_m -= state.fastest_m_s * state.time_step_s;
+        state.clock.book(Stage::Walls);
     }
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
-    state.clock.book(Stage::Motion);
+    state.clock.book(Stage::Ledger);
 }
 
 /// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
@@ -139,10 +156,48 @@ fn find_pieces(state: &mut State) {
         return;
     }
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
+    state.clock.did(Stage::Clusters, damaged.len());
     state.splits = clusters.update(state.time_s, &damaged, &state.bonds);
     state.unsearched.clear();
     if let (Some(contacts), false) = (&mut state.contacts, state.splits.is_empty()) {
         contacts.room_m = -1.0;
+    }
+}
+
+/// Takes down how much each stage has done in this step.
+fn count_done(state: &mut State) {
+    let clock = &mut state.clock;
+    for share in &state.shares {
+        let computed = share.computed;
+        clock.did(Stage::Bonds, computed.total);
+        clock.did(Stage::Histories, computed.incremental);
+        clock.did(Stage::Failure, computed.compared);
+        if !state.bonds.strength_factors.is_empty() {
+            clock.did(Stage::Scatter, computed.compared);
+        }
+        clock.did(Stage::BondDamping, computed.damped);
+    }
+    for share in state.contacts.iter().flat_map(|contacts| &contacts.shares) {
+        clock.did(Stage::Contacts, share.computed);
+        clock.did(Stage::Rolling, share.rolled);
+    }
+    for wall in &state.walls {
+        clock.did(Stage::Walls, wall.near.len());
+    }
+    for load in &state.loads {
+        clock.did(Stage::Loads, load.particles.len());
+    }
+    for support in &state.supports {
+        clock.did(Stage::Supports, support.held.len());
+    }
+    let bodies = state.clumps.all.iter().filter(|clump| !clump.asleep);
+    clock.did(Stage::Clumps, bodies.count());
+    clock.did(Stage::Motion, state.particles.free);
+    if state.gravity_m_s2 != [0.0; 3] {
+        clock.did(
+            Stage::Gravity,
+            state.particles.free + state.clumps.all.len(),
+        );
     }
 }
 

@@ -36,6 +36,19 @@ fn says_the_step_and_why_stages_memory_and_time() {
     let value: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(value["time_step_s"], 1e-5);
     assert_eq!(value["steps"], 400_000.0);
+    let named = |list: &str, name: &str| {
+        let all = value[list].as_array().unwrap();
+        all.iter()
+            .find(|stage| stage["name"] == name)
+            .unwrap()
+            .clone()
+    };
+    let bonds = named("stages", "bond forces");
+    assert!(
+        bonds["bytes"].as_u64().unwrap() > 10 * 8 && bonds["ns_per_step"].as_f64().unwrap() > 0.0
+    );
+    assert!(named("left_out", "bond history")["bytes"].as_u64().unwrap() > 0);
+    assert!(named("left_out", "walls")["bytes"].is_null());
     for number in [
         "limit_s",
         "memory_bytes",

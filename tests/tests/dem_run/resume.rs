@@ -7,13 +7,14 @@ use super::interrupted::{interrupt, kill_after_checkpoint};
 use super::{Bench, assert_same, good, numbers, refused, table};
 
 /// Scenes that do all there is to do, and the signals and threads they meet.
-const SCENES: [(&str, &str, &str); 6] = [
+const SCENES: [(&str, &str, &str); 7] = [
     ("breaking.toml", "-INT", "2"),
     ("incremental.toml", "-TERM", "1"),
     ("bodies.toml", "-INT", "3"),
     ("strained.toml", "-TERM", "2"),
     ("rest.toml", "-INT", "2"),
     ("meeting.toml", "-INT", "2"),
+    ("following.toml", "-TERM", "2"),
 ];
 
 /// Makes a scene take longer, so that a signal meets it half way.
@@ -24,6 +25,7 @@ fn slow(name: &str) -> &'static str {
         "bodies.toml" => "run.safety=0.02",
         "rest.toml" => "run.safety=0.01",
         "meeting.toml" => "run.safety=0.05",
+        "following.toml" => "run.safety=0.1",
         _ => "run.seed=0",
     }
 }

@@ -104,6 +104,7 @@ impl Lines {
         self.add("run.rest", optional(run.rest, "", "never"));
         self.add("run.time_step", optional(run.time_step_s, "s", "auto"));
         self.add("run.safety", number(run.safety));
+        self.add("run.adaptive", run.adaptive.to_string());
         self.add("run.gravity", vector(run.gravity_m_s2, "m/s2"));
         self.add("run.particle_damping", number(run.particle_damping));
         self.add("run.seed", run.seed.to_string());

@@ -7,12 +7,13 @@ use super::{Integrator, Run, StartOverlap};
 use crate::Result;
 use crate::units::{ACCELERATION, NUMBER, TIME};
 
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 10] = [
     "end_time",
     "integrator",
     "rest",
     "time_step",
     "safety",
+    "adaptive",
     "gravity",
     "particle_damping",
     "seed",
@@ -49,6 +50,15 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
         Some(field) => time_step(&field, end_time_s)?,
         None => None,
     };
+    let adaptive = table
+        .read("adaptive", |field| field.boolean())?
+        .unwrap_or_default();
+    if let (true, Some(_), Some(field)) = (adaptive, time_step_s, table.get("adaptive")) {
+        return Err(field.refuse(
+            "a step that is given stays as it is",
+            "write time_step = \"auto\", or leave adaptive out",
+        ));
+    }
     Ok(Run {
         end_time_s,
         integrator: table
@@ -63,6 +73,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
                 field.between(0.0, 1.0, "a usual value is 0.9")
             })?
             .unwrap_or(SAFETY),
+        adaptive,
         gravity_m_s2: table
             .read("gravity", |field| field.vector(&ACCELERATION))?
             .unwrap_or_default(),

@@ -480,6 +480,7 @@ run.integrator                  leapfrog
 run.rest                        never
 run.time_step                   auto
 run.safety                      0.9
+run.adaptive                    false
 run.gravity                     [0, 0, 0] m/s2
 run.particle_damping            0
 run.seed                        0

@@ -36,6 +36,8 @@ pub struct Limit {
     pub damping_1_s: f64,
     /// Iterations needed for the frequency.
     pub iterations: usize,
+    /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or their damping, or both.
+    pub all_iterations: usize,
 }
 
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue of M^-1 (dt^2/4 K + dt/2 C) is above 1.
@@ -53,21 +55,23 @@ pub fn limit(state: &mut State) -> Limit {
     } else {
         1.0 + state.particle_damping
     };
-    let c = if state.bond_resistance.is_empty() && contacts.is_empty() {
-        0.0
+    let (c, of_damping) = if state.bond_resistance.is_empty() && contacts.is_empty() {
+        (0.0, 0)
     } else {
-        largest_eigenvalue(state, contacts, Weights::DAMPING).0
+        largest_eigenvalue(state, contacts, Weights::DAMPING)
+    };
+    let (step_s, of_both) = if c > 0.0 {
+        damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
+    } else {
+        (safe_step(stiffer * k, 0.0), 0)
     };
     let of_particles = Limit {
-        step_s: if c > 0.0 {
-            damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
-        } else {
-            safe_step(stiffer * k, 0.0)
-        },
+        step_s,
         undamped_step_s: safe_step(k, 0.0),
         omega_rad_s: k.sqrt(),
         damping_1_s: c,
         iterations,
+        all_iterations: iterations + of_damping + of_both,
     };
     let limit = Limit {
         step_s: of_particles.with_more(clump_rates(state, contacts)),
@@ -103,16 +107,23 @@ impl Limit {
 }
 
 /// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a step that is not too long. By the secant of the
-/// eigenvalue over dt; not above the limit if the eigenvalues found are the largest, and less than `NEAR` below it.
-fn damped_limit(state: &mut State, contacts: &[LinearContact], stiffer: f64, safe_s: f64) -> f64 {
+/// eigenvalue over dt; not above the limit if the eigenvalues found are the largest, and less than `NEAR` below it. And the iterations needed.
+fn damped_limit(
+    state: &mut State,
+    contacts: &[LinearContact],
+    stiffer: f64,
+    safe_s: f64,
+) -> (f64, usize) {
     let (mut safe_s, mut step_s) = (safe_s, safe_s);
+    let mut all_iterations = 0;
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
         let both = Weights {
             stiffness: 0.25 * stiffer * step_s * step_s,
             damping: 0.5 * step_s,
         };
-        let (value, _) = largest_eigenvalue(state, contacts, both);
+        let (value, iterations) = largest_eigenvalue(state, contacts, both);
+        all_iterations += iterations;
         // The eigenvalue grows at least with the step and at most with its square.
         let not_too_long = if value < 1.0 {
             step_s / value.sqrt()
@@ -134,7 +145,7 @@ fn damped_limit(state: &mut State, contacts: &[LinearContact], stiffer: f64, saf
         }
         step_s = next;
     }
-    safe_s
+    (safe_s, all_iterations)
 }
 
 impl Weights {

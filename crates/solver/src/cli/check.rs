@@ -7,10 +7,13 @@ use dem_io::safe_write::write_standard_output;
 use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use dem_io::{Body, Result};
-use serde_json::json;
+use serde_json::{Value, json};
 
-use crate::plan::{Plan, plan};
+use crate::clock::{Stage, StageClock};
+use crate::plan::savings::saving;
+use crate::plan::{Plan, PlannedStage, plan};
 use crate::state::State;
+use crate::state::memory::bytes;
 use crate::step::step;
 
 /// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
@@ -31,7 +34,23 @@ pub(super) fn check(
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
     // What the first steps take says nothing where bodies come, go, or become others.
-    let per_step_s = (plan.state.rules.are_none()).then(|| trial_s(&plan.state));
+    let trial = (plan.state.rules.are_none()).then(|| Trial::of(&plan.state));
+    let per_step_s = trial.as_ref().map(|trial| trial.per_step_s);
+    let of_stages = |needed: bool| -> Vec<Value> {
+        let of_stage = |stage: &PlannedStage| {
+            let cost_ns = trial.as_ref().and_then(|trial| trial.cost_ns(stage));
+            let would = saving(stage, &plan.state);
+            json!({
+                "name": stage.stage.name(),
+                "why": stage.why,
+                "bytes": if needed { Some(stage.bytes) } else { would.map(|saved| saved.bytes) },
+                "ns_per_step": if needed { cost_ns } else { would.map(|saved| saved.ns) },
+            })
+        };
+        (plan.stages.iter().filter(|stage| stage.needed == needed))
+            .map(of_stage)
+            .collect()
+    };
     write_standard_output(|out| {
         if as_json {
             let value = json!({
@@ -47,8 +66,8 @@ pub(super) fn check(
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
                 "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
                 "steps": steps,
-                "stages": plan.stages.iter().filter(|s| s.needed).map(|s| s.name).collect::<Vec<_>>(),
-                "left_out": plan.stages.iter().filter(|s| !s.needed).map(|s| s.name).collect::<Vec<_>>(),
+                "stages": of_stages(true),
+                "left_out": of_stages(false),
                 "memory_bytes": bytes,
                 "predicted_run_time_s": per_step_s.map(|s| steps * s),
             });
@@ -59,13 +78,13 @@ pub(super) fn check(
                 out,
                 "{}\n{}",
                 scene.describe(),
-                text(&plan, steps, bytes, per_step_s)
+                text(&plan, steps, bytes, trial.as_ref())
             )
         }
     })
 }
 
-fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> String {
+fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String {
     let state = &plan.state;
     let choice = &plan.step;
     let mut text = String::new();
@@ -139,15 +158,15 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> Strin
     );
     for stage in &plan.stages {
         let name = if stage.needed { "does" } else { "leaves out" };
-        line(name, format!("{}: {}", stage.name, stage.why));
+        line(name, stage_text(stage, state, trial));
     }
     for note in &plan.notes {
         line("note", note.clone());
     }
-    line("memory", memory_text(bytes));
+    line("memory", format!("about {}", size_text(bytes)));
     line(
         "run time",
-        per_step_s.map_or(
+        trial.map(|trial| trial.per_step_s).map_or(
             "not foreseen: bodies come, go, or become others".to_owned(),
             |s| {
                 let run_s = significant(steps * s, 2);
@@ -158,46 +177,80 @@ fn text(plan: &Plan, steps: f64, bytes: usize, per_step_s: Option<f64>) -> Strin
     text
 }
 
+/// A stage: why it is there or not, what it takes, or what leaving it out saves.
+fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> String {
+    let mut text = format!("{}: {}", stage.stage.name(), stage.why);
+    let mut costs = Vec::new();
+    if stage.needed {
+        if stage.bytes > 0 {
+            costs.push(size_text(stage.bytes));
+        }
+        costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(|ns| time_text(ns)));
+        costs.extend(
+            (stage.stage.within()).map(|other| format!("its time is in that of {}", other.name())),
+        );
+    } else if let Some(saved) = saving(stage, state) {
+        if saved.bytes > 0 {
+            costs.push(size_text(saved.bytes));
+        }
+        costs.push(time_text(saved.ns));
+    }
+    if !costs.is_empty() {
+        let what = if stage.needed { "" } else { "saves about " };
+        text += &format!(" ({what}{})", costs.join(", "));
+    }
+    text
+}
+
+fn time_text(ns: f64) -> String {
+    match ns {
+        few if few < 1e3 => format!("{few:.0} ns per step"),
+        some if some < 1e6 => format!("{} us per step", significant(some * 1e-3, 2)),
+        many => format!("{} ms per step", significant(many * 1e-6, 2)),
+    }
+}
+
 /// A number of bytes, for a person.
-pub(super) fn memory_text(bytes: usize) -> String {
+pub(super) fn size_text(bytes: usize) -> String {
     match bytes as f64 {
-        few if few < 1e6 => format!("about {} kB", significant(few * 1e-3, 3)),
-        many => format!("about {} MB", significant(many * 1e-6, 3)),
+        few if few < 1e3 => format!("{bytes} bytes"),
+        some if some < 1e6 => format!("{} kB", significant(some * 1e-3, 3)),
+        many => format!("{} MB", significant(many * 1e-6, 3)),
     }
 }
 
-/// What the arrays of a state take, bytes.
+/// What the arrays of a state take, and what contacts may come to take, bytes.
 fn memory_bytes(state: &State) -> usize {
-    let p = &state.particles;
-    let b = &state.bonds;
-    let templates = state.clumps.templates.iter();
-    let of_templates: usize = templates
-        .map(|t| 112 * t.spheres.len() + (8 + 8 * 8 + 32 + 4) * t.bonds.len())
-        .sum();
-    let per_particle = 3 * 64 + 8;
-    let per_bond = 8 + 8 * 8;
-    p.len() * per_particle
-        + b.len() * per_bond
-        + of_templates
-        + 64 * (state.bond_resistance.len() + state.particle_resistance.len())
-        + 8 * b.strength_factors.len()
-        + 32 * b.damping.len()
-        + 48 * b.histories.len()
-        + state.contacts.as_ref().map_or(0, |contacts| {
-            // Every particle may come to touch a few others.
-            (16 + 5 + 3 * (8 + 128)) * contacts.materials.len()
-        })
-        + state.clusters.as_ref().map_or(0, |_| 24 * p.len())
+    let now: usize = Stage::ALL.iter().map(|&stage| bytes(state, stage)).sum();
+    let may_come = state.contacts.as_ref().filter(|contacts| !contacts.alone);
+    // Every particle may come to touch a few others.
+    now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())
 }
 
-/// Time of a step, tried on a copy, s.
-fn trial_s(state: &State) -> f64 {
-    let mut copy = state.clone();
-    let clock = Instant::now();
-    let mut done = 0;
-    while done < TRIAL.0 && (done < 3 || clock.elapsed().as_secs_f64() < TRIAL.1) {
-        step(&mut copy);
-        done += 1;
+/// What the first steps take, tried on a copy.
+struct Trial {
+    per_step_s: f64,
+    clock: StageClock,
+}
+
+impl Trial {
+    fn of(state: &State) -> Self {
+        let mut copy = state.clone();
+        let clock = Instant::now();
+        let mut done = 0;
+        while done < TRIAL.0 && (done < 3 || clock.elapsed().as_secs_f64() < TRIAL.1) {
+            step(&mut copy);
+            done += 1;
+        }
+        Self {
+            per_step_s: clock.elapsed().as_secs_f64() / f64::from(done),
+            clock: copy.clock,
+        }
     }
-    clock.elapsed().as_secs_f64() / f64::from(done)
+
+    /// Of a stage that has a time of its own and takes part in steps, ns per step.
+    fn cost_ns(&self, stage: &PlannedStage) -> Option<f64> {
+        let has_own = stage.stage.within().is_none() && stage.stage != Stage::Checks;
+        has_own.then(|| 1e9 * self.per_step_s * self.clock.share(stage.stage))
+    }
 }

@@ -5,12 +5,12 @@ use dem_io::safe_write::write_standard_output;
 use dem_io::scene::Scene;
 use serde_json::json;
 
-use super::check::memory_text;
+use super::check::size_text;
 use crate::plan::Plan;
 use crate::statics::Outlook;
 
 /// Keys and tables that mean nothing to such a scene.
-const UNUSED: &str = "run.rest, run.time_step, run.safety, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
+const UNUSED: &str = "run.rest, run.time_step, run.safety, run.adaptive, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
 
 /// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state take.
 pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
@@ -60,6 +60,6 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
         for note in &plan.notes {
             line("note", note)?;
         }
-        line("memory", &memory_text(bytes))
+        line("memory", &format!("about {}", size_text(bytes)))
     })
 }

@@ -55,6 +55,9 @@ pub struct Summary {
     pub steps: u64,
     /// Last step, s.
     pub time_step_s: f64,
+    /// Between what an adaptive step went.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<AdaptiveSummary>,
     /// Largest stable step, s.
     pub limit_s: f64,
     /// Step over limit.
@@ -119,6 +122,17 @@ pub struct PopulationSummary {
     pub bonds_left_out: f64,
     /// Share of the spheres of a clump that no other can touch, the mean of all templates.
     pub inner_spheres: f64,
+}
+
+/// Between what an adaptive step went.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AdaptiveSummary {
+    /// Smallest step, s.
+    pub smallest_step_s: f64,
+    /// Largest step, s.
+    pub largest_step_s: f64,
+    /// How often it changed.
+    pub changes: u64,
 }
 
 /// Who sleeps.
@@ -264,6 +278,15 @@ impl fmt::Display for Summary {
             },
             self.ended_by,
         )?;
+        if let Some(adaptive) = &self.adaptive {
+            writeln!(
+                f,
+                "             adaptive: {} to {} s, changed {} times",
+                significant(adaptive.smallest_step_s, 4),
+                significant(adaptive.largest_step_s, 4),
+                adaptive.changes,
+            )?;
+        }
         if let Some(change) = &self.resumed_with {
             writeln!(f, "resumed      {change}")?;
         }

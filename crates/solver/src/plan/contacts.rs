@@ -172,9 +172,18 @@ pub(super) fn place_contacts(
         refuse_overlaps(scene, &contacts, bodies, state)?;
     }
     contacts.relaxes = scene.relaxation.enabled;
+    contacts.alone = is_alone(state, clusters);
     contacts.room_m = -1.0;
     state.contacts = Some(contacts);
     Ok(())
+}
+
+/// Whether there is one piece that cannot break, and no other can come.
+fn is_alone(state: &State, clusters: &Clusters) -> bool {
+    let of_clumps = state.clumps.templates.iter().any(|t| !t.bonds.is_empty());
+    let has_bonds = of_clumps || !state.bonds.is_empty();
+    let breaks = has_bonds && state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
+    clusters.living().count() <= 1 && !breaks && state.rules.inlets.is_empty()
 }
 
 /// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may move in some steps, both.

@@ -3,17 +3,21 @@
 use dem_io::scene::Scene;
 use dem_io::units::significant;
 
+use crate::clock::Stage;
 use crate::state::State;
+use crate::state::memory::bytes;
 
 /// A stage of the step: done or left out, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlannedStage {
-    /// What it does.
-    pub name: &'static str,
+    /// Which.
+    pub stage: Stage,
     /// Whether the scene needs it.
     pub needed: bool,
     /// Why, or why not.
     pub why: String,
+    /// Bytes of the arrays that it alone needs, at the start.
+    pub bytes: usize,
 }
 
 /// What a step consists of, and what is left out.
@@ -26,15 +30,16 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
     let by_inlets = !state.rules.inlets.is_empty();
     let rules = &state.bonds.rules;
     let any = |of: &dyn Fn(&crate::state::bonds::BondRule) -> bool| rules.iter().any(of);
-    let stage = |name, needed, yes: String, no: &str| PlannedStage {
-        name,
+    let stage = |stage, needed, yes: String, no: &str| PlannedStage {
+        stage,
         needed,
         why: if needed { yes } else { no.to_owned() },
+        bytes: bytes(state, stage),
     };
     let contacts = state.contacts.as_ref();
     let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
     let breaks = any(&|rule| rule.criteria.is_some()) && bonds > 0;
-    let meets = contacts.is_some() && (pieces > 1 || breaks || by_inlets);
+    let meets = contacts.is_some_and(|contacts| !contacts.alone);
     let rolls = scene
         .contacts
         .iter()
@@ -46,7 +51,7 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
     let damped = any(&|rule| rule.damped) && bonds > 0;
     vec![
         stage(
-            "bond forces",
+            Stage::Bonds,
             bonds > 0,
             if of_clumps > 0 {
                 format!(
@@ -63,23 +68,26 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             },
         ),
         stage(
-            "rigid clumps",
+            Stage::Clumps,
             !templates.is_empty(),
             format!(
-                "{} at the start; of {spheres} spheres of {} shapes the {outer} outer ones",
+                "{} at the start; of the {spheres} spheres of {} the {outer} outer ones",
                 state.clumps.all.len(),
-                templates.len()
+                match templates.len() {
+                    1 => "one shape".to_owned(),
+                    shapes => format!("{shapes} shapes"),
+                }
             ),
             "no body starts as a clump",
         ),
         stage(
-            "replacement",
+            Stage::Replacement,
             state.rules.triggers.iter().any(Option::is_some),
             "clumps become bonded clusters".to_owned(),
             "no clump can become a cluster",
         ),
         stage(
-            "inlets and outlets",
+            Stage::Population,
             by_inlets || !state.rules.outlets.is_empty(),
             format!(
                 "{} and {}",
@@ -89,31 +97,31 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             "no body comes or goes",
         ),
         stage(
-            "bond history",
+            Stage::Histories,
             any(&|rule| rule.incremental) && bonds > 0,
             "bonds of the incremental formulation".to_owned(),
             "every bond has the total formulation",
         ),
         stage(
-            "failure",
+            Stage::Failure,
             any(&|rule| rule.criteria.is_some()),
             "bonds have strengths".to_owned(),
             "no bond has a strength",
         ),
         stage(
-            "strength by rate",
+            Stage::Rates,
             any(&|rule| rule.strengthening_from_1_s.is_some()),
             "only for bonds that would break without it".to_owned(),
             "no rate strengthening asked for",
         ),
         stage(
-            "scattered strength",
+            Stage::Scatter,
             scattered,
             "a factor for each bond".to_owned(),
             "no Weibull modulus given",
         ),
         stage(
-            "cluster search",
+            Stage::Clusters,
             state.clusters.is_some() && breaks,
             format!(
                 "every {} steps, if bonds have broken",
@@ -122,7 +130,13 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             "no bond can break",
         ),
         stage(
-            "contacts of particles",
+            Stage::Search,
+            contacts.is_some(),
+            "when something may have come near".to_owned(),
+            "nothing can touch",
+        ),
+        stage(
+            Stage::Contacts,
             meets,
             format!("{pieces} pieces at the start"),
             if contacts.is_some() {
@@ -134,7 +148,7 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             },
         ),
         stage(
-            "relaxation",
+            Stage::Relaxation,
             meets && (contacts.is_some_and(|c| c.relaxes) && breaks),
             "overlaps of pieces that part are where their contact begins".to_owned(),
             if scene.relaxation.enabled {
@@ -144,13 +158,13 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             },
         ),
         stage(
-            "walls",
+            Stage::Walls,
             !state.walls.is_empty(),
             format!("{}", state.walls.len()),
             "no walls",
         ),
         stage(
-            "sleep",
+            Stage::Sleep,
             state.sleep.is_some(),
             state.sleep.as_ref().map_or(String::new(), |sleep| {
                 format!(
@@ -166,43 +180,56 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             },
         ),
         stage(
-            "rolling friction",
+            Stage::Rolling,
             contacts.is_some() && rolls,
             "materials have it".to_owned(),
             "no materials have it",
         ),
         stage(
-            "bond damping",
+            Stage::BondDamping,
             damped,
             "bonds are damped".to_owned(),
             "no bond is damped: no relative velocities",
         ),
         stage(
-            "particle damping",
+            Stage::ParticleDamping,
             state.particle_damping > 0.0,
             format!("gamma {}", state.particle_damping),
             "not asked for",
         ),
         stage(
-            "loads",
+            Stage::Loads,
             !state.loads.is_empty(),
             on_particles(state.loads.iter().map(|l| l.particles.len()).sum()),
             "no loads",
         ),
         stage(
-            "supports",
+            Stage::Supports,
             !state.supports.is_empty(),
             on_particles(state.supports.iter().map(|s| s.held.len()).sum()),
             "no supports",
         ),
         stage(
-            "gravity",
+            Stage::Gravity,
             state.gravity_m_s2 != [0.0; 3],
             {
                 let [x, y, z] = state.gravity_m_s2;
                 format!("[{x}, {y}, {z}] m/s2")
             },
             "no gravity",
+        ),
+        stage(
+            Stage::Motion,
+            true,
+            format!("{} particles at the start", state.particles.free),
+            "",
+        ),
+        stage(Stage::Ledger, true, "energy and momentum".to_owned(), ""),
+        stage(
+            Stage::Checks,
+            true,
+            "of energy, and of the limit of the step".to_owned(),
+            "",
         ),
     ]
 }

@@ -27,7 +27,7 @@ pub const FARTHEST: f64 = 0.5;
 /// The chosen step and what it was chosen from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepChoice {
-    /// Taken, s.
+    /// Taken, s; of an adaptive step, the first one.
     pub step_s: f64,
     /// Whether it was given, not found.
     pub given: bool,
@@ -43,26 +43,91 @@ pub struct StepChoice {
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) [Platzer 15], s; infinite without bonds.
     pub thesis_s: f64,
+    /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen by, unless it is adaptive.
+    pub replaced: Outlook,
+}
+
+/// What a step has to be right for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outlook {
+    /// Of what is there, and of what may come: the smallest.
+    pub limit: Limit,
+    /// Largest step that is stable in the first impacts, too, as far as they can be foreseen, s.
+    pub foreseen_s: f64,
+    /// Speed of those impacts, m/s.
+    pub impact_speed_m_s: f64,
+    /// Largest stiffness over mass of a contact that the step allows for, 1/s2.
+    pub contact_rate_1_s2: f64,
+    /// Largest automatic step, s.
+    pub step_s: f64,
+}
+
+impl Outlook {
+    /// From a state as it stands, and `to_come`, if anything may come: see [`arriving`].
+    pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
+        let run = &scene.run;
+        let impact_speed_m_s = impact_speed(scene, state);
+        let mut found = limit(state);
+        let mut rates = at_impact(state, impact_speed_m_s);
+        if let Some(to_come) = to_come {
+            let later = limit(to_come);
+            let all_iterations = found.all_iterations + later.all_iterations;
+            if later.step_s < found.step_s {
+                found = later;
+            }
+            found.all_iterations = all_iterations;
+            let later = at_impact(to_come, impact_speed_m_s);
+            rates = [0, 1, 2].map(|n| rates[n].max(later[n]));
+        }
+        let [k, c, rate] = rates;
+        let foreseen_s = found.with_more([k, c]);
+        let across = if state.contacts.is_some() {
+            FARTHEST * state.smallest_radius_m() / impact_speed_m_s
+        } else {
+            f64::INFINITY
+        };
+        let step_s = (run.safety * foreseen_s)
+            .min(SHARE_OF_IMPACT * safe_step(k, c))
+            .min(run.end_time_s / 100.0)
+            .min(across);
+        Self {
+            limit: found,
+            foreseen_s,
+            impact_speed_m_s,
+            contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state)),
+            step_s,
+        }
+    }
 }
 
 impl StepChoice {
     /// Of a run that goes to its equilibrium at once, in one step to its end.
     pub fn none(end_s: f64) -> Self {
+        let limit = Limit {
+            step_s: f64::INFINITY,
+            undamped_step_s: f64::INFINITY,
+            omega_rad_s: 0.0,
+            damping_1_s: 0.0,
+            iterations: 0,
+            all_iterations: 0,
+        };
+        let nothing = Outlook {
+            limit,
+            foreseen_s: f64::INFINITY,
+            impact_speed_m_s: 0.0,
+            contact_rate_1_s2: 0.0,
+            step_s: end_s,
+        };
         Self {
             step_s: end_s,
             given: false,
-            limit: Limit {
-                step_s: f64::INFINITY,
-                undamped_step_s: f64::INFINITY,
-                omega_rad_s: 0.0,
-                damping_1_s: 0.0,
-                iterations: 0,
-            },
+            limit,
             foreseen_s: f64::INFINITY,
             impact_speed_m_s: 0.0,
             contact_rate_1_s2: 0.0,
             rayleigh_s: f64::INFINITY,
             thesis_s: f64::INFINITY,
+            replaced: nothing,
         }
     }
 
@@ -78,18 +143,15 @@ impl StepChoice {
 /// A given step above the limit, unless any step is allowed.
 pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
     let run = &scene.run;
-    let mut to_come = to_come(state);
-    let limit = match &mut to_come {
-        Some(to_come) => {
-            let (now, later) = (limit(state), limit(to_come));
-            if later.step_s < now.step_s {
-                later
-            } else {
-                now
-            }
-        }
-        None => limit(state),
+    let replaced = Outlook::of(scene, state, coming(state, true).as_mut());
+    let outlook = if run.adaptive {
+        Outlook::of(scene, state, arriving(state).as_mut())
+    } else {
+        replaced
     };
+    let Outlook {
+        limit, foreseen_s, ..
+    } = outlook;
     if limit.step_s.is_nan() || limit.step_s <= 0.0 {
         return Err(Diagnostic::input(
             scene.source.clone(),
@@ -97,11 +159,6 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             "check the units of places, radii, density, modulus and damping",
         ));
     }
-    let impact_speed_m_s = impact_speed(scene, state);
-    let now = at_impact(state, impact_speed_m_s);
-    let later = (to_come.as_ref()).map_or(now, |state| at_impact(state, impact_speed_m_s));
-    let [k, c, rate] = [0, 1, 2].map(|n| now[n].max(later[n]));
-    let foreseen_s = limit.with_more([k, c]);
     let step_s = match run.time_step_s {
         Some(given) => {
             if given > foreseen_s && !allow_any_step {
@@ -113,47 +170,43 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             }
             given
         }
-        None => {
-            let across = FARTHEST * state.smallest_radius_m() / impact_speed_m_s;
-            let largest = (run.safety * foreseen_s)
-                .min(SHARE_OF_IMPACT * safe_step(k, c))
-                .min(run.end_time_s / 100.0)
-                .min(if state.contacts.is_some() {
-                    across
-                } else {
-                    f64::INFINITY
-                });
-            run.end_time_s / (run.end_time_s / largest).ceil()
-        }
+        None => run.end_time_s / (run.end_time_s / outlook.step_s).ceil(),
     };
     Ok(StepChoice {
         step_s,
         given: run.time_step_s.is_some(),
         limit,
         foreseen_s,
-        impact_speed_m_s,
-        contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state)),
+        impact_speed_m_s: outlook.impact_speed_m_s,
+        contact_rate_1_s2: outlook.contact_rate_1_s2,
         rayleigh_s: rayleigh_s(scene, state),
         thesis_s: thesis_s(state),
+        replaced,
     })
 }
 
-/// One body of each template, bonded if its clumps can become clusters: what the step has to be right for later. They stand where they do not touch. None:
-/// there are no templates.
-fn to_come(state: &State) -> Option<State> {
+/// One body of each template as it comes: a clump, or a bonded cluster of an inlet whose bodies are bonded. They stand where they do not touch. None: there are
+/// no templates.
+pub fn arriving(state: &State) -> Option<State> {
+    coming(state, false)
+}
+
+/// One body of each template; where clumps are `replaced`, those that can become clusters are some.
+fn coming(state: &State, replaced: bool) -> Option<State> {
     let becomes_one = |n: usize| {
         let starts = state.rules.starts.get(n).is_some_and(|start| start.bonded);
-        starts || state.rules.triggers.get(n).is_some_and(Option::is_some)
+        let triggers = state.rules.triggers.get(n).is_some_and(Option::is_some);
+        starts || (replaced && triggers)
     };
     let templates = &state.clumps.templates;
-    let coming: Vec<Clump> = (0..templates.len())
+    let all: Vec<Clump> = (0..templates.len())
         .map(|n| Clump {
             template: n as u32,
             turned: [0.0, 0.0, 0.0, 1.0],
             ..Clump::default()
         })
         .collect();
-    if coming.is_empty() {
+    if all.is_empty() {
         return None;
     }
     let bonds = Bonds {
@@ -172,9 +225,9 @@ fn to_come(state: &State) -> Option<State> {
         kind_of: contacts.kind_of.clone(),
         ..Contacts::default()
     });
-    let to_clusters = (0..coming.len()).filter(|n| becomes_one(*n)).collect();
+    let to_clusters = (0..all.len()).filter(|n| becomes_one(*n)).collect();
     let come = Changes {
-        coming,
+        coming: all,
         ..Changes::default()
     };
     let swap = Changes {

@@ -149,13 +149,17 @@ pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before. Says what has changed.
-pub(super) fn change_step(state: &mut State, choice: &StepChoice) -> Option<String> {
+/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before; one that is adaptive goes on as it was. Says what has changed.
+pub(super) fn change_step(
+    state: &mut State,
+    choice: &StepChoice,
+    adaptive: bool,
+) -> Option<String> {
     let before_s = state.time_step_s;
-    let step_s = if choice.given {
-        choice.step_s
-    } else {
-        choice.step_s.min(before_s)
+    let step_s = match (choice.given, adaptive) {
+        (true, _) => choice.step_s,
+        (false, true) => before_s,
+        (false, false) => choice.step_s.min(before_s),
     };
     state.time_step_s = step_s;
     (step_s != before_s).then(|| change(before_s, step_s))

@@ -10,7 +10,7 @@ use crate::check::ledger::kinetic_energy;
 use crate::check::limit::limit;
 use crate::check::linear::largest_contact_rate_1_s2;
 use crate::plan::bodies::{PlacedBody, called};
-use crate::plan::time_step::{FARTHEST, impact_step_s};
+use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
 use crate::state::State;
 
@@ -19,42 +19,104 @@ const STRAIN_EVERY: u64 = 64;
 /// The limit of the step is looked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
 /// stiffer across.
 const MORE_STRAIN: f64 = 0.02;
-/// Steps between two looks at the contacts: a collision takes more.
-const CONTACTS_EVERY: u64 = 8;
+/// Steps between two looks at the contacts: a collision takes more. All other looks are at multiples of it, too.
+pub(super) const LOOKS_EVERY: u64 = 8;
 /// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
 const STIFFER: f64 = 1.2;
 /// The step is looked at again when bodies are faster by this factor, on the mean of their mass, than the impacts that it allows for.
 const FASTER: f64 = 1.2;
 
+/// An adaptive step is looked at again after so many steps for each iteration that the last look took, so that looking takes less than a hundredth of the
+/// time; and after this many at least.
+const STEPS_PER_ITERATION: u64 = 256;
+const LOOK_EVERY: u64 = 512;
+/// It becomes larger where it can by this factor: a step that is never quite the same keeps energy less well.
+const LARGER: f64 = 1.2;
+/// And smaller, where impacts alone ask for it, from this factor on.
+const SMALLER: f64 = 1.05;
+
 /// What the step of a run has to keep to.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
+#[derive(Debug)]
+pub(super) struct Limits<'a> {
     smallest_radius_m: f64,
     /// None: the scene names a step, which is kept.
     safety: Option<f64>,
     end_s: f64,
+    /// None: the step only falls.
+    adaptive: Option<Adaptive<'a>>,
 }
 
-impl Limits {
-    pub(super) fn of(scene: &Scene, state: &State) -> Self {
+/// What an adaptive step goes by.
+#[derive(Debug)]
+struct Adaptive<'a> {
+    scene: &'a Scene,
+    arriving: Option<State>,
+    /// Once clumps have become clusters.
+    replaced: Outlook,
+}
+
+impl<'a> Limits<'a> {
+    pub(super) fn of(scene: &'a Scene, state: &State, choice: &StepChoice) -> Self {
         Self {
             smallest_radius_m: state.smallest_radius_m(),
             safety: scene.run.time_step_s.is_none().then_some(scene.run.safety),
             end_s: scene.run.end_time_s,
+            adaptive: scene.run.adaptive.then(|| Adaptive {
+                scene,
+                arriving: arriving(state),
+                replaced: choice.replaced,
+            }),
         }
     }
 
-    /// Looks whether the limit has fallen, after a step, and takes a smaller step if it has.
+    /// Looks whether the limit has fallen, after a step, and takes a smaller step if it has; an adaptive step becomes larger, too. `replaced`: clumps have just
+    /// become clusters.
     ///
     /// # Errors
     /// A particle moves so far in a step that contacts would miss it, and the scene names the step; those of the files.
     pub(super) fn follow(
-        &self,
+        &mut self,
         state: &mut State,
+        replaced: bool,
         progress: &mut Progress,
         bodies: &[PlacedBody],
         mut files: Option<&mut Files<'_>>,
     ) -> Result<()> {
+        if let Some(adaptive) = &mut self.adaptive {
+            let has_lost_all_bonds = progress.had_bonds && state.bonds.len() == 0;
+            if replaced {
+                let outlook = adaptive.replaced;
+                progress.allow_for(&outlook);
+                progress.had_bonds = true;
+                self.take(
+                    state,
+                    outlook.step_s,
+                    "replacement",
+                    progress,
+                    files.as_deref_mut(),
+                )?;
+            } else if state.steps >= progress.next_look || has_lost_all_bonds {
+                let outlook = Outlook::of(adaptive.scene, state, adaptive.arriving.as_mut());
+                let iterations = outlook.limit.all_iterations as u64;
+                let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
+                progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
+                progress.had_bonds = state.bonds.len() > 0;
+                progress.allow_for(&outlook);
+                progress.limit_strain = largest_strain(&state.bonds, &state.particles.poses);
+                let is_larger = outlook.step_s >= LARGER * state.time_step_s;
+                let is_unstable =
+                    state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
+                if is_larger || is_unstable || state.time_step_s > SMALLER * outlook.step_s {
+                    self.set(
+                        state,
+                        outlook.step_s,
+                        "adaptive",
+                        progress,
+                        files.as_deref_mut(),
+                    )?;
+                }
+            }
+        }
         let mut look = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
             let strain = largest_strain(&state.bonds, &state.particles.poses);
@@ -64,7 +126,7 @@ impl Limits {
             }
         }
         let touches = state.contacts.is_some();
-        let look_at_contacts = touches && state.steps.is_multiple_of(CONTACTS_EVERY);
+        let look_at_contacts = touches && state.steps.is_multiple_of(LOOKS_EVERY);
         if look_at_contacts {
             let rate = largest_contact_rate_1_s2(state);
             if rate > STIFFER * progress.contact_rate_1_s2 {
@@ -76,7 +138,7 @@ impl Limits {
             progress.limit_s = progress.limit_s.min(limit(state).step_s);
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
-                self.take(state, largest_s, "limit", files.as_deref_mut())?;
+                self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
             }
         }
         if let (true, Some(_)) = (look_at_contacts, self.safety) {
@@ -87,7 +149,7 @@ impl Limits {
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
                 let largest_s = impact_step_s(state, speed_m_s);
-                self.take(state, largest_s, "speed", files.as_deref_mut())?;
+                self.take(state, largest_s, "speed", progress, files.as_deref_mut())?;
             }
         }
         let farthest_m = FARTHEST * self.smallest_radius_m;
@@ -96,7 +158,7 @@ impl Limits {
                 return too_fast(state, bodies);
             };
             let largest_s = safety * farthest_m / state.fastest_m_s;
-            self.take(state, largest_s, "speed", files)?;
+            self.take(state, largest_s, "speed", progress, files)?;
         }
         Ok(())
     }
@@ -107,11 +169,24 @@ impl Limits {
         state: &mut State,
         largest_s: f64,
         cause: &str,
+        progress: &mut Progress,
         files: Option<&mut Files<'_>>,
     ) -> Result<()> {
         if state.time_step_s <= largest_s {
             return Ok(());
         }
+        self.set(state, largest_s, cause, progress, files)
+    }
+
+    /// Takes this step, or one that is hardly smaller, and notes it.
+    fn set(
+        &self,
+        state: &mut State,
+        largest_s: f64,
+        cause: &str,
+        progress: &mut Progress,
+        files: Option<&mut Files<'_>>,
+    ) -> Result<()> {
         // So that the end time is met.
         let left_s = self.end_s - state.time_s;
         let step_s = if left_s > 0.0 {
@@ -121,6 +196,7 @@ impl Limits {
         };
         let detail = change(state.time_step_s, step_s);
         state.time_step_s = step_s;
+        progress.note_step(step_s);
         match files {
             Some(files) => files.events.append(&[new_step(state, cause, &detail)]),
             None => Ok(()),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::pictures::Taken;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::record::Record;
-use crate::plan::time_step::StepChoice;
+use crate::plan::time_step::{Outlook, StepChoice};
 use crate::state::State;
 
 /// Rows of the time series unless asked otherwise.
@@ -42,6 +42,14 @@ pub struct Progress {
     pub(super) contact_rate_1_s2: f64,
     /// Speed of the impacts that the step allows for, m/s.
     pub(super) impact_speed_m_s: f64,
+    /// Step at which an adaptive time step is looked at again, at the latest.
+    pub(super) next_look: u64,
+    /// Whether there were bonds when it was looked at last.
+    pub(super) had_bonds: bool,
+    /// Smallest and largest time step so far, s.
+    pub(super) steps_s: [f64; 2],
+    /// How often it has changed.
+    pub(super) step_changes: u64,
     /// Since when the kinetic energy has been small against the elastic, s.
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
@@ -124,8 +132,24 @@ impl Progress {
             limit_s: choice.foreseen_s,
             contact_rate_1_s2: choice.contact_rate_1_s2,
             impact_speed_m_s: choice.impact_speed_m_s,
+            had_bonds: true,
+            steps_s: [choice.step_s; 2],
             ..Self::default()
         }
+    }
+
+    /// From now on the step is right for this.
+    pub(super) fn allow_for(&mut self, outlook: &Outlook) {
+        self.limit_s = outlook.foreseen_s;
+        self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
+        self.impact_speed_m_s = outlook.impact_speed_m_s;
+    }
+
+    /// The time step has become this, s.
+    pub(super) fn note_step(&mut self, step_s: f64) {
+        let [smallest, largest] = self.steps_s;
+        self.steps_s = [smallest.min(step_s), largest.max(step_s)];
+        self.step_changes += 1;
     }
 
     /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another rhythm.

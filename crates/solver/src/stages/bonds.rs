@@ -13,7 +13,7 @@ use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::stages::motion::CHUNK;
 use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
-use crate::state::shares::{Batch, Share, Which};
+use crate::state::shares::{Batch, Computed, Share, Which};
 
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
@@ -69,7 +69,9 @@ impl LaneWork for ShareWork<'_> {
             awake,
             batches,
             failing,
+            computed,
         } = share;
+        *computed = Computed::default();
         failing.clear();
         for awake in awake {
             wrenches[awake.clone()].fill(Wrench::default());
@@ -81,6 +83,10 @@ impl LaneWork for ShareWork<'_> {
             };
             if bonds.rules[*rule].incremental {
                 continue;
+            }
+            computed.total += which.count();
+            if kind.screen.is_some() {
+                computed.compared += which.count();
             }
             match which {
                 Which::Run(range) => {

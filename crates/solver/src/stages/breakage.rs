@@ -28,16 +28,22 @@ pub struct Break {
 /// Breaks the bonds that the shares list, if they fail, and adds them to `broken`, in the order of the bonds.
 ///
 /// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its force is taken back from what moves them on.
+/// Returns how many bonds were looked at whose strength depends on the rate of strain.
 pub fn break_bonds(
     bonds: &mut Bonds,
     particles: &mut Particles,
     shares: &[Share],
     half_kick_s: f64,
     broken: &mut Vec<Break>,
-) {
+) -> usize {
     // A share lists its bonds of the total formulation before those of the incremental one.
     let mut failing: Vec<u32> = shares.iter().flat_map(|s| &s.failing).copied().collect();
     failing.sort_unstable();
+    let by_rate = |at: &&u32| {
+        let rule = &bonds.rules[bonds.rule_of(**at as usize)];
+        rule.strengthening_from_1_s.is_some()
+    };
+    let rates = failing.iter().filter(by_rate).count();
     // All are looked at before the first is taken away: a break changes the velocities of its ends, and rates of strain come from velocities.
     let failing: Vec<(usize, BondForces, Cause)> = failing
         .into_iter()
@@ -50,6 +56,7 @@ pub fn break_bonds(
     for (at, forces, cause) in failing {
         broken.push(remove(bonds, particles, at, &forces, cause, half_kick_s));
     }
+    rates
 }
 
 fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -> Option<Cause> {

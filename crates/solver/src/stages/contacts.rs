@@ -212,12 +212,18 @@ impl LaneWork for ShareWork<'_> {
             _ => own.len().max(1),
         };
         find_border(self.share, self.scene);
+        (self.share.computed, self.share.rolled) = (0, 0);
         let mut first = own.start;
         loop {
             let end = (first + together).min(own.end);
             find_own::<T>(proof, self.share, first..end, &mut self.books, self.scene);
             for kind in 0..self.scene.contacts.kinds.len() {
                 self.with_kind::<T>(proof, kind);
+                let computed = self.share.touching[kind][1].len();
+                self.share.computed += computed;
+                if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
+                    self.share.rolled += computed;
+                }
             }
             for [of_border, touching] in &mut self.share.touching {
                 of_border.clear();

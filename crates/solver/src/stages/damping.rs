@@ -32,7 +32,7 @@ struct ShareWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
     motions: &'a [Motion],
-    share: &'a Share,
+    share: &'a mut Share,
     /// Of the share's particles only.
     resisting: &'a mut [Wrench],
 }
@@ -51,10 +51,12 @@ impl LaneWork for ShareWork<'_> {
             resisting[awake.clone()].fill(Wrench::default());
         }
         let particles = &share.particles;
+        share.computed.damped = 0;
         for Batch { rule, which } in &share.batches {
             if !bonds.rules[*rule].damped {
                 continue;
             }
+            share.computed.damped += which.count();
             match which {
                 Which::Run(range) => {
                     for block in blocks_of(range) {

@@ -54,12 +54,17 @@ fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wr
         particles: own,
         batches,
         failing,
+        computed,
         ..
     } = share;
     for Batch { rule, which } in batches.iter() {
         let rule = &bonds.rules[*rule];
         if !rule.incremental {
             continue;
+        }
+        computed.incremental += which.count();
+        if rule.criteria.is_some() {
+            computed.compared += which.count();
         }
         let mut add = |at: usize| {
             if bonds.is_broken(at) {

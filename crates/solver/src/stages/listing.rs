@@ -6,6 +6,7 @@ use super::clumps;
 use super::contacts::list_contacts;
 use super::sleep::{begins_to_move, disturbed, keep_touches, wake};
 use super::walls::list_near;
+use crate::clock::Stage;
 use crate::state::State;
 
 /// Makes the lists anew if something may have come near since they were made.
@@ -59,7 +60,12 @@ fn list_awake(state: &mut State) {
     let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
         return;
     };
+    state.clock.did(Stage::Search, p.len());
     list_near(&mut state.walls, p, contacts.skin_m);
+    if contacts.alone {
+        contacts.room_m = 0.5 * contacts.skin_m;
+        return;
+    }
     let clusters = state.clusters.as_ref();
     let of_particle = clusters.map_or(&[][..], |c| &c.of_particle);
     if p.asleep.is_empty() {
@@ -70,6 +76,9 @@ fn list_awake(state: &mut State) {
         let of_one = |(&id, &asleep): (&u32, &bool)| if asleep { none } else { id };
         let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();
         list_contacts(contacts, &numbers, p);
+    }
+    if contacts.relaxes {
+        state.clock.did(Stage::Relaxation, contacts.relaxing());
     }
 }
 

@@ -5,6 +5,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::population::{Changes, Renumbered, change};
 use super::restoring::restore;
 use crate::check::ledger::synchronous_motions;
+use crate::clock::Stage;
 use crate::clusters::fragments::mass_and_centre;
 use crate::physics::random::uniform;
 use crate::stages::clumps::synchronous;
@@ -88,6 +89,11 @@ pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
     state.rules.bond_steps[0] += state.bonds.len() as u64;
     let mut happened = Vec::new();
     let mut renumbered = Vec::new();
+    let ways = state.rules.inlets.len() + state.rules.outlets.len();
+    state.clock.did(Stage::Population, ways);
+    if state.rules.triggers.iter().any(Option::is_some) {
+        state.clock.did(Stage::Replacement, state.clumps.all.len());
+    }
 
     let leaving = leaving(state, &mut happened);
     let coming = coming(state, &mut happened);

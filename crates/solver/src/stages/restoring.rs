@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use super::population::{Changes, Renumbered, change};
 use super::replacement::Happened;
 use crate::check::ledger::synchronous_motions;
+use crate::clock::Stage;
 use crate::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
@@ -28,6 +29,7 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
     if rules.restores.iter().all(Option::is_none) || !state.steps.is_multiple_of(EVERY) {
         return None;
     }
+    state.clock.did(Stage::Replacement, 1);
     let clusters = state.clusters.as_ref()?;
     let outside: Vec<(u32, usize, u32)> = (clusters.living())
         .filter_map(|id| outside(id, state).map(|(base, instance)| (id, base, instance)))

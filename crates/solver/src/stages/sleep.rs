@@ -10,6 +10,7 @@ use super::neighbours::near_pairs;
 use super::population::Changes;
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::check::ledger::synchronous_motions;
+use crate::clock::Stage;
 use crate::disjoint::{find, join};
 use crate::state::State;
 use crate::state::contacts::{Contacts, Memory};
@@ -31,6 +32,7 @@ pub fn look(state: &mut State) {
     if state.sleep.is_none() || !state.steps.is_multiple_of(EVERY) {
         return;
     }
+    state.clock.did(Stage::Sleep, 1);
     let speeds_m_s = speeds_m_s(state);
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;

@@ -117,6 +117,8 @@ pub struct Contacts {
     pub skin_m: f64,
     /// What every particle may move before pairs have to be looked for again, m.
     pub room_m: f64,
+    /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No pairs are looked for.
+    pub alone: bool,
     /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
     pub relaxes: bool,
     /// A pair that parted overlapping is ordinary below this share of its reduced radius.
@@ -142,6 +144,10 @@ pub struct ContactShare {
     pub touching: Vec<[Vec<u32>; 2]>,
     /// Which of its contacts touched in the step before: a bit for each, four to a byte.
     pub touched: Vec<u8>,
+    /// How many of its contacts it has computed in this step.
+    pub computed: usize,
+    /// How many of those with rolling friction.
+    pub rolled: usize,
 }
 
 impl Contacts {
@@ -172,6 +178,12 @@ impl Contacts {
             .collect();
         self.memories = memories;
         self.pairs = pairs;
+    }
+
+    /// How many pairs begin their law at an overlap that they parted with.
+    pub fn relaxing(&self) -> usize {
+        let relaxes = |memory: &&Memory| memory.origin_m() > 0.0;
+        self.memories.iter().filter(relaxes).count()
     }
 
     /// Divides the contacts into `count` shares of about the same number each.
@@ -207,6 +219,8 @@ impl Contacts {
                     border: Vec::new(),
                     border_memories: Vec::new(),
                     touching: vec![Default::default(); self.kinds.len()],
+                    computed: 0,
+                    rolled: 0,
                 }
             })
             .collect();

@@ -38,17 +38,46 @@ pub struct Share {
     pub batches: Vec<Batch>,
     /// Bonds of its own that have reached their strength in this step, in order.
     pub failing: Vec<u32>,
+    /// How many bonds it has computed in this step.
+    pub computed: Computed,
+}
+
+/// How many bonds a share has computed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Computed {
+    /// Forces, by the total formulation.
+    pub total: usize,
+    /// Forces, by the incremental one.
+    pub incremental: usize,
+    /// Compared with their strength.
+    pub compared: usize,
+    /// Damping forces.
+    pub damped: usize,
+}
+
+impl Which {
+    /// How many of them are listed one by one.
+    pub fn listed(&self) -> usize {
+        match self {
+            Self::Run(_) => 0,
+            Self::Own(list) | Self::Border(list) => list.len(),
+        }
+    }
+
+    /// Number of bonds; those of a border are counted by the share whose own they are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Run(range) => range.len(),
+            Self::Own(list) => list.len(),
+            Self::Border(_) => 0,
+        }
+    }
 }
 
 impl Share {
     /// Number of bonds whose first end is in the share, as computed.
     pub fn own_bonds(&self) -> usize {
-        let count = |batch: &Batch| match &batch.which {
-            Which::Run(range) => range.len(),
-            Which::Own(list) => list.len(),
-            Which::Border(_) => 0,
-        };
-        self.batches.iter().map(count).sum()
+        self.batches.iter().map(|batch| batch.which.count()).sum()
     }
 }
 
@@ -82,6 +111,7 @@ pub fn divide_awake(bonds: &Bonds, particles: usize, count: usize, asleep: &[boo
             awake: awake_ranges(w[0]..w[1], asleep),
             batches: Vec::new(),
             failing: Vec::new(),
+            computed: Computed::default(),
         })
         .collect();
     add_batches(bonds, &mut shares, &first_bond, asleep);

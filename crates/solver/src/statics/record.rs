@@ -167,6 +167,7 @@ impl AtRest<'_> {
             time_step_s: state.time_step_s,
             limit_s: f64::INFINITY,
             share_of_limit: 0.0,
+            adaptive: None,
             steps_per_s,
             bond_steps_per_s: steps_per_s * state.bonds.len() as f64,
             energy_error: f64::NAN,

@@ -1,0 +1,67 @@
+//! What a scene does not need does nothing and takes no memory: counted, not timed.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops where it fails, and says what it measured"
+)]
+
+mod one_feature;
+mod scenes;
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{BodySource, Scene};
+use dem_io::{Body, Result, scene_from_text};
+use dem_run::clock::Stage;
+use dem_run::plan::{Plan, plan};
+use dem_run::stages::replacement::replace;
+use dem_run::state::State;
+use dem_run::state::memory::bytes;
+use dem_run::step::{act, move_on};
+
+/// A scene planned, its bodies read with `read`.
+fn planned_with(scene: &Scene, read: impl Fn(&str) -> Option<Body>) -> Result<Plan> {
+    let mut bodies = BTreeMap::new();
+    for (name, entry) in &scene.bodies {
+        let body = match &entry.source {
+            BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds)?,
+            BodySource::File(path) => match read(name) {
+                Some(body) => body,
+                None => dem_io::body::read_body(path)?,
+            },
+        };
+        bodies.insert(name.clone(), body);
+    }
+    plan(scene, bodies, 1, true)
+}
+
+fn planned(text: &str) -> (Scene, Plan) {
+    let scene = scene_from_text(text, "scene.toml", &[]).unwrap();
+    let plan = planned_with(&scene, |_| None).unwrap_or_else(|e| panic!("{e}: {text}"));
+    (scene, plan)
+}
+
+/// Steps as a run does.
+fn go(state: &mut State, steps: u64) {
+    for _ in 0..steps {
+        act(state);
+        replace(state);
+        move_on(state);
+    }
+}
+
+/// Stages that have done something.
+fn busy(state: &State) -> Vec<&'static str> {
+    let all = Stage::ALL
+        .iter()
+        .filter(|&&stage| state.clock.done(stage) > 0);
+    all.map(|stage| stage.name()).collect()
+}
+
+/// Stages that have arrays.
+fn stored(state: &State) -> Vec<&'static str> {
+    let all = Stage::ALL.iter().filter(|&&stage| bytes(state, stage) > 0);
+    all.map(|stage| stage.name()).collect()
+}

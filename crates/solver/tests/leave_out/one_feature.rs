@@ -1,0 +1,236 @@
+//! Scenes that need one thing each: that alone is done and stored, besides what every such scene needs.
+
+use crate::{busy, go, planned, stored};
+
+/// Spheres in a row that moves, bonded to their neighbours unless `apart`; with more lines of the body's own.
+fn row(name: &str, y_m: f64, more: &str) -> String {
+    format!(
+        "[bodies.{name}]
+particles = [[0, {y_m}, 0, 0.01], [0.02, {y_m}, 0, 0.01], [0.04, {y_m}, 0, 0.01]]
+bond_list = [[0, 1], [1, 2]]
+material = \"stuff\"
+bonds = \"stiff\"
+{more}\n"
+    )
+}
+
+/// The scene of a row, with keys of the run, of the bonds, of the body, and tables.
+fn scene(run: &str, bonds: &str, body: &str, tables: &str) -> String {
+    format!(
+        "version = 1
+run = {{ end_time = 1{run} }}
+materials.stuff = {{ density = 2500, young_modulus = 1e7 }}
+bonds.stiff = {{ young_modulus = 1e7, poisson_ratio = 0.25{bonds} }}
+{}{tables}",
+        row("row", 0.0, &format!("angular_velocity = [0, 0, 1]\n{body}"))
+    )
+}
+
+const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n";
+const FREE: [&str; 2] = ["bond forces", "motion"];
+const RIGID: [&str; 2] = ["rigid clumps", "motion"];
+
+/// What a scene does and stores: both compared with what is expected, in any order.
+fn expect(name: &str, text: &str, does: &[&str], stores: &[&str]) {
+    let (_, mut plan) = planned(text);
+    go(&mut plan.state, 300);
+    let sorted = |list: &[&str]| {
+        let mut names: Vec<String> = list.iter().map(|name| (*name).to_owned()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(sorted(&busy(&plan.state)), sorted(does), "{name} does");
+    assert_eq!(
+        sorted(&stored(&plan.state)),
+        sorted(stores),
+        "{name} stores"
+    );
+    for stage in plan.stages.iter().filter(|stage| !stage.needed) {
+        let left_out = stage.stage.name();
+        assert!(
+            !does.contains(&left_out),
+            "{name}: {left_out} is said to be left out"
+        );
+    }
+}
+
+fn with<'a>(base: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    [base, more].concat()
+}
+
+#[test]
+fn of_bonds() {
+    expect("a free row", &scene("", "", "", ""), &FREE, &FREE);
+    expect(
+        "histories",
+        &scene("", ", formulation = \"incremental\"", "", ""),
+        &["bond history", "motion"],
+        &with(&FREE, &["bond history"]),
+    );
+    expect(
+        "damping of bonds",
+        &scene("", ", damping = { viscous = 0.1 }", "", ""),
+        &with(&FREE, &["bond damping"]),
+        &with(&FREE, &["bond damping"]),
+    );
+    expect(
+        "failure",
+        &scene("", ", failure = { tension = 1e12 }", "", ""),
+        &with(&FREE, &["failure"]),
+        &with(&FREE, &["cluster search"]),
+    );
+    expect(
+        "scattered strength",
+        &scene(
+            "",
+            ", failure = { tension = 1e12, weibull_modulus = 5 }",
+            "",
+            "",
+        ),
+        &with(&FREE, &["failure", "scattered strength"]),
+        &with(&FREE, &["cluster search", "scattered strength"]),
+    );
+    let rate = ", failure = { tension = 1e12, rate_strengthening = true }";
+    expect(
+        "strength by rate, where no bond would break without it",
+        &scene("", rate, "", ""),
+        &with(&FREE, &["failure"]),
+        &with(&FREE, &["cluster search"]),
+    );
+    expect(
+        "strength by rate, where bonds would",
+        &scene("", &rate.replace("1e12", "1"), "", ""),
+        &with(&FREE, &["failure", "strength by rate", "cluster search"]),
+        &with(&FREE, &["cluster search"]),
+    );
+}
+
+#[test]
+fn of_what_acts_on_particles() {
+    expect(
+        "gravity",
+        &scene(", gravity = [0, 0, -9.81]", "", "", ""),
+        &with(&FREE, &["gravity"]),
+        &FREE,
+    );
+    expect(
+        "damping of particles",
+        &scene(", particle_damping = 0.1", "", "", ""),
+        &with(&FREE, &["particle damping"]),
+        &with(&FREE, &["particle damping"]),
+    );
+    expect(
+        "a load",
+        &scene(
+            "",
+            "",
+            "",
+            "[loads.push]\nof = \"row\"\nforce = [0, 0, 1]\n",
+        ),
+        &with(&FREE, &["loads"]),
+        &with(&FREE, &["loads"]),
+    );
+    expect(
+        "a support",
+        &scene(
+            "",
+            "",
+            "",
+            "[supports.hold]\nof = \"row\"\nfixed = [\"z\"]\n",
+        ),
+        &with(&FREE, &["supports"]),
+        &with(&FREE, &["supports"]),
+    );
+}
+
+#[test]
+fn of_what_touches() {
+    let wall = |z_m: f64| {
+        format!(
+            "{MEETS}[walls.floor]\nplane = {{ point = [0, 0, {z_m}], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
+        )
+    };
+    let searches = with(&FREE, &["neighbour search"]);
+    expect(
+        "a wall far away: one body that cannot break meets no other particle",
+        &scene("", "", "", &wall(-1.0)),
+        &searches,
+        &with(&searches, &["walls"]),
+    );
+    expect(
+        "a wall that is touched",
+        &scene("", "", "", &wall(-0.01)),
+        &with(&searches, &["walls"]),
+        &with(&searches, &["walls"]),
+    );
+    let other = |y_m: f64, rolling: &str| {
+        let meets = MEETS.replace(" }", &format!("{rolling} }}"));
+        format!("{meets}{}", row("other", y_m, ""))
+    };
+    expect(
+        "another body far away",
+        &scene("", "", "", &other(1.0, "")),
+        &searches,
+        &searches,
+    );
+    let touches = with(&searches, &["contacts of particles"]);
+    expect(
+        "another that is touched",
+        &scene("", "", "", &other(0.02, "")),
+        &touches,
+        &touches,
+    );
+    expect(
+        "rolling friction",
+        &scene("", "", "", &other(0.02, ", rolling_friction = 0.1")),
+        &with(&touches, &["rolling friction"]),
+        &touches,
+    );
+    expect(
+        "sleep",
+        &scene("", "", "", &format!("{}[sleep]\n", other(1.0, ""))),
+        &with(&searches, &["sleep"]),
+        &with(&searches, &["sleep"]),
+    );
+    // Neighbours overlap; the pull tears them.
+    let tears = scene(
+        "",
+        ", failure = { tension = 10 }",
+        "",
+        &format!("{MEETS}[sets.end]\nbody = \"row\"\nparticles = [2]\n[loads.pull]\nof = \"end\"\nforce = [0.1, 0, 0]\n"),
+    )
+    .replace("0.02, 0, 0, 0.01", "0.019, 0, 0, 0.01");
+    let parts = ["failure", "cluster search", "relaxation", "loads"];
+    let all = with(&touches, &parts);
+    let stores: Vec<&str> = all
+        .iter()
+        .filter(|s| !["failure", "relaxation"].contains(*s))
+        .copied()
+        .collect();
+    expect("pieces that part while they overlap", &tears, &all, &stores);
+}
+
+#[test]
+fn of_rigid_bodies() {
+    let clump = |tables: &str| scene("", "", "start_as = \"clump\"", tables);
+    expect("a clump", &clump(""), &["rigid clumps"], &RIGID);
+    let when = "[replacement.row]\nwhen = { time = 0.9 }\n";
+    expect(
+        "a clump that waits to be replaced",
+        &clump(when),
+        &["rigid clumps", "replacement"],
+        &RIGID,
+    );
+    let region = "[regions.part]\nbox = { min = [5, 5, 5], max = [6, 6, 6] }\n";
+    expect(
+        "an outlet",
+        &scene(
+            "",
+            "",
+            "",
+            &format!("{region}[outlets.out]\ninside = \"part\"\n"),
+        ),
+        &with(&FREE, &["inlets and outlets"]),
+        &FREE,
+    );
+}
