@@ -28,6 +28,7 @@ mod search;
 mod set;
 mod shape;
 mod sleep;
+mod statics;
 pub mod study;
 mod support;
 mod table;
@@ -108,6 +109,8 @@ pub struct Scene {
 pub struct Run {
     /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
     pub end_time_s: f64,
+    /// `integrator`, "leapfrog" unless given.
+    pub integrator: Integrator,
     /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
     pub rest: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
@@ -124,6 +127,16 @@ pub struct Run {
     pub seed: u64,
     /// `start_overlap`, "refuse" unless given.
     pub start_overlap: StartOverlap,
+}
+
+/// How a run comes to its end.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// "leapfrog": step by step.
+    #[default]
+    Leapfrog,
+    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded bodies on supports only: nothing touches, breaks, comes or goes.
+    Static,
 }
 
 /// What happens where bodies or walls overlap at the start, although no bond joins them.

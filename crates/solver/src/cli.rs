@@ -2,6 +2,7 @@
 
 mod check;
 mod fragment;
+mod statics;
 mod stress;
 mod sweep;
 
@@ -14,7 +15,7 @@ use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::{Existing, ResultsFolder};
 use dem_io::safe_write::write_standard_output;
-use dem_io::scene::{BodySource, Scene};
+use dem_io::scene::{BodySource, Integrator, Scene};
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -309,6 +310,13 @@ fn refuse_two_pipes(scene: &Scene) -> Result<()> {
 
 fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
+    if arguments.resume && scene.run.integrator == Integrator::Static {
+        return Err(Diagnostic::input(
+            "--resume",
+            "run.integrator = \"static\" leaves no checkpoint to go on from",
+            "leave it out; --force replaces the results that are in the folder",
+        ));
+    }
     let folder = match results_path(arguments, &scene) {
         Some(path) => {
             let existing = match (arguments.force, arguments.resume) {

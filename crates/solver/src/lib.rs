@@ -18,6 +18,7 @@ pub mod shape;
 pub mod snapshot;
 pub mod stages;
 pub mod state;
+pub mod statics;
 pub mod step;
 pub mod stress;
 pub mod sweep;

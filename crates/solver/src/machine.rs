@@ -14,12 +14,15 @@ pub fn machine() -> String {
     format!("{model}, {cores} core{}", if cores == 1 { "" } else { "s" })
 }
 
-/// Time that processors have spent on the threads of this program, s. None: the system does not say.
+/// Time that processors have spent on this program, all its threads together, s. None: the system does not say.
+#[cfg(unix)]
 pub fn processor_time_s() -> Option<f64> {
-    let mut sum_ns = 0.0;
-    for thread in std::fs::read_dir("/proc/self/task").ok()? {
-        let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
-        sum_ns += text.split_whitespace().next()?.parse::<f64>().ok()?;
-    }
-    (sum_ns > 0.0).then_some(1e-9 * sum_ns)
+    let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64)
+}
+
+/// Time that processors have spent on this program, all its threads together, s. None: the system does not say.
+#[cfg(not(unix))]
+pub fn processor_time_s() -> Option<f64> {
+    None
 }

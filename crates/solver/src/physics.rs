@@ -2,6 +2,7 @@
 
 pub mod bond;
 pub mod contact;
+pub mod dual;
 pub mod number;
 pub mod random;
 pub mod rigid;

@@ -12,7 +12,7 @@ mod walls;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Quantity, Scene};
+use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
 use crate::check::ledger::Ledger;
@@ -23,6 +23,7 @@ use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
 use crate::state::particles::Wrench;
 use crate::state::sleep::Sleep;
+use crate::statics::held::refuse_loose;
 
 use self::bodies::{PlacedBody, place_bodies};
 use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
@@ -56,7 +57,8 @@ pub struct Plan {
 ///
 /// # Errors
 /// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom, materials that
-/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit.
+/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit; where the scene goes to its
+/// equilibrium at once, a piece that supports do not hold.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,
@@ -94,7 +96,13 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     notes.extend(doubts(scene, &state));
     state.ledger = Ledger::opened(&state);
-    let step = choose_step(scene, &mut state, allow_any_step)?;
+    let step = match scene.run.integrator {
+        Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
+        Integrator::Static => {
+            refuse_loose(&state, &bodies, &scene.source)?;
+            StepChoice::none(scene.run.end_time_s)
+        }
+    };
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use dem_io::checkpoint::write_checkpoint;
 use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
-use dem_io::scene::Scene;
+use dem_io::scene::{Integrator, Scene};
 use dem_io::{Diagnostic, Result};
 
 use crate::check::ledger::balance;
@@ -111,7 +111,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Steps a plan to its end. `tell` is called now and then with the share of the end time reached, in 0..1.
+/// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is called now and then with the share of the end time reached, in 0..1.
 ///
 /// # Errors
 /// The run goes unstable (exit code 3), is interrupted, or its files cannot be written (1).
@@ -121,6 +121,9 @@ pub fn run(
     settings: RunSettings<'_>,
     tell: &dyn Fn(f64),
 ) -> Result<Summary> {
+    if scene.run.integrator == Integrator::Static {
+        return crate::statics::run(plan, scene, &settings, tell);
+    }
     let mut gauges = gauges(scene, &plan);
     let watch = match (&scene.test, settings.test) {
         (Some(test), Some(of_test)) => Some(Watch::new(scene, test, of_test, &plan)?),
@@ -386,6 +389,7 @@ pub fn run(
             .map(|folder| folder.path().display().to_string()),
         resumed_with: changed_step,
         test,
+        equilibrium: None,
     };
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.

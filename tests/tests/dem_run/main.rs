@@ -16,6 +16,7 @@ mod random;
 mod results;
 mod resume;
 mod scenes;
+mod statics;
 mod stress;
 mod sweep;
 mod threads;

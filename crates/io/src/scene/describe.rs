@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 use super::bond::RATES;
 use super::measure::TIMES;
-use super::run::START_OVERLAPS;
+use super::run::{INTEGRATORS, START_OVERLAPS};
 use super::support::FREEDOMS;
 use super::{
     BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Load, Material, Measure,
@@ -100,6 +100,7 @@ impl Lines {
     fn run(&mut self, run: &Run) {
         let end = Some(run.end_time_s).filter(|end| end.is_finite());
         self.add("run.end_time", optional(end, "s", "that of the test"));
+        self.add("run.integrator", word(&INTEGRATORS, run.integrator));
         self.add("run.rest", optional(run.rest, "", "never"));
         self.add("run.time_step", optional(run.time_step_s, "s", "auto"));
         self.add("run.safety", number(run.safety));

@@ -9,8 +9,9 @@ use super::table::Table;
 use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
-    SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material, measure, outlet,
-    output, region, relaxation, replacement, run, search, set, sleep, support, test, wall,
+    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material,
+    measure, outlet, output, region, relaxation, replacement, run, search, set, sleep, statics,
+    support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
@@ -121,6 +122,9 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         supports: &supports,
     };
     let test = root.read("test", |field| test::read(&field, &known))?;
+    if run.integrator == Integrator::Static {
+        statics::refuse_what_moves(&root)?;
+    }
     Ok(Scene {
         source: source.to_owned(),
         run,

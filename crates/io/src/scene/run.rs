@@ -3,12 +3,13 @@
 use super::field::Field;
 use super::table::Table;
 use super::tree::Value;
-use super::{Run, StartOverlap};
+use super::{Integrator, Run, StartOverlap};
 use crate::Result;
 use crate::units::{ACCELERATION, NUMBER, TIME};
 
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 10] = [
     "end_time",
+    "integrator",
     "rest",
     "time_step",
     "safety",
@@ -17,6 +18,12 @@ const KEYS: [&str; 9] = [
     "particle_damping",
     "seed",
     "start_overlap",
+];
+
+/// How a run may come to its end.
+pub(super) const INTEGRATORS: [(&str, Integrator); 2] = [
+    ("leapfrog", Integrator::Leapfrog),
+    ("static", Integrator::Static),
 ];
 
 /// What may happen to overlaps at the start.
@@ -54,6 +61,9 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     }
     Ok(Run {
         end_time_s,
+        integrator: table
+            .read("integrator", |field| field.choice(&INTEGRATORS))?
+            .unwrap_or_default(),
         rest: table.read("rest", |field| {
             field.between(0.0, 1.0, "a small share such as 1e-6 means at rest")
         })?,

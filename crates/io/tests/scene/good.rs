@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
     At, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
-    Formulation, Hold, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search, StartOverlap,
-    TestKind, Wall, WallMotion, WallShape,
+    Formulation, Hold, Integrator, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search,
+    StartOverlap, TestKind, Wall, WallMotion, WallShape,
 };
 use dem_io::units::{
     ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH,
@@ -102,6 +102,7 @@ fn the_run() {
     assert_eq!(run.particle_damping, 0.7);
     assert_eq!(run.seed, u64::MAX);
     assert_eq!(run.start_overlap, StartOverlap::Relax);
+    assert_eq!(run.integrator, Integrator::Leapfrog);
 }
 
 #[test]
@@ -475,6 +476,7 @@ fn defaults_in_words() {
     assert_eq!(scene.output, None);
     let wanted = "\
 run.end_time                    1 s
+run.integrator                  leapfrog
 run.rest                        never
 run.time_step                   auto
 run.safety                      0.9

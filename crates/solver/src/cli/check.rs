@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use dem_io::safe_write::write_standard_output;
-use dem_io::scene::Scene;
+use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use dem_io::{Body, Result};
 use serde_json::{Value, json};
@@ -28,6 +28,9 @@ pub(super) fn check(
     as_json: bool,
 ) -> Result<()> {
     let plan = plan(scene, bodies, threads, force_step)?;
+    if scene.run.integrator == Integrator::Static {
+        return super::statics::check(scene, &plan, memory_bytes(&plan.state), as_json);
+    }
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
     // What the first steps take says nothing where bodies come, go, or become others.
@@ -182,7 +185,7 @@ fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> Str
         if stage.bytes > 0 {
             costs.push(size_text(stage.bytes));
         }
-        costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(|ns| time_text(ns)));
+        costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(time_text));
         costs.extend(
             (stage.stage.within()).map(|other| format!("its time is in that of {}", other.name())),
         );
@@ -207,7 +210,8 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-fn size_text(bytes: usize) -> String {
+/// A number of bytes, for a person.
+pub(super) fn size_text(bytes: usize) -> String {
     match bytes as f64 {
         few if few < 1e3 => format!("{bytes} bytes"),
         some if some < 1e6 => format!("{} kB", significant(some * 1e-3, 3)),

@@ -11,6 +11,7 @@ use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::state::State;
 use crate::state::sleep::Sleep;
+use crate::statics::EquilibriumSummary;
 
 /// Energy errors above this share are worth a word.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
@@ -89,6 +90,9 @@ pub struct Summary {
     /// What came of the scene's laboratory test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub test: Option<TestResult>,
+    /// How the equilibrium was found, where the run went to it at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium: Option<EquilibriumSummary>,
 }
 
 /// Which bodies came, went, and became others.
@@ -208,12 +212,36 @@ impl Summary {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));
+        doubts.extend((self.equilibrium.iter()).flat_map(EquilibriumSummary::doubts));
         doubts
+    }
+
+    /// Notes, and what the result is worth.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub(crate) fn write_verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for note in &self.notes {
+            writeln!(f, "note         {note}")?;
+        }
+        let doubts = self.doubts();
+        let verdict = if doubts.is_empty() {
+            match self.notes.len() {
+                0 => "sound: nothing to mind".to_owned(),
+                _ => "sound, but mind what is noted".to_owned(),
+            }
+        } else {
+            doubts.join("; ")
+        };
+        writeln!(f, "verdict      {verdict}")
     }
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(equilibrium) = &self.equilibrium {
+            return equilibrium.write(self, f);
+        }
         let results = self
             .results
             .as_ref()
@@ -227,11 +255,7 @@ impl fmt::Display for Summary {
             self.threads,
             if self.threads == 1 { "" } else { "s" },
         )?;
-        let names = self.measures.iter().map(|m| m.name.chars().count());
-        let width = names.max().unwrap_or(0).max(12);
-        for measure in &self.measures {
-            writeln!(f, "{}", measure_text(measure, width))?;
-        }
+        measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
             write!(f, "{test}")?;
         }
@@ -329,20 +353,21 @@ impl fmt::Display for Summary {
             )?;
         }
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
-        for note in &self.notes {
-            writeln!(f, "note         {note}")?;
-        }
-        let doubts = self.doubts();
-        let verdict = if doubts.is_empty() {
-            match self.notes.len() {
-                0 => "sound: nothing to mind".to_owned(),
-                _ => "sound, but mind what is noted".to_owned(),
-            }
-        } else {
-            doubts.join("; ")
-        };
-        writeln!(f, "verdict      {verdict}")
+        self.write_verdict(f)
     }
+}
+
+/// A line for each measure.
+///
+/// # Errors
+/// Those of the formatter.
+pub(crate) fn measure_lines(measures: &[Measured], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let names = measures.iter().map(|m| m.name.chars().count());
+    let width = names.max().unwrap_or(0).max(12);
+    for measure in measures {
+        writeln!(f, "{}", measure_text(measure, width))?;
+    }
+    Ok(())
 }
 
 /// One line for a measure: value, and reference and error where there is one.

@@ -7,6 +7,7 @@ pub mod pair;
 pub mod scatter;
 pub mod stiffness;
 pub mod strain_rate;
+pub mod tangent;
 pub mod total;
 
 /// What a bond carries.

@@ -101,6 +101,36 @@ impl Outlook {
 }
 
 impl StepChoice {
+    /// Of a run that goes to its equilibrium at once, in one step to its end.
+    pub fn none(end_s: f64) -> Self {
+        let limit = Limit {
+            step_s: f64::INFINITY,
+            undamped_step_s: f64::INFINITY,
+            omega_rad_s: 0.0,
+            damping_1_s: 0.0,
+            iterations: 0,
+            all_iterations: 0,
+        };
+        let nothing = Outlook {
+            limit,
+            foreseen_s: f64::INFINITY,
+            impact_speed_m_s: 0.0,
+            contact_rate_1_s2: 0.0,
+            step_s: end_s,
+        };
+        Self {
+            step_s: end_s,
+            given: false,
+            limit,
+            foreseen_s: f64::INFINITY,
+            impact_speed_m_s: 0.0,
+            contact_rate_1_s2: 0.0,
+            rayleigh_s: f64::INFINITY,
+            thesis_s: f64::INFINITY,
+            replaced: nothing,
+        }
+    }
+
     /// Step over the smaller of both limits.
     pub fn share_of_limit(&self) -> f64 {
         self.step_s / self.foreseen_s.min(self.limit.step_s)
@@ -171,7 +201,7 @@ pub fn arriving(state: &State) -> Option<State> {
     coming(state, false)
 }
 
-/// One body of each template; where clumps are `replaced`, those that can become clusters are some.
+/// One body of each shape; where clumps are `replaced`, those that can become clusters are some.
 fn coming(state: &State, replaced: bool) -> Option<State> {
     let becomes_one = |n: usize| {
         let starts = state.rules.starts.get(n).is_some_and(|start| start.bonded);
@@ -179,8 +209,23 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
         starts || (replaced && triggers)
     };
     let templates = &state.clumps.templates;
-    let all: Vec<Clump> = (0..templates.len())
-        .map(|n| Clump {
+    // Bodies of one file may be many.
+    let same = |a: usize, b: usize| {
+        let [one, other] = [a, b].map(|n| &templates[n]);
+        becomes_one(a) == becomes_one(b)
+            && one.material == other.material
+            && one.scale == other.scale
+            && one.spheres == other.spheres
+            && one.bonds.blocks == other.bonds.blocks
+    };
+    let mut shapes: Vec<usize> = Vec::new();
+    for n in 0..templates.len() {
+        if !shapes.iter().any(|&other| same(other, n)) {
+            shapes.push(n);
+        }
+    }
+    let all: Vec<Clump> = (shapes.iter())
+        .map(|&n| Clump {
             template: n as u32,
             turned: [0.0, 0.0, 0.0, 1.0],
             ..Clump::default()
@@ -205,7 +250,9 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
         kind_of: contacts.kind_of.clone(),
         ..Contacts::default()
     });
-    let to_clusters = (0..all.len()).filter(|n| becomes_one(*n)).collect();
+    let to_clusters = (0..all.len())
+        .filter(|&at| becomes_one(shapes[at]))
+        .collect();
     let come = Changes {
         coming: all,
         ..Changes::default()

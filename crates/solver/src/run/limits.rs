@@ -83,7 +83,7 @@ impl<'a> Limits<'a> {
         mut files: Option<&mut Files<'_>>,
     ) -> Result<()> {
         if let Some(adaptive) = &mut self.adaptive {
-            let has_lost_all_bonds = progress.had_bonds && state.bonds.len() == 0;
+            let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
             if replaced {
                 let outlook = adaptive.replaced;
                 progress.allow_for(&outlook);
@@ -100,7 +100,7 @@ impl<'a> Limits<'a> {
                 let iterations = outlook.limit.all_iterations as u64;
                 let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
                 progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
-                progress.had_bonds = state.bonds.len() > 0;
+                progress.had_bonds = !state.bonds.is_empty();
                 progress.allow_for(&outlook);
                 progress.limit_strain = largest_strain(&state.bonds, &state.particles.poses);
                 let is_larger = outlook.step_s >= LARGER * state.time_step_s;

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::stiffness::Stiffness;
-use crate::physics::bond::total::{BondForces, End};
+use crate::physics::bond::tangent::{BondTangent, bond_tangent};
+use crate::physics::bond::total::BondForces;
 use crate::physics::bond::{incremental, total};
 use crate::physics::number::Number;
 
@@ -228,13 +229,20 @@ impl Bonds {
             let apart = b.place() - a.place();
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
         }
+        let ends = [a, b].map(Pose::end);
+        total::bond_forces(&stiffness, &self.direction(at), &ends)
+    }
+
+    /// How what bond `at`, which is not broken, does to its ends changes as they move and turn, by the total formulation.
+    pub fn tangent(&self, at: usize, poses: &[Pose]) -> BondTangent {
+        let ends = self.ends[at].map(|end| poses[end as usize].end());
+        bond_tangent(&self.stiffness(at), &self.direction(at), &ends)
+    }
+
+    /// Unit vector of bond `at` from its first to its second end at the start.
+    fn direction(&self, at: usize) -> Vector3<f64> {
         let [x, y, z] = &self.blocks[at / BLOCK].direction;
-        let direction = Vector3::new(x[at % BLOCK], y[at % BLOCK], z[at % BLOCK]);
-        let ends = [a, b].map(|pose| End {
-            position_m: pose.place(),
-            turned: pose.rotation(),
-        });
-        total::bond_forces(&stiffness, &direction, &ends)
+        Vector3::new(x[at % BLOCK], y[at % BLOCK], z[at % BLOCK])
     }
 
     /// Initial length of bond `at`, m.

@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::physics::bond::total::End;
 use crate::physics::contact::touch::Ball;
 use crate::physics::number::Triple;
 use crate::state::clumps::rotation;
@@ -35,6 +36,14 @@ impl Pose {
     #[inline(always)]
     pub fn put_at(&mut self, [x, y, z]: [f64; 3]) {
         self.position_m = [x, y, z, self.radius_m()];
+    }
+
+    /// As the end of a bond.
+    pub fn end(&self) -> End {
+        End {
+            position_m: self.place(),
+            turned: self.rotation(),
+        }
     }
 
     /// Rotation since the start.

@@ -13,6 +13,7 @@ mod pair;
 mod scatter;
 mod stiffness;
 mod strain_rate;
+mod tangent;
 mod total;
 
 use dem_run::physics::bond::stiffness::BondModel;

@@ -13,7 +13,7 @@ fn direction() -> impl Strategy<Value = Vector3<f64>> {
 }
 
 /// A bond of length 1 with its ends moved and turned by up to a few tenths.
-fn bond() -> impl Strategy<Value = (Stiffness, Vector3<f64>, [End; 2])> {
+pub(crate) fn bond() -> impl Strategy<Value = (Stiffness, Vector3<f64>, [End; 2])> {
     let ends = (vector(0.2), vector(0.5), vector(0.2), vector(0.5));
     (0..MODELS.len(), direction(), 0.2..0.6, ends).prop_map(
         |(model, direction, radius_a, (move_a, turn_a, move_b, turn_b))| {
@@ -35,7 +35,7 @@ fn bond() -> impl Strategy<Value = (Stiffness, Vector3<f64>, [End; 2])> {
     )
 }
 
-fn largest(forces: &BondForces) -> f64 {
+pub(crate) fn largest(forces: &BondForces) -> f64 {
     let torques = forces.torques.map(|t| t.norm());
     forces.force_on_b.norm().max(torques[0]).max(torques[1])
 }

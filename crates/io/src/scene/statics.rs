@@ -1,0 +1,60 @@
+//! What has no meaning where a run goes to the equilibrium at once.
+
+use super::field::Field;
+use super::table::Table;
+use super::tree::Value;
+use crate::Result;
+
+/// Tables of what touches, moves by itself, comes or goes.
+const TABLES: [&str; 7] = [
+    "contacts",
+    "walls",
+    "replacement",
+    "inlets",
+    "outlets",
+    "sleep",
+    "test",
+];
+
+/// Refuses what is more than bonded bodies, loads and supports in a scene that goes to its equilibrium at once.
+pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
+    if let Some((_, field)) = root.given(&TABLES).next() {
+        let problem = format!(
+            "[{}] stands in a scene with run.integrator = \"static\", which knows bonded bodies, loads and supports only",
+            field.path
+        );
+        let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+        return Err(field.refuse(problem, remedy));
+    }
+    let incremental = written(root, "bonds", "formulation", "incremental")?;
+    if let Some(field) = incremental {
+        let problem = format!(
+            "{} is \"incremental\": its forces follow from steps, of which run.integrator = \"static\" makes none",
+            field.path
+        );
+        let remedy = "write formulation = \"total\", or run.integrator = \"leapfrog\"";
+        return Err(field.refuse(problem, remedy));
+    }
+    if let Some(field) = written(root, "bodies", "start_as", "clump")? {
+        let problem = format!(
+            "{} is \"clump\", and run.integrator = \"static\" has nothing to do for a rigid body",
+            field.path
+        );
+        let remedy = "write start_as = \"bonded\", or run.integrator = \"leapfrog\"";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(())
+}
+
+/// The first `[table.NAME]` with this word for this key: the word.
+fn written<'a>(root: &Table<'a>, table: &str, key: &str, word: &str) -> Result<Option<Field<'a>>> {
+    for (_, one) in root.named(table)? {
+        let field = one.any_table()?.get(key);
+        let is_it =
+            |field: &Field<'_>| matches!(&field.node.value, Value::Text(text) if text == word);
+        if let Some(field) = field.filter(is_it) {
+            return Ok(Some(field));
+        }
+    }
+    Ok(None)
+}

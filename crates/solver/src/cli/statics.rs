@@ -1,0 +1,65 @@
+//! `dem-run check` of a scene that goes to its equilibrium at once.
+
+use dem_io::Result;
+use dem_io::safe_write::write_standard_output;
+use dem_io::scene::Scene;
+use serde_json::json;
+
+use super::check::size_text;
+use crate::plan::Plan;
+use crate::statics::Outlook;
+
+/// Keys and tables that mean nothing to such a scene.
+const UNUSED: &str = "run.rest, run.time_step, run.safety, run.adaptive, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
+
+/// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state take.
+pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
+    let state = &plan.state;
+    let outlook =
+        Outlook::of(state, scene.run.end_time_s).map_err(|error| error.within(&scene.source))?;
+    let bytes = state_bytes + outlook.memory_bytes;
+    write_standard_output(|out| {
+        if as_json {
+            let value = json!({
+                "scene": scene.source,
+                "particles": state.particles.len(),
+                "bonds": state.bonds.len(),
+                "equilibrium": outlook,
+                "memory_bytes": bytes,
+                "notes": plan.notes,
+            });
+            serde_json::to_writer_pretty(&mut *out, &value)?;
+            return writeln!(out);
+        }
+        writeln!(out, "{}", scene.describe())?;
+        let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");
+        line(
+            "holds",
+            &format!(
+                "{} particles, {} bonds",
+                state.particles.len(),
+                state.bonds.len()
+            ),
+        )?;
+        line(
+            "solves",
+            &format!(
+                "equilibrium under what acts at {} s: {} unknowns, {} freedoms held; no time steps",
+                scene.run.end_time_s, outlook.unknowns, outlook.held
+            ),
+        )?;
+        let factor = match outlook.factor_entries {
+            Some(entries) => format!("Cholesky, {entries} entries in the factor"),
+            None => {
+                "L U, as torques act on particles that can turn: several times as long as Cholesky"
+                    .to_owned()
+            }
+        };
+        line("by", &format!("Newton's method; {factor}"))?;
+        line("does not use", UNUSED)?;
+        for note in &plan.notes {
+            line("note", note)?;
+        }
+        line("memory", &format!("about {}", size_text(bytes)))
+    })
+}

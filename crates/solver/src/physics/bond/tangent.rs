@@ -1,0 +1,89 @@
+//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the very formulas of the forces ([`answer`]), differentiated exactly.
+
+use nalgebra::Vector3;
+
+use super::stiffness::Stiffness;
+use super::total::{End, answer};
+use crate::physics::dual::Dual;
+use crate::physics::number::{Triple, Turn};
+
+/// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z of the first (3..6), then those of the second.
+pub const FREEDOMS: usize = 12;
+
+/// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns, rad. Its entries are what a small move or turn takes: minus the
+/// derivatives of what the bond exerts.
+pub type BondTangent = [[f64; FREEDOMS]; FREEDOMS];
+
+/// Variables: where the second end stands from the first, the turns of the first and those of the second.
+type Number = Dual<9>;
+
+/// The tangent of a bond of the total formulation.
+///
+/// Turns are rotation vectors in space that are applied after the present rotation, q <- exp(turn) q. Where a torque acts on an end, the tangent is not symmetric in the
+/// turns of that end: K - K^T = the cross product with the torque that the bond exerts there.
+pub fn bond_tangent(
+    stiffness: &Stiffness,
+    direction: &Vector3<f64>,
+    ends: &[End; 2],
+) -> BondTangent {
+    let constant = Number::constant;
+    let stiffness = Stiffness {
+        normal: constant(stiffness.normal),
+        shear: constant(stiffness.shear),
+        torsion: constant(stiffness.torsion),
+        bending: constant(stiffness.bending),
+        levers_m: stiffness.levers_m.map(constant),
+    };
+    let direction = Triple(direction.x, direction.y, direction.z);
+    let Triple(dx, dy, dz) = direction;
+    let direction = Triple(constant(dx), constant(dy), constant(dz));
+    let apart = ends[1].position_m - ends[0].position_m;
+    let apart = Triple(
+        Number::variable(apart.x, 0),
+        Number::variable(apart.y, 1),
+        Number::variable(apart.z, 2),
+    );
+    let turned = [turning(&ends[0], 3), turning(&ends[1], 6)];
+    let answer = answer(&stiffness, direction, apart, turned);
+
+    let rows = |triple: Triple<Number>| [triple.0.slopes, triple.1.slopes, triple.2.slopes];
+    let (force_on_b, [torque_a, torque_b]) = (rows(answer.force_on_b), answer.torques.map(rows));
+    let mut tangent = [[0.0; FREEDOMS]; FREEDOMS];
+    for k in 0..3 {
+        let on_b = spread(&force_on_b[k], -1.0);
+        tangent[k] = on_b.map(|entry| -entry);
+        tangent[3 + k] = spread(&torque_a[k], -1.0);
+        tangent[6 + k] = on_b;
+        tangent[9 + k] = spread(&torque_b[k], -1.0);
+    }
+    tangent
+}
+
+/// How an end is turned, with the derivatives by a further turn: half of the turn times the present rotation. Variables from `first` on.
+fn turning(end: &End, first: usize) -> Turn<Number> {
+    let (v, w) = (end.turned.imag(), end.turned.w);
+    let mut parts = [v.x, v.y, v.z, w].map(Number::constant);
+    for k in 0..3 {
+        let mut half = Vector3::zeros();
+        half[k] = 0.5;
+        let change = half * w + half.cross(&v);
+        for (part, change) in parts.iter_mut().zip([change.x, change.y, change.z]) {
+            part.slopes[first + k] = change;
+        }
+        parts[3].slopes[first + k] = -half.dot(&v);
+    }
+    let [x, y, z, w] = parts;
+    Turn(Triple(x, y, z), w)
+}
+
+/// A row of the tangent from derivatives by the nine variables, times a factor.
+fn spread(slopes: &[f64; 9], factor: f64) -> [f64; FREEDOMS] {
+    let mut row = [0.0; FREEDOMS];
+    for k in 0..3 {
+        row[k] = -factor * slopes[k];
+        row[3 + k] = factor * slopes[3 + k];
+        row[6 + k] = factor * slopes[k];
+        row[9 + k] = factor * slopes[6 + k];
+    }
+    row
+}

@@ -1,0 +1,183 @@
+//! Equilibrium without steps: where bonded bodies on supports come to rest under the loads that act at the end of a run, found by Newton's method.
+//!
+//! Bonds, loads, gravity and supports are those of a run that steps, so at rest both give the same. What depends on motion (masses but for their weight, damping, time steps) means nothing
+//! here, and what touches, breaks, comes or goes is refused: run.integrator = "leapfrog" is for these.
+//!
+//! A support that holds one or two of the three turns of a particle holds the sum of its small turns about those axes. Where the particle turns far about the others as well, that depends on its
+//! way, which here is that of the Newton steps.
+
+pub mod factor;
+pub mod freedoms;
+pub mod held;
+pub mod matrix;
+pub mod moves;
+pub mod newton;
+mod outlook;
+mod record;
+
+pub use newton::{Cause, Equilibrium, Unsolved, equilibrium};
+pub use outlook::Outlook;
+pub use record::EquilibriumSummary;
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use dem_io::scene::Scene;
+use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+
+use crate::check::ledger::{Balance, elastic_energy};
+use crate::machine::processor_time_s;
+use crate::measure::{bond_utilisation, gauges, read_gauges};
+use crate::output::frames::FrameOrder;
+use crate::output::summary::Summary;
+use crate::plan::Plan;
+use crate::run::RunSettings;
+use crate::state::State;
+use crate::state::particles::Motion;
+
+use self::newton::{loads, six};
+use self::record::AtRest;
+
+/// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
+///
+/// # Errors
+/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, is interrupted, or its files cannot be written (1).
+pub fn run(
+    plan: Plan,
+    scene: &Scene,
+    settings: &RunSettings<'_>,
+    tell: &dyn Fn(f64),
+) -> Result<Summary> {
+    let mut gauges = gauges(scene, &plan);
+    let Plan {
+        mut state,
+        bodies,
+        notes,
+        ..
+    } = plan;
+    let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
+    let start_moments = moments(&state);
+    let end_s = scene.run.end_time_s;
+    let clock = Instant::now();
+    let processor_before_s = processor_time_s();
+    let goes_on = |share: f64| {
+        tell(share);
+        !settings.interrupted.load(Ordering::Relaxed)
+    };
+    let found = equilibrium(&mut state, end_s, &goes_on);
+    let found = found.map_err(|unsolved| problem(&unsolved, scene))?;
+    come_to_rest(&mut state, end_s, found.newton_steps as u64);
+    let wall_s = clock.elapsed().as_secs_f64();
+    let processor_s = processor_time_s().zip(processor_before_s);
+
+    let balance = balance(&state, start_moments);
+    let values = read_gauges(&mut gauges, &state, &balance);
+    let beyond = (0..state.bonds.len()).filter(|at| bond_utilisation(&state, *at) >= 1.0);
+    let found = EquilibriumSummary::new(&found, beyond.count());
+    let at_rest = AtRest {
+        state: &state,
+        scene,
+        gauges: &gauges,
+        balance: &balance,
+    };
+    let processor_s = processor_s.map(|(after, before)| after - before);
+    let summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    if let (Some(folder), Some(order)) = (settings.folder, order) {
+        at_rest.write(folder, &order, &values, &summary)?;
+    }
+    Ok(summary)
+}
+
+/// Makes of a state whose poses are in equilibrium one that has rested there for one long step: at `end_s`, without velocities, with the reactions of its supports.
+pub fn come_to_rest(state: &mut State, end_s: f64, steps: u64) {
+    let load = loads(state, end_s);
+    for motion in &mut state.particles.motions {
+        *motion = Motion {
+            velocity_m_s: [0.0; 3],
+            spin_rad_s: [0.0; 3],
+            ..*motion
+        };
+    }
+    for support in &mut state.supports {
+        for held in &mut support.held {
+            let i = held.particle as usize;
+            let bonds = six(&state.particles.wrenches[i]);
+            let mut reaction = [0.0; 6];
+            for k in (0..6).filter(|k| support.holds[*k].is_some()) {
+                reaction[k] = -(bonds[k] + load[i][k]);
+            }
+            held.before = [0.0; 6];
+            held.reactions = [reaction; 2];
+        }
+    }
+    state.time_s = end_s;
+    state.previous_time_step_s = end_s;
+    state.time_step_s = 0.0;
+    state.steps = steps;
+}
+
+/// What went wrong, for a person.
+fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
+    let place = scene.source.clone();
+    let share = significant(100.0 * unsolved.share, 4);
+    let reached = format!("an equilibrium was found for {share} % of the loads and displacements");
+    match unsolved.cause {
+        Cause::Pivot => Diagnostic::unstable(
+            place,
+            format!(
+                "{reached} and no stable one for more: a pivot of the stiffness is not positive there, so the body buckles or snaps through"
+            ),
+            "load it less; or see what it does then with run.integrator = \"leapfrog\"",
+        ),
+        Cause::NoConvergence => Diagnostic::unstable(
+            place,
+            format!(
+                "{reached}; beyond it Newton's method does not converge, the last residual is {} of the largest bond force",
+                significant(unsolved.residual, 2)
+            ),
+            "load it less; or see what it does then with run.integrator = \"leapfrog\"",
+        ),
+        Cause::Memory => Diagnostic::failed(
+            place,
+            "the factors of the stiffness do not fit into memory",
+            "use fewer particles, or run.integrator = \"leapfrog\"",
+        ),
+        Cause::Interrupted => Diagnostic::failed(
+            place,
+            format!("interrupted: {reached}"),
+            "a static run leaves no checkpoint: start it again",
+        ),
+    }
+}
+
+/// Sum of mass times place of all particles, kg m. Length 3.
+fn moments(state: &State) -> [f64; 3] {
+    let p = &state.particles;
+    crate::stages::motion::ordered_sums(p.len(), |i| {
+        let mass_kg = 1.0 / p.motions[i].inverse_mass;
+        let [x, y, z, _] = p.poses[i].position_m;
+        [x, y, z].map(|x| mass_kg * x)
+    })
+}
+
+/// Energies at rest. Works and errors depend on the way there, which nobody went: they are no numbers.
+fn balance(state: &State, start_moments: [f64; 3]) -> Balance {
+    let elastic = elastic_energy(state);
+    let now = moments(state);
+    let fallen = |k: usize| state.gravity_m_s2[k] * (now[k] - start_moments[k]);
+    Balance {
+        elastic_normal_j: elastic.normal,
+        elastic_shear_j: elastic.shear,
+        elastic_torsion_j: elastic.torsion,
+        elastic_bending_j: elastic.bending,
+        gravity_j: 0.0 - (0..3).map(fallen).sum::<f64>(),
+        load_work_j: f64::NAN,
+        support_work_j: f64::NAN,
+        energy_error_j: f64::NAN,
+        energy_error: f64::NAN,
+        momentum_error: f64::NAN,
+        angular_momentum_error: f64::NAN,
+        ..Balance::default()
+    }
+}

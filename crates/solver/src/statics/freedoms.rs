@@ -1,0 +1,115 @@
+//! Which freedoms of the particles are unknown, and where supports have those that are held at the end.
+
+use dem_io::scene::{Factor, Hold};
+
+use crate::stages::loads::factor_at;
+use crate::state::State;
+
+/// Stands for a freedom that is held.
+pub const HELD: usize = usize::MAX;
+
+/// The freedoms of all particles: moves along x, y, z, then turns about x, y, z.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Freedoms {
+    /// For each particle the numbers of its freedoms among the unknowns, rising; or [`HELD`]. Length 6 each.
+    pub unknown: Vec<[usize; 6]>,
+    /// Number of unknowns.
+    pub count: usize,
+    /// Particles that supports move or turn, and by how much from the start to the end: m, and rotation vectors in rad. A freedom that is free or fixed has 0.
+    pub moved: Vec<(u32, [f64; 6])>,
+}
+
+impl Freedoms {
+    /// Of a state that stands at its start, under what its supports prescribe until `end_s`.
+    pub fn new(state: &State, end_s: f64) -> Self {
+        let mut held = vec![[false; 6]; state.particles.len()];
+        let mut moves = vec![[0.0; 6]; state.particles.len()];
+        for support in &state.supports {
+            let way = support
+                .holds
+                .map(|hold| hold.map(|hold| way(hold, &support.factor, end_s)));
+            for one in &support.held {
+                let i = one.particle as usize;
+                for (k, way) in way.iter().enumerate() {
+                    if let Some(way) = way {
+                        held[i][k] = true;
+                        moves[i][k] = *way;
+                    }
+                }
+            }
+        }
+        let mut count = 0;
+        let unknown = held.iter().map(|held| {
+            held.map(|held| {
+                if held {
+                    return HELD;
+                }
+                count += 1;
+                count - 1
+            })
+        });
+        let unknown = unknown.collect();
+        let moved = (0_u32..).zip(moves);
+        Self {
+            unknown,
+            count,
+            moved: moved
+                .filter(|(_, by)| by.iter().any(|x| *x != 0.0))
+                .collect(),
+        }
+    }
+
+    /// Number of freedoms that are held.
+    pub fn held(&self) -> usize {
+        6 * self.unknown.len() - self.count
+    }
+
+    /// The unknowns of all particles, for each with its particle and which of the six freedoms it is.
+    pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> {
+        let six = |(i, of): (usize, &[usize; 6])| {
+            let of = *of;
+            (0..6).filter(move |k| of[*k] != HELD).map(move |k| (i, k))
+        };
+        self.unknown.iter().enumerate().flat_map(six)
+    }
+
+    /// Whether a torque may act on a particle at rest that is free to turn in more ways than one: then the tangent is not symmetric, even in equilibrium. The torque is that of
+    /// a load, or of a support that holds one of its three turns.
+    pub fn has_free_torques(&self, state: &State) -> bool {
+        let free_turns = |i: usize| self.unknown[i][3..].iter().filter(|n| **n != HELD).count();
+        let held_once = || (0..self.unknown.len()).any(|i| free_turns(i) == 2);
+        let loaded = || {
+            let with_torque = state.loads.iter().filter(|l| l.torque_n_m != [0.0; 3]);
+            let mut on = with_torque.flat_map(|load| &load.particles);
+            on.any(|i| free_turns(*i as usize) > 1)
+        };
+        held_once() || loaded()
+    }
+}
+
+/// How far a freedom that is held so has come at `end_s`, m or rad.
+fn way(hold: Hold, factor: &Factor, end_s: f64) -> f64 {
+    match hold {
+        Hold::Fixed => 0.0,
+        Hold::Displacement(d) => d * (factor_at(factor, end_s) - factor_at(factor, 0.0)),
+        Hold::Velocity(v) => v * integral_s(factor, end_s),
+    }
+}
+
+/// Integral of a factor from 0 to `end_s`, s: it is linear between its points.
+fn integral_s(factor: &Factor, end_s: f64) -> f64 {
+    let mut times = vec![0.0, end_s];
+    match factor {
+        Factor::One => {}
+        Factor::Ramp { until_s } => times.push(*until_s),
+        Factor::Table(points) => times.extend(points.iter().map(|point| point[0])),
+    }
+    times.retain(|time_s| (0.0..=end_s).contains(time_s));
+    times.sort_by(f64::total_cmp);
+    let spans = times.windows(2);
+    spans
+        .map(|span| {
+            0.5 * (span[1] - span[0]) * (factor_at(factor, span[0]) + factor_at(factor, span[1]))
+        })
+        .sum()
+}

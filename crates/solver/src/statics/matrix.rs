@@ -1,0 +1,131 @@
+//! The tangent of a whole scene as a sparse matrix, by columns: what its bonds answer to small moves and turns of the unknowns.
+
+use crate::physics::bond::tangent::{BondTangent, FREEDOMS};
+use crate::state::State;
+use crate::state::bonds::Bonds;
+use crate::state::particles::Pose;
+
+use super::freedoms::{Freedoms, HELD};
+
+/// A square matrix over the unknowns. Its pattern stays while its entries change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrix {
+    /// Only the lower triangle of the symmetric part, (K + K^T)/2, is there.
+    pub symmetric: bool,
+    /// Where the entries of each column begin, and the end of the last one.
+    pub starts: Vec<usize>,
+    /// Rows of the entries, rising in each column.
+    pub rows: Vec<usize>,
+    /// The entries, N/m, N, N m.
+    pub values: Vec<f64>,
+}
+
+impl Matrix {
+    /// The pattern of a state: every particle with itself and with those that bonds join it to. All entries are 0.
+    pub fn pattern(state: &State, freedoms: &Freedoms, symmetric: bool) -> Self {
+        let mut neighbours: Vec<Vec<u32>> =
+            (0..state.particles.len() as u32).map(|i| vec![i]).collect();
+        for (at, &[a, b]) in state.bonds.ends.iter().enumerate() {
+            if !state.bonds.is_broken(at) {
+                neighbours[a as usize].push(b);
+                neighbours[b as usize].push(a);
+            }
+        }
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for (own, neighbours) in freedoms.unknown.iter().zip(&mut neighbours) {
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            for column in own.iter().filter(|n| **n != HELD) {
+                let of_neighbours = neighbours
+                    .iter()
+                    .flat_map(|j| freedoms.unknown[*j as usize]);
+                rows.extend(
+                    of_neighbours.filter(|row| *row != HELD && (!symmetric || row >= column)),
+                );
+                starts.push(rows.len());
+            }
+        }
+        Self {
+            symmetric,
+            values: vec![0.0; rows.len()],
+            starts,
+            rows,
+        }
+    }
+
+    /// Sets the entries to the tangents of all bonds at these poses, in the order of the bonds.
+    pub fn assemble(&mut self, bonds: &Bonds, freedoms: &Freedoms, poses: &[Pose]) {
+        self.values.fill(0.0);
+        for at in (0..bonds.len()).filter(|at| !bonds.is_broken(*at)) {
+            let unknowns = of_ends(bonds, freedoms, at);
+            self.add(&unknowns, &bonds.tangent(at, poses));
+        }
+    }
+
+    fn add(&mut self, unknowns: &[usize; FREEDOMS], tangent: &BondTangent) {
+        for (j, &column) in unknowns.iter().enumerate() {
+            if column == HELD {
+                continue;
+            }
+            let entries = self.starts[column]..self.starts[column + 1];
+            for end in [0..6, 6..FREEDOMS] {
+                // The rows of a particle stand together.
+                let mut place = None;
+                for i in end {
+                    let row = unknowns[i];
+                    if row == HELD || (self.symmetric && row < column) {
+                        continue;
+                    }
+                    let at = place.unwrap_or_else(|| {
+                        let rows = &self.rows[entries.clone()];
+                        entries.start + rows.partition_point(|r| *r < row)
+                    });
+                    self.values[at] += if self.symmetric {
+                        0.5 * (tangent[i][j] + tangent[j][i])
+                    } else {
+                        tangent[i][j]
+                    };
+                    place = Some(at + 1);
+                }
+            }
+        }
+    }
+}
+
+/// What acts on the unknowns because supports move by these ways, m and rad, before the others follow: minus the tangent times the ways, N and N m.
+pub fn pulled_by_supports(
+    bonds: &Bonds,
+    freedoms: &Freedoms,
+    poses: &[Pose],
+    ways: &[(u32, [f64; 6])],
+) -> Vec<f64> {
+    let mut pulled = vec![0.0; freedoms.count];
+    let way_of = |particle: u32| {
+        let found = ways.binary_search_by_key(&particle, |(moved, _)| *moved);
+        found.ok().map(|n| ways[n].1)
+    };
+    for at in (0..bonds.len()).filter(|at| !bonds.is_broken(*at)) {
+        let ways = bonds.ends[at].map(way_of);
+        if ways == [None; 2] {
+            continue;
+        }
+        let [a, b] = ways.map(Option::unwrap_or_default);
+        let tangent = bonds.tangent(at, poses);
+        for (&unknown, row) in of_ends(bonds, freedoms, at).iter().zip(&tangent) {
+            if unknown != HELD {
+                let ways = a.iter().chain(&b);
+                pulled[unknown] -= row.iter().zip(ways).map(|(k, way)| k * way).sum::<f64>();
+            }
+        }
+    }
+    pulled
+}
+
+/// The numbers of the freedoms of both ends of bond `at`.
+fn of_ends(bonds: &Bonds, freedoms: &Freedoms, at: usize) -> [usize; FREEDOMS] {
+    let [a, b] = bonds.ends[at].map(|end| freedoms.unknown[end as usize]);
+    let mut both = [HELD; FREEDOMS];
+    both[..6].copy_from_slice(&a);
+    both[6..].copy_from_slice(&b);
+    both
+}

@@ -1,0 +1,89 @@
+//! Equilibrium without steps: closed forms, convergence, supports, stability, refusals, and what runs that step come to.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops where it fails, and says what it measured"
+)]
+
+#[path = "../step/bars.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
+mod bars;
+mod convergence;
+mod elastica;
+mod explicit;
+mod large_turns;
+mod refused;
+mod small_loads;
+mod stability;
+mod supports;
+
+use dem_io::scene::{Factor, Hold};
+use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::stages::loads::SetLoad;
+use dem_run::stages::supports::{Held, SetSupport};
+use dem_run::state::State;
+use dem_run::statics::{Equilibrium, come_to_rest, equilibrium};
+use nalgebra::Vector3;
+
+use crate::bars::{ELASTIC, body, spheres, steel};
+
+/// When loads and supports are what they are, s.
+const END_S: f64 = 1.0;
+
+/// A bar of steel along x: so many bonds of length 0.4 m and radius 0.2 m times a factor.
+fn bar(model: BondModel, bonds: u32, radius_factor: f64) -> State {
+    let (particles, pairs) = spheres(bonds + 1);
+    let mut bonding = steel(model, ELASTIC);
+    bonding.radius_factor = radius_factor;
+    body(particles, &pairs, &bonding, 1.0)
+}
+
+/// Holds these freedoms of these particles.
+fn hold(state: &mut State, particles: &[u32], holds: [Option<Hold>; 6], factor: Factor) {
+    let held = |&particle: &u32| Held {
+        particle,
+        ..Held::default()
+    };
+    state.supports.push(SetSupport {
+        holds,
+        factor,
+        held: particles.iter().map(held).collect(),
+    });
+}
+
+/// Holds all freedoms of these particles.
+fn fix(state: &mut State, particles: &[u32]) {
+    hold(state, particles, [Some(Hold::Fixed); 6], Factor::One);
+}
+
+/// Loads each of these particles.
+fn load(state: &mut State, particles: &[u32], force_n: [f64; 3], torque_n_m: [f64; 3]) {
+    state.loads.push(SetLoad {
+        particles: particles.to_vec(),
+        force_n,
+        torque_n_m,
+        factor: Factor::One,
+    });
+}
+
+/// Brings a state to rest, whole.
+fn rest(state: &mut State) -> Equilibrium {
+    let found = equilibrium(state, END_S, &|_| true).unwrap();
+    come_to_rest(state, END_S, 1);
+    found
+}
+
+/// How far a particle of a bar has moved.
+fn moved(state: &State, i: usize) -> Vector3<f64> {
+    state.particles.poses[i].place() - Vector3::new(0.4 * i as f64, 0.0, 0.0)
+}
+
+fn assert_near(found: f64, wanted: f64, tolerance: f64, what: &str) {
+    let off = (found / wanted - 1.0).abs();
+    assert!(
+        off < tolerance,
+        "{what}: {found} instead of {wanted}, off by {off:.1e}"
+    );
+}

@@ -1,0 +1,121 @@
+//! Scenes that have no equilibrium to find, or none that is found.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::BodySource;
+use dem_io::{Body, Diagnostic, scene_from_text};
+use dem_run::plan::plan;
+
+/// A scene of a body of these particles and bonds, and what else it has.
+fn refusal(particles: &str, bonds: &str, more: &str) -> Diagnostic {
+    let text = format!(
+        r#"version = 1
+[run]
+end_time = "1 s"
+integrator = "static"
+[materials.steel]
+density = 7850
+[bonds.steel]
+young_modulus = "200 GPa"
+poisson_ratio = 0.3
+[bodies.bar]
+material = "steel"
+bonds = "steel"
+particles = [{particles}]
+{bonds}
+{more}"#
+    );
+    let scene = scene_from_text(&text, "bar.toml", &[]).unwrap();
+    let mut bodies = BTreeMap::new();
+    for (name, entry) in &scene.bodies {
+        if let BodySource::Inline { particles, bonds } = &entry.source {
+            bodies.insert(name.clone(), Body::from_spheres(particles, bonds).unwrap());
+        }
+    }
+    let problem = plan(&scene, bodies, 1, false).expect_err("is refused");
+    assert_eq!(problem.exit_code(), 2);
+    problem
+}
+
+const THREE: &str = "[0, 0, 0, 0.2], [0.4, 0, 0, 0.2], [0.8, 0, 0, 0.2]";
+const CLAMP: &str = "[sets.end]\nparticles = [0]\n[supports.end]\nof = \"end\"\n";
+
+#[test]
+fn a_body_that_nothing_holds() {
+    let said = refusal(THREE, "bond_list = [[0, 1], [1, 2]]", "").to_string();
+    assert_eq!(
+        said,
+        "bar.toml: run.integrator: the piece of 3 particles with particle 0 of the body 'bar' is not held: 6 of its 6 rigid motions are free, so that \"static\" has no equilibrium to find; hold more of it by [supports]; fixed = true on some particles is enough"
+    );
+}
+
+#[test]
+fn a_body_that_is_held_too_little() {
+    for (fixed, free) in [
+        (
+            r#"fixed = ["x", "y", "z"]"#,
+            "3 of its 6 rigid motions are free",
+        ),
+        (
+            r#"fixed = ["x", "y", "z", "rx", "ry"]"#,
+            "1 of its 6 rigid motions is free",
+        ),
+        (
+            r#"fixed = ["rx", "ry", "rz"]"#,
+            "3 of its 6 rigid motions are free",
+        ),
+    ] {
+        let said = refusal(
+            THREE,
+            "bond_list = [[0, 1], [1, 2]]",
+            &format!("{CLAMP}{fixed}"),
+        )
+        .to_string();
+        assert!(said.contains(free), "{said}");
+    }
+    // Two points hold all but the turn about the line through them.
+    let hinges = "[sets.ends]\nparticles = [0, 2]\n[supports.ends]\nof = \"ends\"\nfixed = [\"x\", \"y\", \"z\"]";
+    let said = refusal(THREE, "bond_list = [[0, 1], [1, 2]]", hinges).to_string();
+    assert!(said.contains("1 of its 6 rigid motions is free"), "{said}");
+}
+
+#[test]
+fn a_piece_that_is_not_held() {
+    let said = refusal(
+        "[0, 0, 0, 0.2], [0.4, 0, 0, 0.2], [0.8, 0, 0, 0.2], [1.2, 0, 0, 0.2]",
+        "bond_list = [[0, 1], [2, 3]]",
+        &format!("{CLAMP}fixed = true"),
+    )
+    .to_string();
+    assert!(
+        said.contains("the piece of 2 particles with particle 2 of the body 'bar'"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_particle_without_a_bond() {
+    let said = refusal(
+        THREE,
+        "bond_list = [[0, 1]]",
+        &format!("{CLAMP}fixed = true"),
+    )
+    .to_string();
+    assert!(
+        said.contains("particle 2 of the body 'bar' has no bond"),
+        "{said}"
+    );
+    assert!(
+        said.contains("hold all its freedoms by [supports], or bond it"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_body_without_bonds() {
+    let said = refusal(THREE, "", &format!("{CLAMP}fixed = true")).to_string();
+    assert!(
+        said.starts_with("bar.toml: [bodies.bar]: the body has no bonds"),
+        "{said}"
+    );
+}

@@ -1,0 +1,279 @@
+//! Scenes that go to their equilibrium at once: `run.integrator = "static"`.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::{Bench, assert_same, dem_run, names_in, numbers, refused, scene_of_data, table};
+
+const STATIC: [&str; 2] = ["--set", "run.integrator=static"];
+
+/// The cantilever with these options on top.
+fn cantilever(bench: &Bench, options: &[&str]) -> String {
+    let options = [&STATIC[..], options].concat();
+    bench.good(&scene_of_data("cantilever.toml"), &options)
+}
+
+fn summary(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn measured(summary: &Value, name: &str) -> f64 {
+    let measures = summary["measures"].as_array().unwrap();
+    let one = measures.iter().find(|m| m["name"] == name).unwrap();
+    one["value"].as_f64().unwrap()
+}
+
+#[test]
+fn says_how_the_equilibrium_was_found() {
+    let bench = Bench::new();
+    let said = cantilever(&bench, &[]);
+    let mut lines = said.lines();
+    assert!(
+        lines
+            .next()
+            .unwrap()
+            .contains("cantilever.toml: equilibrium at 4 s in ")
+    );
+    assert!(
+        said.contains("tip_deflection -8.5342 mm   theory -8.53424 mm   error "),
+        "{said}"
+    );
+    let line = said
+        .lines()
+        .find(|line| line.starts_with("equilibrium "))
+        .unwrap();
+    assert!(
+        line.contains(" Newton iterations, residual ")
+            && line.ends_with(" of the largest bond force"),
+        "{line}"
+    );
+    assert!(
+        said.contains("solved       60 unknowns; 6 freedoms held\n"),
+        "{said}"
+    );
+    assert!(
+        said.ends_with("verdict      sound: nothing to mind\n"),
+        "{said}"
+    );
+    for absent in ["steps ", "left out", "energy "] {
+        assert!(!said.contains(absent), "{said}");
+    }
+    assert!(bench.files().is_empty());
+}
+
+/// Run on by steps until rounding alone is left, the tip stands where it does at once.
+#[test]
+fn the_tip_is_where_steps_bring_it() {
+    let bench = Bench::new();
+    let at_once = summary(&cantilever(&bench, &["--json"]));
+    let rest = [
+        "--set",
+        "run.rest=1e-26",
+        "--set",
+        "run.particle_damping=0.7",
+        "--json",
+    ];
+    let stepped = bench.good(&scene_of_data("cantilever.toml"), &rest);
+    let stepped = summary(&stepped);
+    for name in ["tip_deflection", "clamp_force"] {
+        let (found, wanted) = (measured(&at_once, name), measured(&stepped, name));
+        assert!(
+            (found / wanted - 1.0).abs() < 1e-8,
+            "{name}: {found} and {wanted}"
+        );
+    }
+    let found = &at_once["equilibrium"];
+    assert_eq!(found["unknowns"], 60);
+    assert_eq!(found["held"], 6);
+    assert_eq!(found["load_steps"], 1);
+    assert_eq!(found["bonds_beyond_strength"], 0);
+    assert_eq!(found["stable"], true);
+    assert!(found["residual"].as_f64().unwrap() < 1e-9);
+    assert_eq!(at_once["ended_by"], "equilibrium");
+    assert_eq!(at_once["steps"], found["newton_steps"]);
+    assert_eq!(at_once["energy_error"], Value::Null);
+    assert!(stepped.get("equilibrium").is_none());
+    // A run of less than a millisecond has its times, too.
+    for time in ["wall_s", "processor_s"] {
+        let [found, steps] = [&at_once, &stepped].map(|s| s[time].as_f64().unwrap());
+        assert!(
+            found > 0.0 && found < 0.1 * steps,
+            "{time}: {found} and {steps}"
+        );
+    }
+}
+
+#[test]
+fn writes_one_frame_and_one_row() {
+    let bench = Bench::new();
+    let said = cantilever(&bench, &["--json", "--out", "out"]);
+    let files = [
+        ".lock",
+        "events.csv",
+        "frames",
+        "frames.pvd",
+        "series.csv",
+        "summary.json",
+    ];
+    assert_eq!(names_in(&bench.path("out")), files);
+    assert_eq!(
+        fs::read_to_string(bench.path("out/summary.json")).unwrap(),
+        said
+    );
+    assert_eq!(names_in(&bench.path("out/frames")).len(), 1);
+    let series = bench.path("out/series.csv");
+    assert_eq!(table(&series).1.len(), 1);
+    assert_eq!(numbers(&series, "time_s"), [4.0]);
+    assert_eq!(numbers(&series, "kinetic_energy_j"), [0.0]);
+    let tip = numbers(&series, "tip_deflection_m")[0];
+    assert_eq!(tip, measured(&summary(&said), "tip_deflection"));
+    // Of a load that rises, half of load times way is stored.
+    let elastic = numbers(&series, "elastic_energy_j")[0];
+    assert!((elastic / (-0.5e5 * tip) - 1.0).abs() < 1e-4, "{elastic}");
+    assert!(numbers(&series, "load_work_j")[0].is_nan());
+    assert_eq!(table(&bench.path("out/events.csv")).1.len(), 0);
+}
+
+#[test]
+fn files_are_the_same_for_any_number_of_threads() {
+    let bench = Bench::new();
+    for threads in ["1", "2"] {
+        cantilever(&bench, &["--out", threads, "--threads", threads]);
+    }
+    assert_same(&bench.path("1"), &bench.path("2"));
+}
+
+#[test]
+fn check_says_what_is_solved() {
+    let bench = Bench::new();
+    let scene = scene_of_data("cantilever.toml");
+    let check = |more: &[&str]| {
+        let output = dem_run()
+            .current_dir(bench.path(""))
+            .arg("check")
+            .arg(&scene)
+            .args(STATIC)
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let said = check(&[]);
+    for part in [
+        "run.integrator                           static\n",
+        "holds          11 particles, 10 bonds\n",
+        "solves         equilibrium under what acts at 4 s: 60 unknowns, 6 freedoms held; no time steps\n",
+        "by             Newton's method; Cholesky, ",
+        "does not use   run.rest, run.time_step, ",
+        "memory         about ",
+    ] {
+        assert!(said.contains(part), "'{part}' is not in\n{said}");
+    }
+    let torque = check(&["--set", "loads.tip.torque=[0, 0, 1]"]);
+    assert!(
+        torque.contains("by             Newton's method; L U, as torques act on"),
+        "{torque}"
+    );
+    let json = summary(&check(&["--json"]));
+    assert_eq!(json["equilibrium"]["unknowns"], 60);
+    assert!(json["equilibrium"]["factor_entries"].as_u64().unwrap() >= 60 * 61 / 2 / 6);
+    assert!(json["memory_bytes"].as_u64().unwrap() > 1000);
+    assert!(bench.files().is_empty());
+}
+
+#[test]
+fn a_body_beyond_its_strength_is_not_sound() {
+    let bench = Bench::new();
+    let weak = ["--set", "bonds.steel.failure.tension=50 MPa"];
+    let said = cantilever(&bench, &weak);
+    // The moment falls evenly from the clamp: of 64 MPa there.
+    let line = said.lines().last().unwrap();
+    assert!(line.contains(" bonds are beyond their strength: the body would break; run it with run.integrator = \"leapfrog\""), "{said}");
+    let json = summary(&cantilever(&bench, &[&weak[..], &["--json"]].concat()));
+    let beyond = json["equilibrium"]["bonds_beyond_strength"]
+        .as_u64()
+        .unwrap();
+    let stress = |at: u64| {
+        1e5 * (4.0 - 0.4 * at as f64 - 0.2) / (0.25 * std::f64::consts::PI * 0.2_f64.powi(3))
+    };
+    assert_eq!(
+        beyond,
+        (0..10).filter(|at| stress(*at) >= 50e6).count() as u64
+    );
+    assert!((1..10).contains(&beyond));
+}
+
+#[test]
+fn what_buckles_is_unstable() {
+    let bench = Bench::new();
+    let scene = scene_of_data("cantilever.toml");
+    let options = [
+        &STATIC[..],
+        &[
+            "--set",
+            "loads.tip.force=[\"-200 MN\", 0, 0]",
+            "--out",
+            "out",
+        ],
+    ]
+    .concat();
+    let said = bench.bad(&scene, &options, 3);
+    assert!(said.contains("% of the loads and displacements and no stable one for more: a pivot of the stiffness is not positive there, so the body buckles or snaps through"), "{said}");
+    // Euler's load of the slender column is 38.8 MN, 19.4 %.
+    let share = said
+        .split_once("found for ")
+        .unwrap()
+        .1
+        .split_once(" %")
+        .unwrap()
+        .0;
+    let share: f64 = share.parse().unwrap();
+    assert!((17.0..20.0).contains(&share), "{said}");
+    assert!(!bench.path("out/summary.json").exists());
+}
+
+#[test]
+fn there_is_nothing_to_resume() {
+    let bench = Bench::new();
+    let scene = scene_of_data("cantilever.toml");
+    let options = [&STATIC[..], &["--out", "out"]].concat();
+    let output = bench.run(&scene, &[&options[..], &["--resume"]].concat());
+    let (said, code) = refused(&output);
+    assert_eq!(code, 2);
+    assert!(
+        said.contains("--resume: run.integrator = \"static\" leaves no checkpoint to go on from"),
+        "{said}"
+    );
+    assert!(bench.files().is_empty());
+}
+
+/// Both ways in one sweep: the same values, at very different times.
+#[test]
+fn a_sweep_compares_it_with_steps() {
+    let bench = Bench::new();
+    let study = format!(
+        "version = 1\nscene = \"{}\"\ntime = \"processor\"\n[set]\n\"run.rest\" = 1e-26\n\"run.particle_damping\" = 0.7\n[vary]\n\"run.integrator\" = [\"leapfrog\", \"static\"]\n[measures.tip_deflection]\nreference = \"closed-form\"\n",
+        scene_of_data("cantilever.toml").display()
+    );
+    bench.write("study.toml", study);
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .args(["sweep", "study.toml", "--quiet"])
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let table = bench.path("study-sweep/sweep.csv");
+    let [steps, at_once] = numbers(&table, "tip_deflection_value")[..] else {
+        panic!("two runs")
+    };
+    assert!((at_once / steps - 1.0).abs() < 1e-8);
+    let times = numbers(&table, "time_s");
+    assert!(times[1] > 0.0 && times[1] < 0.1 * times[0], "{times:?}");
+    assert_eq!(numbers(&table, "tip_deflection_front"), [0.0, 1.0]);
+}
