@@ -6,6 +6,7 @@ mod adaptive;
 mod bad_bodies;
 mod bad_input;
 mod body_information;
+mod browser;
 mod check;
 mod corpus;
 mod disk;

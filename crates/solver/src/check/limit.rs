@@ -1,6 +1,7 @@
 //! The largest stable time step: from the largest eigenvalue of the linearised system, found by Lanczos' method on the real forces.
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use serde::{Deserialize, Serialize};
 
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
@@ -24,7 +25,7 @@ const NEAR: f64 = 1e-3;
 const TRIES: usize = 8;
 
 /// What was found of the largest stable step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Largest stable step, s. Infinite where nothing vibrates.
     pub step_s: f64,

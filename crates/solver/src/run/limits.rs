@@ -8,7 +8,7 @@ use super::events::{change, new_step};
 use super::progress::Progress;
 use crate::check::ledger::kinetic_energy;
 use crate::check::limit::limit;
-use crate::check::linear::largest_contact_rate_1_s2;
+use crate::check::linear::{contact_rates, largest_contact_rate_1_s2};
 use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
@@ -131,11 +131,14 @@ impl<'a> Limits<'a> {
             let rate = largest_contact_rate_1_s2(state);
             if rate > STIFFER * progress.contact_rate_1_s2 {
                 progress.contact_rate_1_s2 = rate;
-                look = true;
+                // A bound is found quickly: mostly it says that the step still is small enough.
+                let bound_s = progress.limit.with_more(contact_rates(state));
+                look |= state.time_step_s > self.safety.unwrap_or(1.0) * bound_s;
             }
         }
         if look {
-            progress.limit_s = progress.limit_s.min(limit(state).step_s);
+            progress.limit = limit(state);
+            progress.limit_s = progress.limit_s.min(progress.limit.step_s);
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
                 self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;
 use crate::check::ledger::{Balance, over};
+use crate::check::limit::Limit;
 use crate::laboratory::record::Record;
 use crate::plan::time_step::{Outlook, StepChoice};
 use crate::state::State;
@@ -36,6 +37,8 @@ pub struct Progress {
     largest_errors: [f64; 3],
     /// Largest stable step when it was last looked for, s.
     pub(super) limit_s: f64,
+    /// What was found then, of bonds and of the contacts that there were.
+    pub(super) limit: Limit,
     /// Largest strain of a bond at that time.
     pub(super) limit_strain: f64,
     /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
@@ -130,6 +133,7 @@ impl Progress {
         Self {
             rhythm,
             limit_s: choice.foreseen_s,
+            limit: choice.limit,
             contact_rate_1_s2: choice.contact_rate_1_s2,
             impact_speed_m_s: choice.impact_speed_m_s,
             had_bonds: true,
@@ -141,6 +145,7 @@ impl Progress {
     /// From now on the step is right for this.
     pub(super) fn allow_for(&mut self, outlook: &Outlook) {
         self.limit_s = outlook.foreseen_s;
+        self.limit = outlook.limit;
         self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
         self.impact_speed_m_s = outlook.impact_speed_m_s;
     }

@@ -2,6 +2,8 @@
 
 use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::ledger::{Ledger, balance};
+use dem_run::check::limit::{Limit, limit};
+use dem_run::check::linear::contact_rates;
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::state::State;
 use dem_run::state::walls::Wall;
@@ -93,4 +95,38 @@ fn the_books_balance_whatever_the_walls_do() {
             "{name}: {errors:?}"
         );
     }
+}
+
+/// The limit of contacts alone, found quickly and found exactly: the first is never above the second, and not far below.
+#[test]
+fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
+    let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);
+    let free = Limit {
+        step_s: f64::INFINITY,
+        ..Limit::default()
+    };
+    let mut shares = Vec::new();
+    while state.time_s < 4e-3 {
+        act(&mut state);
+        if state.steps.is_multiple_of(200) {
+            let exact_s = limit(&mut state).step_s;
+            let bound_s = free.with_more(contact_rates(&state));
+            if exact_s.is_finite() {
+                shares.push(bound_s / exact_s);
+            }
+        }
+        move_on(&mut state);
+    }
+    let smallest = shares
+        .iter()
+        .fold(f64::INFINITY, |least, share| least.min(*share));
+    let largest = shares.iter().fold(0.0_f64, |most, share| most.max(*share));
+    eprintln!(
+        "{} limits, bounds {smallest:.3} to {largest:.3} of them",
+        shares.len()
+    );
+    assert!(
+        shares.len() > 30 && smallest > 0.3 && largest < 1.0 + 1e-4,
+        "{shares:?}"
+    );
 }
