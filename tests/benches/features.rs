@@ -33,14 +33,13 @@ const STEPS: u32 = 60;
 /// What is compared: a free, turning body without anything else; or what a feature is compared with.
 const PLAIN: &str = "a free body";
 
-/// A scene: its name, what it is compared with, what it does more, and its text in place of run, bonds, body and tables.
+/// A scene: its name, what it is compared with, what it does more, and its text in place of run, bonds and tables.
 struct Case {
     name: &'static str,
     beside: &'static str,
     stage: Stage,
     run: &'static str,
     bonds: &'static str,
-    body: &'static str,
     tables: &'static str,
 }
 
@@ -50,13 +49,12 @@ const CASE: Case = Case {
     stage: Stage::Bonds,
     run: "",
     bonds: "",
-    body: "",
     tables: "",
 };
 const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n";
 const FLOOR: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n[walls.floor]\nplane = { point = [0, 0, -1e-4], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 12] = [
     CASE,
     Case {
         name: "bond history",
@@ -128,22 +126,12 @@ const CASES: [Case; 13] = [
         tables: MEETS,
         ..CASE
     },
-    Case {
-        name: "rigid clump in place of bonds",
-        stage: Stage::Clumps,
-        body: "start_as = \"clump\"",
-        ..CASE
-    },
 ];
 
 impl Case {
     fn state(&self, body: &Body) -> State {
         let Self {
-            run,
-            bonds,
-            body: of_body,
-            tables,
-            ..
+            run, bonds, tables, ..
         } = self;
         let text = format!(
             "version = 1
@@ -162,7 +150,6 @@ file = \"cake.vtp\"
 material = \"stuff\"
 bonds = \"stuff\"
 angular_velocity = [1, 0, 0]
-{of_body}
 {tables}"
         );
         let text = text.replace("RUN", run.trim_start_matches(", "));

@@ -47,6 +47,8 @@ pub struct Plan {
     pub sets: BTreeMap<String, Vec<u32>>,
     /// The time step and why.
     pub step: StepChoice,
+    /// Whether the step follows the limit up as well as down.
+    pub is_adaptive: bool,
     /// The stages of a step.
     pub stages: Vec<PlannedStage>,
     /// What is odd about the scene but harmless, a sentence each.
@@ -112,6 +114,7 @@ pub fn plan(
         bodies,
         sets,
         step,
+        is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
         notes,
     })

@@ -222,9 +222,9 @@ pub fn run(
             .and_then(|files| files.pictures.as_ref())
             .is_some_and(|pictures| pictures.are_due(&state));
         let since = state.steps.is_multiple_of(LOOKS_EVERY).then(Instant::now);
-        let is_odd = watchdog.is_due(&state);
+        let watchdog_due = watchdog.is_due(&state);
         state.clock.book_checks(since);
-        let output_due = row_due || frame_due || checkpoint_due || picture_due || is_odd;
+        let output_due = row_due || frame_due || checkpoint_due || picture_due || watchdog_due;
         let output_since = output_due.then(Instant::now);
         if output_due {
             place_all(&state.clumps, &mut state.particles);
@@ -232,7 +232,7 @@ pub fn run(
         let mut rests = false;
         let mut balanced = None;
         // A checkpoint of a run that has gone unstable would be worth nothing.
-        if row_due || checkpoint_due || is_odd {
+        if row_due || checkpoint_due || watchdog_due {
             let balance = balance(&mut state);
             if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
                 return Err(with_checkpoint(problem, files.as_ref()));

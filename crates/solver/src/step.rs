@@ -195,14 +195,12 @@ fn count_done(state: &mut State) {
     for support in &state.supports {
         clock.did(Stage::Supports, support.held.len());
     }
-    let bodies = state.clumps.all.iter().filter(|clump| !clump.asleep);
-    clock.did(Stage::Clumps, bodies.count());
+    let awake = state.clumps.all.iter().filter(|clump| !clump.asleep);
+    let clumps = awake.count();
+    clock.did(Stage::Clumps, clumps);
     clock.did(Stage::Motion, state.particles.free);
     if state.gravity_m_s2 != [0.0; 3] {
-        clock.did(
-            Stage::Gravity,
-            state.particles.free + state.clumps.all.len(),
-        );
+        clock.did(Stage::Gravity, state.particles.free + clumps);
     }
 }
 

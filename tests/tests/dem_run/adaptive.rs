@@ -103,3 +103,134 @@ fn without_anything_that_vibrates_steps_are_large_and_a_flight_is_the_same() {
     let apart = (place(&following) / place(&falling) - 1.0).abs();
     assert!(apart < 1e-9, "{apart:e}");
 }
+
+fn measure(of: &Value, name: &str) -> f64 {
+    let all = of["measures"].as_array().unwrap();
+    let found = all.iter().find(|measure| measure["name"] == name).unwrap();
+    found["value"].as_f64().unwrap()
+}
+
+/// Two elastic spheres that have come to a halt on each other when the step is looked at: their impact is not over.
+const MID_CONTACT: &str = r#"version = 1
+[run]
+end_time = "0.5 s"
+adaptive = true
+[materials.gel]
+density = "1000 kg/m3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+[contacts]
+gel-gel = { restitution = 1.0 }
+[bodies.a]
+material = "gel"
+particles = [[0, 0, 0, 0.01]]
+velocity = [1, 0, 0]
+[bodies.b]
+material = "gel"
+particles = [[0.2516, 0, 0, 0.01]]
+velocity = [-1, 0, 0]
+[measures.v]
+of = "a"
+quantity = "velocity_x"
+"#;
+
+#[test]
+fn the_step_does_not_rise_in_the_middle_of_a_contact() {
+    let bench = Bench::new();
+    for gap in ["0.2516", "0.2503", "0.2527"] {
+        let scene = bench.write("mid.toml", MID_CONTACT.replace("0.2516", gap));
+        let run = |adaptive: &str| {
+            let set = format!("run.adaptive={adaptive}");
+            summary(&bench, &scene, &["--set", &set])
+        };
+        let (following, falling) = (run("true"), run("false"));
+        let error = |of: &Value| of["energy_error"].as_f64().unwrap();
+        assert!(
+            error(&following) < 2.0 * error(&falling),
+            "{gap}: {following}"
+        );
+        assert!((measure(&following, "v") + 1.0).abs() < 2e-3, "{following}");
+    }
+}
+
+/// The step rises as the stiff body leaves, and what is listed as near was listed for small steps: two soft spheres meet then.
+const LATE_LISTING: &str = r#"version = 1
+[run]
+end_time = "0.15 s"
+adaptive = true
+[materials.gel]
+density = "1000 kg/m3"
+young_modulus = "60 kPa"
+poisson_ratio = 0.3
+[materials.hard]
+density = "1000 kg/m3"
+young_modulus = "200 MPa"
+poisson_ratio = 0.3
+[contacts]
+gel-gel = { restitution = 1.0 }
+hard-gel = { restitution = 1.0 }
+hard-hard = { restitution = 1.0 }
+[bonds.b]
+model="timoshenko"
+young_modulus="200 MPa"
+poisson_ratio=0.3
+failure={tension="1 GPa"}
+[search]
+skin = 0.1
+[bodies.a]
+material = "gel"
+particles = [[0, 0, 0, 0.01]]
+velocity = [1, 0, 0]
+[bodies.b]
+material = "gel"
+particles = [[0.181950588977714, 0, 0, 0.01]]
+velocity = [-1, 0, 0]
+[bonds.soft]
+model="timoshenko"
+young_modulus="1 kPa"
+poisson_ratio=0.3
+failure={tension="1 GPa"}
+[bodies.stay]
+material = "gel"
+bonds = "soft"
+particles = [[0, -1, 0, 0.01],[0,-1,0.02,0.01]]
+bond_list = [[0,1]]
+[bodies.fast]
+material = "hard"
+bonds = "b"
+particles = [[0, 1, 0, 0.01],[0,1,0.02,0.01]]
+bond_list = [[0,1]]
+velocity = [0, 30, 0]
+[regions.out]
+box = { min = ["-10 m", "1.2 m", "-10 m"], max = ["10 m", "100 m", "10 m"] }
+[outlets.o]
+inside = "out"
+[measures.v]
+of = "a"
+quantity = "velocity_x"
+[measures.zz]
+of="a"
+quantity="position_x"
+at="largest"
+[measures.e]
+quantity = "elastic_energy"
+at = "largest"
+"#;
+
+#[test]
+fn who_is_near_is_asked_anew_when_the_step_rises() {
+    let bench = Bench::new();
+    let scene = bench.write("late.toml", LATE_LISTING);
+    let run = |adaptive: &str| {
+        let set = format!("run.adaptive={adaptive}");
+        summary(&bench, &scene, &["--set", &set])
+    };
+    let (following, falling) = (run("true"), run("false"));
+    let largest = following["adaptive"]["largest_step_s"].as_f64().unwrap();
+    assert!(largest > 20.0 * falling["time_step_s"].as_f64().unwrap());
+    // How deep they press each other, and how much that takes.
+    let apart_m = measure(&following, "zz") - measure(&falling, "zz");
+    assert!(apart_m.abs() < 2e-5, "{apart_m:e}");
+    let share = measure(&following, "e") / measure(&falling, "e");
+    assert!((share - 1.0).abs() < 0.01, "{share}");
+}

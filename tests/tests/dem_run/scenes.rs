@@ -236,3 +236,67 @@ fn no_scene_of_data_is_stopped() {
         assert!(error < 0.01, "{name}: {error}");
     }
 }
+
+/// Two bodies of one shape, of which one has damped bonds: the step is that of the damped ones.
+const ONE_SHAPE: &str = r#"version = 1
+[run]
+end_time = "0.3 s"
+[materials.m]
+density = "2000 kg/m3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+[contacts]
+m-m = { restitution = 0.9, friction = 0.3 }
+[bonds.soft]
+model = "timoshenko"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+[bonds.damped]
+model = "timoshenko"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+damping = { viscous = 10 }
+[bodies.a]
+material = "m"
+bonds = "soft"
+start_as = "clump"
+particles = [[0,0,0,0.01],[0.019,0,0,0.01]]
+bond_list = [[0,1]]
+angular_velocity = [0,0,5]
+[replacement.a]
+when = { time = "0.1 s" }
+[bodies.b]
+material = "m"
+bonds = "damped"
+start_as = "clump"
+particles = [[0,0,0,0.01],[0.019,0,0,0.01]]
+bond_list = [[0,1]]
+position = [0.2,0,0]
+angular_velocity = [0,0,5]
+[replacement.b]
+when = { time = "0.1 s" }
+"#;
+
+#[test]
+fn bodies_of_one_shape_may_have_bonds_of_two_kinds() {
+    let bench = Bench::new();
+    let scene = bench.write("scene.toml", ONE_SHAPE);
+    let step_s = |options: &[&str]| {
+        let said = bench.good(&scene, &[options, &["--json"]].concat());
+        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+        assert!(
+            summary["energy_error"].as_f64().unwrap() < 1e-6,
+            "{summary}"
+        );
+        summary["time_step_s"].as_f64().unwrap()
+    };
+    let both = step_s(&[]);
+    let damped_too = step_s(&["--set", "bodies.a.bonds=damped"]);
+    assert!(
+        (both / damped_too - 1.0).abs() < 1e-3,
+        "{both:e} {damped_too:e}"
+    );
+    assert!(step_s(&["--set", "bodies.b.bonds=soft"]) > 10.0 * both);
+    let adaptive = step_s(&["--set", "run.adaptive=true"]);
+    assert!(adaptive < 1.001 * both, "{adaptive:e}");
+}

@@ -618,11 +618,9 @@ fn distributions_of_masses_are_compared() {
 fn masses_need_pieces_and_a_finest_run() {
     let pieces = PIECES.replace("\"run.adaptive\" = false", "\"run.seed\" = 1");
     let bench = bench(&pieces.replace("SCENE", "spring.toml"));
-    let said = bad(&bench, &[], 1);
-    assert!(
-        said.contains("nothing has left through an outlet"),
-        "{said}"
-    );
+    let said = bad(&bench, &[], 2);
+    assert!(said.contains("has no [outlets]"), "{said}");
+    assert!(!bench.path("study-sweep").exists());
     let other = self::bench(
         &pieces
             .replace("SCENE", "spring.toml")

@@ -124,3 +124,63 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     let said = bench.good(&scene, &["--out", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
 }
+
+/// Two loose spheres that just touch, and a ball that falls and bounces without loss: at rest, and at the top of its way, there is next to no energy.
+const TOUCHING: &str = r#"version = 1
+[run]
+end_time = "0.1 s"
+gravity = [0,0,-9.81]
+[materials.m]
+density = "2000 kg/m3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[contacts]
+m-m = { restitution = 0.9, friction = 0.3 }
+[bodies.a]
+material = "m"
+particles = [[0.01,0,0.5,0.01],[0.03,0,0.5,0.01]]
+[walls.p]
+plane = { point = [0,0,0], normal = [0,0,1] }
+material = "m"
+"#;
+const BOUNCING: &str = r#"version = 1
+[run]
+end_time = "5 s"
+gravity = [0,0,-9.81]
+[materials.m]
+density = "2000 kg/m3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[contacts]
+m-m = { restitution = 1.0, friction = 0.3 }
+
+[bodies.a]
+material = "m"
+particles = [[0, 0, 0.5, 0.01]]
+[walls.p]
+plane = { point = [0,0,0], normal = [0,0,1] }
+material = "m"
+[measures.z]
+of = "a"
+quantity = "position_z"
+at = "mean"
+[measures.e]
+of = "a"
+quantity = "kinetic_energy"
+"#;
+
+#[test]
+fn where_there_is_next_to_no_energy_nobody_is_stopped() {
+    let bench = super::Bench::new();
+    for at in ["0.03", "0.0299999999", "0.02999999999999"] {
+        let scene = bench.write("touch.toml", TOUCHING.replace("0.03,", &format!("{at},")));
+        let overlaps = ["--set", "run.start_overlap=relax"];
+        assert!(bench.good(&scene, &overlaps).contains("ended by end time"));
+    }
+    let scene = bench.write("bounce.toml", BOUNCING);
+    for height in ["0.05", "0.5", "2"] {
+        let set = format!("bodies.a.particles=[[0, 0, {height}, 0.01]]");
+        let said = bench.good(&scene, &["--set", &set, "--set", "run.end_time=3"]);
+        assert!(said.contains("verdict      sound"), "{said}");
+    }
+}

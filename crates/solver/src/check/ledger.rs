@@ -11,12 +11,31 @@ use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::{reactions_work_j, velocity_at_kick};
 use crate::state::State;
 use crate::state::clumps::Clumps;
+use crate::state::contacts::ContactKind;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Push, Wall};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+/// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest law of the scene, J; 0 where nothing can touch.
+fn pressed_by_a_millionth_j(state: &State) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let of_walls = state.walls.iter().flat_map(|wall| &wall.kinds);
+    let kinds: Vec<&ContactKind> = contacts.kinds.iter().chain(of_walls).collect();
+    let poses = &state.particles.poses;
+    ordered_sum(poses.len(), |i| {
+        let radius_m = poses[i].radius_m();
+        let overlap_m = 1e-6 * radius_m;
+        let stiffness = kinds
+            .iter()
+            .map(|kind| kind.normal_n_m(overlap_m, radius_m));
+        0.5 * stiffness.fold(0.0, f64::max) * overlap_m * overlap_m
+    })
+}
 
 /// What went in and out since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -30,9 +49,11 @@ pub struct Ledger {
     brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.
     opening_j: f64,
+    /// Most that gravity had given, or taken, at a time, J.
+    fallen_j: f64,
     /// Largest energy and work seen, J.
     scale_j: f64,
-    /// Energy of all bonds stretched by a millionth: less is rounding, J.
+    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
     floor_j: f64,
     /// The centre of mass at the start, about which moments are taken, m.
     about_m: [f64; 3],
@@ -148,7 +169,7 @@ impl Ledger {
             let stretch = 1e-6 * bonds.initial_length_m(at);
             0.5 * bonds.normal(at) * stretch * stretch
         };
-        ledger.floor_j = ordered_sum(bonds.len(), stretched);
+        ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
         let pressed = state.contacts.as_ref();
         let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
         let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
@@ -160,7 +181,7 @@ impl Ledger {
         ledger
     }
 
-    /// Energy of all bonds stretched by a millionth: less is rounding, J.
+    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
     pub fn floor_j(&self) -> f64 {
         self.floor_j
     }
@@ -172,11 +193,17 @@ impl Ledger {
 
     /// What a run could have in energy at most: that of the start, what loads, supports, walls and gravity gave, J.
     pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
-        let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
+        let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
-        let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen.abs();
+        let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen;
         let given = given + self.brought_j.abs();
         self.opening_j.abs() + given + self.floor_j
+    }
+
+    /// Size of what gravity has given until now, J.
+    fn fallen_now_j(&self, gravity_m_s2: [f64; 3]) -> f64 {
+        let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
+        fallen.abs()
     }
 
     fn settle(&mut self) {
@@ -306,6 +333,7 @@ pub fn after_kick(state: &mut State) {
     for broken in &state.broken {
         ledger.released_j += broken.released_j;
     }
+    ledger.fallen_j = ledger.fallen_j.max(ledger.fallen_now_j(state.gravity_m_s2));
 
     let about = ledger.about_m;
     let mut total = loads_resultant(loads, state.time_s, &particles.poses, about);

@@ -110,6 +110,18 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
         "nothing vibrates, so none is too large".to_owned()
     };
     line("time step", format!("{step} s {why}: {limit}"));
+    if plan.is_adaptive {
+        let replaced = if choice.replaced.step_s < choice.step_s {
+            let least = significant(choice.replaced.step_s, 5);
+            format!("; about {least} s once clumps have become clusters")
+        } else {
+            String::new()
+        };
+        line(
+            "",
+            format!("adaptive: that is the first one, it follows the limit{replaced}"),
+        );
+    }
     if choice.foreseen_s < choice.limit.step_s {
         line(
             "",

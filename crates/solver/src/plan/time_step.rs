@@ -6,7 +6,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
-use crate::check::linear::{at_impact, largest_contact_rate_1_s2};
+use crate::check::linear::{at_impact, contact_rates, largest_contact_rate_1_s2};
 use crate::clusters::Clusters;
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::{Changes, change};
@@ -86,8 +86,14 @@ impl Outlook {
         } else {
             f64::INFINITY
         };
+        // A contact that is pressed now is on its way: an adaptive step must not rise before its end.
+        let [pressed_k, pressed_c] = if run.adaptive {
+            contact_rates(state)
+        } else {
+            [0.0; 2]
+        };
         let step_s = (run.safety * foreseen_s)
-            .min(SHARE_OF_IMPACT * safe_step(k, c))
+            .min(SHARE_OF_IMPACT * safe_step(k.max(pressed_k), c.max(pressed_c)))
             .min(run.end_time_s / 100.0)
             .min(across);
         Self {
@@ -216,7 +222,7 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
             && one.material == other.material
             && one.scale == other.scale
             && one.spheres == other.spheres
-            && one.bonds.blocks == other.bonds.blocks
+            && one.bonds == other.bonds
     };
     let mut shapes: Vec<usize> = Vec::new();
     for n in 0..templates.len() {

@@ -161,8 +161,18 @@ pub(super) fn change_step(
         (false, true) => before_s,
         (false, false) => choice.step_s.min(before_s),
     };
+    if step_s > before_s {
+        look_anew_for_near(state);
+    }
     state.time_step_s = step_s;
     (step_s != before_s).then(|| change(before_s, step_s))
+}
+
+/// Who is near whom is asked anew before the next step: what was listed is for steps of the present size.
+pub(super) fn look_anew_for_near(state: &mut State) {
+    if let Some(contacts) = &mut state.contacts {
+        contacts.room_m = -1.0;
+    }
 }
 
 pub(super) fn change(before_s: f64, after_s: f64) -> String {

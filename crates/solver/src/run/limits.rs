@@ -4,10 +4,10 @@ use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
 use super::Files;
-use super::events::{change, new_step};
+use super::events::{change, look_anew_for_near, new_step};
 use super::progress::Progress;
 use crate::check::ledger::kinetic_energy;
-use crate::check::limit::limit;
+use crate::check::limit::{Limit, limit};
 use crate::check::linear::{contact_rates, largest_contact_rate_1_s2};
 use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
@@ -16,7 +16,7 @@ use crate::state::State;
 
 /// Steps between two looks at the strains of the bonds.
 const STRAIN_EVERY: u64 = 64;
-/// The limit of the step is looked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
+/// The limit of the step is asked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
 /// stiffer across.
 const MORE_STRAIN: f64 = 0.02;
 /// Steps between two looks at the contacts: a collision takes more. All other looks are at multiples of it, too.
@@ -86,7 +86,7 @@ impl<'a> Limits<'a> {
             let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
             if replaced {
                 let outlook = adaptive.replaced;
-                progress.allow_for(&outlook);
+                progress.allow_as_well_for(&outlook);
                 progress.had_bonds = true;
                 self.take(
                     state,
@@ -103,6 +103,7 @@ impl<'a> Limits<'a> {
                 progress.had_bonds = !state.bonds.is_empty();
                 progress.allow_for(&outlook);
                 progress.limit_strain = largest_strain(&state.bonds, &state.particles.poses);
+                progress.strain = progress.limit_strain;
                 let is_larger = outlook.step_s >= LARGER * state.time_step_s;
                 let is_unstable =
                     state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
@@ -117,12 +118,12 @@ impl<'a> Limits<'a> {
                 }
             }
         }
-        let mut look = false;
+        let mut may_be_less = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
             let strain = largest_strain(&state.bonds, &state.particles.poses);
-            if strain > progress.limit_strain + MORE_STRAIN {
-                progress.limit_strain = strain;
-                look = true;
+            if strain > progress.strain + MORE_STRAIN {
+                progress.strain = strain;
+                may_be_less = true;
             }
         }
         let touches = state.contacts.is_some();
@@ -131,13 +132,14 @@ impl<'a> Limits<'a> {
             let rate = largest_contact_rate_1_s2(state);
             if rate > STIFFER * progress.contact_rate_1_s2 {
                 progress.contact_rate_1_s2 = rate;
-                // A bound is found quickly: mostly it says that the step still is small enough.
-                let bound_s = progress.limit.with_more(contact_rates(state));
-                look |= state.time_step_s > self.safety.unwrap_or(1.0) * bound_s;
+                may_be_less = true;
             }
         }
-        if look {
+        // A bound is found quickly: mostly it says that the step still is small enough.
+        if may_be_less && state.time_step_s > self.safety.unwrap_or(1.0) * bound_s(state, progress)
+        {
             progress.limit = limit(state);
+            progress.limit_strain = progress.strain;
             progress.limit_s = progress.limit_s.min(progress.limit.step_s);
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
@@ -198,6 +200,9 @@ impl<'a> Limits<'a> {
             largest_s
         };
         let detail = change(state.time_step_s, step_s);
+        if step_s > state.time_step_s {
+            look_anew_for_near(state);
+        }
         state.time_step_s = step_s;
         progress.note_step(step_s);
         match files {
@@ -205,6 +210,17 @@ impl<'a> Limits<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// A limit of the step that is not above the largest stable one: what was found last, with bonds that are longer since, and with all contacts on top.
+fn bound_s(state: &State, progress: &Progress) -> f64 {
+    // Stiffness across a bond grows with the square of its levers.
+    let longer = (1.0 + progress.strain) / (1.0 + progress.limit_strain);
+    let of_bonds = Limit {
+        step_s: progress.limit.step_s / (longer * longer),
+        ..progress.limit
+    };
+    of_bonds.with_more(contact_rates(state))
 }
 
 /// Stops a run in which a particle moves farther in a step than contacts can follow.

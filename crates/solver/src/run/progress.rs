@@ -41,6 +41,8 @@ pub struct Progress {
     pub(super) limit: Limit,
     /// Largest strain of a bond at that time.
     pub(super) limit_strain: f64,
+    /// The largest since.
+    pub(super) strain: f64,
     /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
     pub(super) contact_rate_1_s2: f64,
     /// Speed of the impacts that the step allows for, m/s.
@@ -148,6 +150,16 @@ impl Progress {
         self.limit = outlook.limit;
         self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
         self.impact_speed_m_s = outlook.impact_speed_m_s;
+    }
+
+    /// From now on the step is right for this as well as for what it was right for.
+    pub(super) fn allow_as_well_for(&mut self, outlook: &Outlook) {
+        if outlook.limit.step_s < self.limit.step_s {
+            self.limit = outlook.limit;
+        }
+        self.limit_s = self.limit_s.min(outlook.foreseen_s);
+        self.contact_rate_1_s2 = self.contact_rate_1_s2.max(outlook.contact_rate_1_s2);
+        self.impact_speed_m_s = self.impact_speed_m_s.max(outlook.impact_speed_m_s);
     }
 
     /// The time step has become this, s.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::values::in_si;
-use super::{BODY, MeasureOf, Reference, Setting, Study};
+use super::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use crate::scene::names::suggestion;
 use crate::scene::table::Table;
 use crate::scene::tree::Document;
@@ -135,6 +135,13 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
                     return refuse(problem, suggestion(of, known));
                 }
             },
+            MeasureOf::Masses(Pieces::Left) if scene.outlets.is_empty() => {
+                let problem = format!(
+                    "measures.{name}.masses is \"left\", but the scene {} has no [outlets]",
+                    scene.source
+                );
+                return refuse(problem, "write masses = \"at-end\"".to_owned());
+            }
             MeasureOf::Figure(of) if scene.test.is_none() => {
                 let problem = format!(
                     "measures.{name}.figure is '{of}', but the scene {} has no [test]",
