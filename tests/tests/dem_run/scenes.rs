@@ -284,10 +284,14 @@ fn bodies_of_one_shape_may_have_bonds_of_two_kinds() {
     let step_s = |options: &[&str]| {
         let said = bench.good(&scene, &[options, &["--json"]].concat());
         let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
-        assert!(
-            summary["energy_error"].as_f64().unwrap() < 1e-6,
-            "{summary}"
-        );
+        // An adaptive step still is that of clumps in the step in which they become clusters, and what spins is stretched in it.
+        let allowed = if summary["adaptive"].is_null() {
+            1e-5
+        } else {
+            1e-3
+        };
+        let error = summary["energy_error"].as_f64().unwrap();
+        assert!(error < allowed, "{summary}");
         summary["time_step_s"].as_f64().unwrap()
     };
     let both = step_s(&[]);
