@@ -41,6 +41,15 @@ pub struct Limit {
     pub all_iterations: usize,
 }
 
+/// A step that is not above the largest stable one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bound {
+    /// s.
+    pub step_s: f64,
+    /// Whether damping of any kind but that of particles was there.
+    pub is_damped: bool,
+}
+
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue of M^-1 (dt^2/4 K + dt/2 C) is above 1.
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always against its force, which damping of particles
@@ -51,15 +60,11 @@ pub struct Limit {
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS);
-    let stiffer = if state.particle_resistance.is_empty() {
-        1.0
-    } else {
-        1.0 + state.particle_damping
-    };
-    let (c, of_damping) = if state.bond_resistance.is_empty() && contacts.is_empty() {
-        (0.0, 0)
-    } else {
+    let stiffer = stiffer_by_damping(state);
+    let (c, of_damping) = if is_damped(state, contacts) {
         largest_eigenvalue(state, contacts, Weights::DAMPING)
+    } else {
+        (0.0, 0)
     };
     let (step_s, of_both) = if c > 0.0 {
         damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
@@ -75,13 +80,56 @@ pub fn limit(state: &mut State) -> Limit {
         all_iterations: iterations + of_damping + of_both,
     };
     let limit = Limit {
-        step_s: of_particles.with_more(clump_rates(state, contacts)),
+        step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
         ..of_particles
     };
-    // Those of other particles begin anew in each step; what acts on spheres of clumps is added to what is there.
+    forget_wrenches_of_clumps(state);
+    limit
+}
+
+/// A step that is not above the limit, and not below this one, s, unless the limit is: found in a fraction of the time that the limit takes. What counts is said
+/// at [`limit`].
+pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
+    let contacts = &linear_contacts(state);
+    let both = Weights::of_step(stiffer_by_damping(state), step_s);
+    let (value, _) = largest_eigenvalue(state, contacts, both);
+    let is_damped = is_damped(state, contacts);
+    let of_particles = Bound {
+        step_s: not_too_long(step_s, value),
+        is_damped,
+    };
+    let step_s = of_particles.with_more(clump_rates(state, contacts));
+    forget_wrenches_of_clumps(state);
+    Bound { step_s, is_damped }
+}
+
+/// Damping of particles always acts against the fastest mode: see [`limit`].
+fn stiffer_by_damping(state: &State) -> f64 {
+    if state.particle_resistance.is_empty() {
+        1.0
+    } else {
+        1.0 + state.particle_damping
+    }
+}
+
+fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
+    !state.bond_resistance.is_empty() || !contacts.is_empty()
+}
+
+/// Those of other particles begin anew in each step; what acts on spheres of clumps is added to what is there.
+fn forget_wrenches_of_clumps(state: &mut State) {
     let free = state.particles.free;
     state.particles.wrenches[free..].fill(Wrench::default());
-    limit
+}
+
+/// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K + dt/2 C): it grows at least with the step and at most with
+/// its square.
+fn not_too_long(step_s: f64, value: f64) -> f64 {
+    if value < 1.0 {
+        step_s / value.sqrt()
+    } else {
+        step_s / value
+    }
 }
 
 /// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2 + 4 k))/k, written so that nothing cancels.
@@ -91,6 +139,16 @@ pub fn safe_step(k: f64, c: f64) -> f64 {
 }
 
 impl Limit {
+    /// As a bound of itself.
+    pub fn bound(&self) -> Bound {
+        Bound {
+            step_s: self.step_s,
+            is_damped: self.damping_1_s > 0.0,
+        }
+    }
+}
+
+impl Bound {
     /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2, and c, 1/s, of its own: the largest eigenvalue of a sum is
     /// at most the sum of the largest ones.
     pub fn with_more(&self, [k, c]: [f64; 2]) -> f64 {
@@ -99,7 +157,7 @@ impl Limit {
         }
         // What is there grows with the square of the step; with damping, at least with the step itself.
         let present = 2.0 / self.step_s;
-        if self.damping_1_s > 0.0 {
+        if self.is_damped {
             safe_step(k, c + present)
         } else {
             safe_step(k + present * present, c)
@@ -119,18 +177,10 @@ fn damped_limit(
     let mut all_iterations = 0;
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
-        let both = Weights {
-            stiffness: 0.25 * stiffer * step_s * step_s,
-            damping: 0.5 * step_s,
-        };
+        let both = Weights::of_step(stiffer, step_s);
         let (value, iterations) = largest_eigenvalue(state, contacts, both);
         all_iterations += iterations;
-        // The eigenvalue grows at least with the step and at most with its square.
-        let not_too_long = if value < 1.0 {
-            step_s / value.sqrt()
-        } else {
-            step_s / value
-        };
+        let not_too_long = not_too_long(step_s, value);
         safe_s = safe_s.max(not_too_long);
         if (value - 1.0).abs() < NEAR {
             break;
@@ -160,6 +210,14 @@ impl Weights {
         stiffness: 0.0,
         damping: 1.0,
     };
+
+    /// dt^2/4 K, `stiffer` by so much, + dt/2 C.
+    fn of_step(stiffer: f64, step_s: f64) -> Self {
+        Self {
+            stiffness: 0.25 * stiffer * step_s * step_s,
+            damping: 0.5 * step_s,
+        }
+    }
 }
 
 /// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.

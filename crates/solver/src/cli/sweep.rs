@@ -17,7 +17,7 @@ use crate::interrupt::Interrupt;
 use crate::sweep::collect::{Outcome, outcome};
 use crate::sweep::expand::{Run, runs};
 use crate::sweep::folder::{Earlier, SweepFolder};
-use crate::sweep::jobs::{Job, arguments, jobs, scene_arguments, shell_line, work};
+use crate::sweep::jobs::{Job, arguments, further_jobs, jobs, scene_arguments, shell_line, work};
 use crate::sweep::page::page;
 use crate::sweep::plot::svg;
 use crate::sweep::table::{Row, SweepTable};
@@ -103,9 +103,14 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         _ => Earlier::Refuse,
     };
     let folder = SweepFolder::create(&path, earlier, &study, &scene_text)?;
-    let all_jobs = jobs(all.len(), study.repeats);
+    let mut all_jobs = jobs(all.len(), study.repeats);
     let is_left = |job: &Job| !job.is_done(&folder.runs());
+    if !options.collect && !options.list {
+        do_what_is_left(options, &study, &all, &all_jobs, &folder, interrupt)?;
+    }
+    let further = further_jobs(&study, all.len(), &folder.runs());
     if options.list {
+        all_jobs.extend(further);
         return list(
             &study,
             &all,
@@ -114,23 +119,9 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         );
     }
     if !options.collect {
-        let todo: Vec<Job> = all_jobs.iter().copied().filter(is_left).collect();
-        let bar = progress_bar(options, todo.len());
-        let tell = |done: usize| bar.set_position(done as u64);
-        let worked = interrupt.heeded_by(|interrupted| {
-            work(
-                &study,
-                &all,
-                &todo,
-                &folder.runs(),
-                options.jobs,
-                interrupted,
-                &tell,
-            )
-        });
-        bar.finish_and_clear();
-        worked?;
+        do_what_is_left(options, &study, &all, &further, &folder, interrupt)?;
     }
+    all_jobs.extend(further);
     let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
     for job in &all_jobs {
         outcomes[job.run].push(outcome(&study, *job, &folder.runs()));
@@ -166,6 +157,26 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         write_file(target, |out| out.write_all(text.as_bytes()))?;
     }
     say(options, &study, &all, &table, best, &folder)
+}
+
+fn do_what_is_left(
+    options: &SweepArguments,
+    study: &Study,
+    all: &[Run],
+    jobs: &[Job],
+    folder: &SweepFolder,
+    interrupt: &Interrupt,
+) -> Result<()> {
+    let runs = folder.runs();
+    let todo: Vec<Job> = (jobs.iter().copied())
+        .filter(|job| !job.is_done(&runs))
+        .collect();
+    let bar = progress_bar(options, todo.len());
+    let tell = |done: usize| bar.set_position(done as u64);
+    let worked = interrupt
+        .heeded_by(|interrupted| work(study, all, &todo, &runs, options.jobs, interrupted, &tell));
+    bar.finish_and_clear();
+    worked
 }
 
 /// Reads the scene of every run, so that what it refuses is known before hours are spent. What each measure is compared with, where that is known.

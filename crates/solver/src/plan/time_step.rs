@@ -80,7 +80,7 @@ impl Outlook {
             rates = [0, 1, 2].map(|n| rates[n].max(later[n]));
         }
         let [k, c, rate] = rates;
-        let foreseen_s = found.with_more([k, c]);
+        let foreseen_s = found.bound().with_more([k, c]);
         let across = if state.contacts.is_some() {
             FARTHEST * state.smallest_radius_m() / impact_speed_m_s
         } else {

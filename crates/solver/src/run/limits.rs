@@ -7,7 +7,7 @@ use super::Files;
 use super::events::{change, look_anew_for_near, new_step};
 use super::progress::Progress;
 use crate::check::ledger::kinetic_energy;
-use crate::check::limit::{Limit, limit};
+use crate::check::limit::{Bound, bound_near, limit};
 use crate::check::linear::{contact_rates, largest_contact_rate_1_s2};
 use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
@@ -135,12 +135,16 @@ impl<'a> Limits<'a> {
                 may_be_less = true;
             }
         }
-        // A bound is found quickly: mostly it says that the step still is small enough.
-        if may_be_less && state.time_step_s > self.safety.unwrap_or(1.0) * bound_s(state, progress)
-        {
-            progress.limit = limit(state);
+        // Mostly the step still is small enough: one bound says so at once, another in a fraction of the time that the limit itself takes.
+        let needed_s = state.time_step_s / self.safety.unwrap_or(1.0);
+        if may_be_less && needed_s > bound_s(state, progress) {
+            let mut bound = bound_near(state, needed_s);
+            if bound.step_s < needed_s {
+                bound = limit(state).bound();
+                progress.limit_s = progress.limit_s.min(bound.step_s);
+            }
+            progress.bound = bound;
             progress.limit_strain = progress.strain;
-            progress.limit_s = progress.limit_s.min(progress.limit.step_s);
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
                 self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
@@ -216,9 +220,9 @@ impl<'a> Limits<'a> {
 fn bound_s(state: &State, progress: &Progress) -> f64 {
     // Stiffness across a bond grows with the square of its levers.
     let longer = (1.0 + progress.strain) / (1.0 + progress.limit_strain);
-    let of_bonds = Limit {
-        step_s: progress.limit.step_s / (longer * longer),
-        ..progress.limit
+    let of_bonds = Bound {
+        step_s: progress.bound.step_s / (longer * longer),
+        ..progress.bound
     };
     of_bonds.with_more(contact_rates(state))
 }

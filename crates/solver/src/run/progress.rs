@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;
 use crate::check::ledger::{Balance, over};
-use crate::check::limit::Limit;
+use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
 use crate::plan::time_step::{Outlook, StepChoice};
 use crate::state::State;
@@ -38,7 +38,7 @@ pub struct Progress {
     /// Largest stable step when it was last looked for, s.
     pub(super) limit_s: f64,
     /// What was found then, of bonds and of the contacts that there were.
-    pub(super) limit: Limit,
+    pub(super) bound: Bound,
     /// Largest strain of a bond at that time.
     pub(super) limit_strain: f64,
     /// The largest since.
@@ -135,7 +135,7 @@ impl Progress {
         Self {
             rhythm,
             limit_s: choice.foreseen_s,
-            limit: choice.limit,
+            bound: choice.limit.bound(),
             contact_rate_1_s2: choice.contact_rate_1_s2,
             impact_speed_m_s: choice.impact_speed_m_s,
             had_bonds: true,
@@ -147,15 +147,15 @@ impl Progress {
     /// From now on the step is right for this.
     pub(super) fn allow_for(&mut self, outlook: &Outlook) {
         self.limit_s = outlook.foreseen_s;
-        self.limit = outlook.limit;
+        self.bound = outlook.limit.bound();
         self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
         self.impact_speed_m_s = outlook.impact_speed_m_s;
     }
 
     /// From now on the step is right for this as well as for what it was right for.
     pub(super) fn allow_as_well_for(&mut self, outlook: &Outlook) {
-        if outlook.limit.step_s < self.limit.step_s {
-            self.limit = outlook.limit;
+        if outlook.limit.step_s < self.bound.step_s {
+            self.bound = outlook.limit.bound();
         }
         self.limit_s = self.limit_s.min(outlook.foreseen_s);
         self.contact_rate_1_s2 = self.contact_rate_1_s2.max(outlook.contact_rate_1_s2);

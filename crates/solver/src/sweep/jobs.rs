@@ -11,8 +11,12 @@ use std::time::Duration;
 use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
 
+use super::collect::{Outcome, outcome};
 use super::expand::Run;
 
+/// Runs that are done more than once are repeated until so much time has been measured, s, or so often: short ones scatter most.
+const MEASURED_S: f64 = 0.5;
+const MOST_REPEATS: u32 = 25;
 /// How often processes are looked after. What they take is measured by themselves.
 const LOOK: Duration = Duration::from_millis(5);
 
@@ -54,6 +58,28 @@ pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
             jobs.extend(one.rev());
         }
     }
+    jobs
+}
+
+/// Further repeats of runs that are short, once all of their jobs have come to their end.
+pub fn further_jobs(study: &Study, runs: usize, folder: &Path) -> Vec<Job> {
+    if study.repeats == 1 {
+        return Vec::new();
+    }
+    let wanted = |run: usize| {
+        let outcomes =
+            (1..=study.repeats).map(|repeat| outcome(study, Job { run, repeat }, folder));
+        let times_s = outcomes.map(|outcome| match outcome {
+            Outcome::Done(done) => Some(done.time_s),
+            _ => None,
+        });
+        let all_s: Option<f64> = times_s.sum();
+        let mean_s = all_s.unwrap_or(f64::INFINITY) / f64::from(study.repeats);
+        (MEASURED_S / mean_s).ceil().min(f64::from(MOST_REPEATS)) as u32
+    };
+    let wanted: Vec<u32> = (0..runs).map(wanted).collect();
+    let mut jobs = jobs(runs, MOST_REPEATS);
+    jobs.retain(|job| job.repeat > study.repeats && job.repeat <= wanted[job.run]);
     jobs
 }
 

@@ -31,11 +31,10 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
     )?;
     writeln!(
         out,
-        "<p>{}: {} runs, {} time{} each, on {} thread{}. {}; {}.</p>",
+        "<p>{}: {} runs, {} each, on {} thread{}. {}; {}.</p>",
         escaped(&table.study),
         table.runs.len(),
-        table.repeats,
-        if table.repeats == 1 { "" } else { "s" },
+        table.times(),
         table.threads,
         if table.threads == 1 { "" } else { "s" },
         escaped(&table.machines.join("; ")),
@@ -44,7 +43,8 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
     writeln!(
         out,
         "<p class=\"small\">Times are medians of the repeats, without start-up; lines across the marks show by how much times scatter. \
-         A run is on the Pareto front unless another is faster by more than that and as exact, errors counted with two digits. \
+         Short runs are repeated more often. From the most exact run on, one is on the Pareto front if it is faster by more than that than all more exact \
+         ones, errors counted with two digits. \
          Times hold for this sweep on this machine.</p>"
     )?;
     for (at, measure) in table.measures.iter().enumerate() {

@@ -111,7 +111,7 @@ fn write_svg(
     };
     let repeats = match table.repeats {
         1 => String::new(),
-        repeats => format!(", median of {repeats}"),
+        repeats => format!(", median of {repeats} or more"),
     };
     writeln!(
         out,

@@ -12,7 +12,7 @@ use super::judge::{in_words, judge};
 use super::order::{Order, orders};
 
 /// Differences of run times below this share mean nothing, however close the repeats are.
-const LEAST_SPREAD: f64 = 0.05;
+const LEAST_SPREAD: f64 = 0.1;
 
 /// Everything that came of a sweep. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,7 +25,7 @@ pub struct SweepTable {
     pub program: String,
     /// Processors and cores that did it. Run times of several are not compared.
     pub machines: Vec<String>,
-    /// How often each run was to be done.
+    /// How often each run was to be done, at least.
     pub repeats: u32,
     /// Threads of each run.
     pub threads: u32,
@@ -82,7 +82,7 @@ pub struct Row {
     pub times_s: Vec<f64>,
     /// Their median, s.
     pub time_s: Option<f64>,
-    /// Differences of run times up to this mean nothing, s: what the repeats differ by, or 5 % of the median.
+    /// Differences of run times up to this mean nothing, s: the width of the range in which the median lies with a probability of 95 %, or 10 % of the median.
     pub spread_s: Option<f64>,
     /// Steps.
     pub steps: Option<u64>,
@@ -105,7 +105,7 @@ pub struct Judged {
     pub uncertainty: Option<f64>,
     /// Whether others are compared with this run.
     pub is_reference: bool,
-    /// Whether no run is both faster and as exact.
+    /// Whether it is on the [front].
     pub is_on_front: bool,
 }
 
@@ -220,6 +220,16 @@ impl SweepTable {
         self.runs.iter().filter(|row| row.failed.is_some())
     }
 
+    /// How often runs were done: `once`, `3 times`, `3 to 25 times`.
+    pub fn times(&self) -> String {
+        let most = self.runs.iter().map(|row| row.times_s.len());
+        match (self.repeats as usize, most.max().unwrap_or(0)) {
+            (1, _) => "once".to_owned(),
+            (least, most) if most > least => format!("{least} to {most} times"),
+            (least, _) => format!("{least} times"),
+        }
+    }
+
     /// The settings of a run on one line: `run.safety 0.5, bonds.beam.model timoshenko`.
     pub fn named(&self, row: &Row) -> String {
         let named = self.axes.iter().zip(&row.settings);
@@ -241,8 +251,6 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
     };
     let times_s: Vec<f64> = done.iter().map(|done| done.time_s).collect();
     let time_s = median(&times_s);
-    let range = times_s.iter().fold(0.0, |l: f64, t| l.max(*t))
-        - times_s.iter().fold(f64::INFINITY, |l: f64, t| l.min(*t));
     let first = done.first();
     Row {
         number: run.number,
@@ -250,7 +258,7 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         settings: run.labels(study),
         failed,
         time_s,
-        spread_s: time_s.map(|time| range.max(LEAST_SPREAD * time)),
+        spread_s: time_s.map(|time| range_of_median(&times_s).max(LEAST_SPREAD * time)),
         times_s,
         steps: first.map(|done| done.steps),
         time_step_s: first.map(|done| done.time_step_s),
@@ -276,6 +284,19 @@ fn median(times: &[f64]) -> Option<f64> {
         0 => None,
         even if even % 2 == 0 => Some(f64::midpoint(times[middle - 1], times[middle])),
         _ => Some(times[middle]),
+    }
+}
+
+/// Width of the range in which the median of many more repeats lies with a probability of 95 %, whatever the distribution of the times: between the values
+/// whose ranks are half their number -+ the root of it. All of it up to five.
+fn range_of_median(times: &[f64]) -> f64 {
+    let mut times = times.to_vec();
+    times.sort_by(f64::total_cmp);
+    let count = times.len() as f64;
+    let below = (0.5 * count - 0.98 * count.sqrt()).max(0.0) as usize;
+    match (times.get(below), times.iter().rev().nth(below)) {
+        (Some(low), Some(high)) => high - low,
+        _ => 0.0,
     }
 }
 

@@ -93,12 +93,11 @@ impl fmt::Display for SweepTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} runs of {}, {} time{} each, on {} thread{}",
+            "{}: {} runs of {}, {} each, on {} thread{}",
             self.study,
             self.runs.len(),
             self.scene,
-            self.repeats,
-            if self.repeats == 1 { "" } else { "s" },
+            self.times(),
             self.threads,
             if self.threads == 1 { "" } else { "s" },
         )?;

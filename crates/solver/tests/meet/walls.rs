@@ -2,7 +2,7 @@
 
 use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::ledger::{Ledger, balance};
-use dem_run::check::limit::{Limit, limit};
+use dem_run::check::limit::{Bound, limit};
 use dem_run::check::linear::contact_rates;
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::state::State;
@@ -101,9 +101,9 @@ fn the_books_balance_whatever_the_walls_do() {
 #[test]
 fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);
-    let free = Limit {
+    let free = Bound {
         step_s: f64::INFINITY,
-        ..Limit::default()
+        is_damped: false,
     };
     let mut shares = Vec::new();
     while state.time_s < 4e-3 {

@@ -3,7 +3,7 @@
 use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, MODELS, bar, body, damp, damp_particles, random_body, soft,
 };
-use dem_run::check::limit::{limit, safe_step};
+use dem_run::check::limit::{bound_near, limit, safe_step};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::particles::Particles;
@@ -70,6 +70,31 @@ fn damped_limits_are_those_of_the_reference() {
                     "{name} {value}: {ratio}"
                 );
                 assert!(safe <= ratio + 1e-12, "{name} {value}: {safe}");
+            }
+        }
+    }
+}
+
+/// A bound near a step that is stable is not below it, one near a step that is not is not above the limit: so it tells the two apart.
+#[test]
+fn a_bound_tells_whether_a_step_is_stable() {
+    for (name, model, body, _) in all() {
+        for damping in [0.0, 0.1, 2.0] {
+            let mut state = body(model, ELASTIC, 1e-9);
+            if damping > 0.0 {
+                damp(&mut state, BondDamping::Chen(damping));
+                damp_particles(&mut state, 0.2);
+            }
+            let limit_s = limit(&mut state).step_s;
+            for share in [0.3, 0.9, 0.99, 1.01, 1.5, 10.0] {
+                let bound = bound_near(&mut state, share * limit_s);
+                let found = bound.step_s / limit_s;
+                assert_eq!(bound.is_damped, damping > 0.0);
+                // A damped limit is found too small by up to 1e-3.
+                assert!(
+                    found < 1.0 + 1e-3 && (share > 1.0 || found > share * (1.0 - 1e-5)),
+                    "{name}, damping {damping}, {share} of the limit: {found}"
+                );
             }
         }
     }
