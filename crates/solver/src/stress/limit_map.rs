@@ -81,7 +81,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: five models, damped by nothing, lightly, critically and far beyond; other kinds of damping beside.
+/// The map: five models in both formulations, damped by nothing, lightly, critically and far beyond; other kinds of damping beside.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -97,7 +97,9 @@ pub fn map() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for model in models {
         for eta in etas {
-            members.push(of(model, &format!("viscous = {eta}"), "0")?);
+            for formulation in ["total", "incremental"] {
+                members.push(of(model, formulation, &format!("viscous = {eta}"), "0")?);
+            }
         }
     }
     for damping in [
@@ -105,24 +107,24 @@ pub fn map() -> Result<Vec<Member>> {
         "viscous = 10, each_mode = true",
         "force = \"30 N s/m\", torque = 1",
     ] {
-        members.push(of("timoshenko", damping, "0")?);
+        members.push(of("timoshenko", "total", damping, "0")?);
     }
     for particle_damping in ["0.1", "0.5", "0.9"] {
-        members.push(of("timoshenko", "viscous = 0", particle_damping)?);
+        members.push(of("timoshenko", "total", "viscous = 0", particle_damping)?);
     }
     Ok(members)
 }
 
-/// A disturbed block with bonds of a model, damped so.
+/// A disturbed block with bonds of a model and a formulation, damped so.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
-pub fn of(model: &str, damping: &str, particle_damping: &str) -> Result<Member> {
+pub fn of(model: &str, formulation: &str, damping: &str, particle_damping: &str) -> Result<Member> {
     let scene = format!(
         "version = 1
 run = {{ end_time = \"1 s\", particle_damping = {particle_damping} }}
 materials.rock.density = 2500
-bonds.rock = {{ model = \"{model}\", young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ {damping} }} }}
+bonds.rock = {{ model = \"{model}\", formulation = \"{formulation}\", young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ {damping} }} }}
 bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
 "
     );
@@ -134,7 +136,11 @@ bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
         "0" => String::new(),
         gamma => format!(", particle_damping = {gamma}"),
     };
-    program_limit(format!("{model}, {damping}{of_particles}"), trial)
+    let name = match formulation {
+        "total" => model.to_owned(),
+        _ => format!("{model} ({formulation})"),
+    };
+    program_limit(format!("{name}, {damping}{of_particles}"), trial)
 }
 
 /// The limit that the program finds for a scene is predicted to be the one observed.

@@ -54,7 +54,8 @@ fn cells(result: &CaseResult) -> [String; 2] {
                 significant(shown.tolerance, 2)
             )
         };
-        let (of, s) = (ended.len(), if ended.len() == 1 { "" } else { "s" });
+        let of = result.members.len();
+        let s = if of == 1 { "" } else { "s" };
         let _ = write!(cells[0], "{of} run{s}; {}: {name} {limits}", member.what);
         let _ = write!(
             cells[1],
