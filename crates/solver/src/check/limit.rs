@@ -17,6 +17,8 @@ const EVERY: usize = 5;
 /// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second largest eigenvalue, 1e-3 below the largest, in a
 /// damped body; ten iterations more cost little.
 const RESIDUAL: f64 = 1e-5;
+/// The same where a thousandth does not matter: a bound near a step is to say whether there is room.
+const ROUGH: f64 = 1e-4;
 /// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes of bonds, in radians.
 const STEP: f64 = 1e-5;
 
@@ -59,10 +61,10 @@ pub struct Bound {
 /// The wrenches of particles that move by themselves are overwritten; spheres of clumps have none afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
-    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS);
+    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, RESIDUAL);
     let stiffer = stiffer_by_damping(state);
     let (c, of_damping) = if is_damped(state, contacts) {
-        largest_eigenvalue(state, contacts, Weights::DAMPING)
+        largest_eigenvalue(state, contacts, Weights::DAMPING, RESIDUAL)
     } else {
         (0.0, 0)
     };
@@ -87,12 +89,12 @@ pub fn limit(state: &mut State) -> Limit {
     limit
 }
 
-/// A step that is not above the limit, and not below this one, s, unless the limit is: found in a fraction of the time that the limit takes. What counts is said
+/// A step that is not above the limit, or by less than a thousandth, and not below this one, s, unless the limit is: found in a fraction of the time that the limit takes. What counts is said
 /// at [`limit`].
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
-    let (value, _) = largest_eigenvalue(state, contacts, both);
+    let (value, _) = largest_eigenvalue(state, contacts, both, ROUGH);
     let is_damped = is_damped(state, contacts);
     let of_particles = Bound {
         step_s: not_too_long(step_s, value),
@@ -178,7 +180,7 @@ fn damped_limit(
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
         let both = Weights::of_step(stiffer, step_s);
-        let (value, iterations) = largest_eigenvalue(state, contacts, both);
+        let (value, iterations) = largest_eigenvalue(state, contacts, both, RESIDUAL);
         all_iterations += iterations;
         let not_too_long = not_too_long(step_s, value);
         safe_s = safe_s.max(not_too_long);
@@ -223,12 +225,13 @@ impl Weights {
 /// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
 pub(super) type Field = Vec<[f64; 6]>;
 
-/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed.
+/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed until the residual is this share of it.
 /// An upper bound by the residual: never too small by more than that is too large.
 fn largest_eigenvalue(
     state: &mut State,
     contacts: &[LinearContact],
     weights: Weights,
+    enough: f64,
 ) -> (f64, usize) {
     let roots = inverse_mass_roots(state);
     // Allocated once: allocators find it hard to use the place of an aligned array again.
@@ -265,7 +268,7 @@ fn largest_eigenvalue(
             largest = largest_ritz(&diagonal, &beside, beta);
         }
         let (value, residual) = largest;
-        let settled = iteration >= ITERATIONS[0] && residual <= RESIDUAL * value;
+        let settled = iteration >= ITERATIONS[0] && residual <= enough * value;
         if settled || beta <= 1e-13 * value || beta == 0.0 {
             break;
         }
@@ -364,19 +367,24 @@ pub(super) fn add_stiffness_times(
     displaced: &mut [Pose],
     sum: &mut Field,
 ) {
-    let moved = |i: usize| scaled(&field[i], &roots[i]);
-    let poses = &state.particles.poses;
-    let largest = (0..field.len())
-        .flat_map(|i| {
-            let [x, y, z, rx, ry, rz] = moved(i).map(f64::abs);
-            [x.max(y).max(z) / poses[i].radius_m(), rx, ry, rz]
+    let moves: Field = (field.iter().zip(roots))
+        .map(|(field, roots)| scaled(field, roots))
+        .collect();
+    let largest = (moves.iter().zip(&state.particles.poses))
+        .flat_map(|(moved, pose)| {
+            let [x, y, z, rx, ry, rz] = moved.map(f64::abs);
+            [x.max(y).max(z) / pose.radius_m(), rx, ry, rz]
         })
         .fold(0.0, f64::max);
     // A bond that is much shorter than a radius is turned and stretched by much less.
     let turned = (state.bonds.ends.iter().enumerate()).map(|(at, ends)| {
-        let [a, b] = ends.map(|end| moved(end as usize));
-        let apart = [0, 1, 2].map(|k| (b[k] - a[k]).abs());
-        apart.into_iter().fold(0.0, f64::max) / state.bonds.initial_length_m(at)
+        let [a, b] = ends.map(|end| &moves[end as usize]);
+        let [x, y, z] = [
+            (b[0] - a[0]).abs(),
+            (b[1] - a[1]).abs(),
+            (b[2] - a[2]).abs(),
+        ];
+        x.max(y).max(z) / state.bonds.initial_length_m(at)
     });
     let largest = turned.fold(largest, f64::max);
     if largest == 0.0 {
@@ -384,8 +392,9 @@ pub(super) fn add_stiffness_times(
     }
     let step = STEP / largest;
     for side in [1.0, -1.0] {
-        for (i, (pose, rest)) in displaced.iter_mut().zip(&state.particles.poses).enumerate() {
-            let [x, y, z, rx, ry, rz] = moved(i).map(|m| side * step * m);
+        let rest = state.particles.poses.iter();
+        for ((pose, rest), moved) in displaced.iter_mut().zip(rest).zip(&moves) {
+            let [x, y, z, rx, ry, rz] = moved.map(|m| side * step * m);
             let [px, py, pz, radius_m] = rest.position_m;
             pose.position_m = [px + x, py + y, pz + z, radius_m];
             pose.turned = turn(rest.turned, [rx, ry, rz]);

@@ -102,8 +102,8 @@ impl<'a> Limits<'a> {
                 progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
                 progress.had_bonds = !state.bonds.is_empty();
                 progress.allow_for(&outlook);
-                progress.limit_strain = largest_strain(&state.bonds, &state.particles.poses);
-                progress.strain = progress.limit_strain;
+                progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
+                progress.strain = progress.bound_strain;
                 let is_larger = outlook.step_s >= LARGER * state.time_step_s;
                 let is_unstable =
                     state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
@@ -135,7 +135,7 @@ impl<'a> Limits<'a> {
                 may_be_less = true;
             }
         }
-        // Mostly the step still is small enough: one bound says so at once, another in a fraction of the time that the limit itself takes.
+        // Mostly the step still is small enough: what was found last says so at once, a bound near the step in a fraction of the time that the limit itself takes.
         let needed_s = state.time_step_s / self.safety.unwrap_or(1.0);
         if may_be_less && needed_s > bound_s(state, progress) {
             let mut bound = bound_near(state, needed_s);
@@ -144,7 +144,8 @@ impl<'a> Limits<'a> {
                 progress.limit_s = progress.limit_s.min(bound.step_s);
             }
             progress.bound = bound;
-            progress.limit_strain = progress.strain;
+            progress.bound_strain = progress.strain;
+            progress.bound_rates = contact_rates(state);
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
                 self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
@@ -216,15 +217,26 @@ impl<'a> Limits<'a> {
     }
 }
 
-/// A limit of the step that is not above the largest stable one: what was found last, with bonds that are longer since, and with all contacts on top.
+/// A step that is stable by what was found last, s, with bonds that are longer since and contacts that are stiffer. Either with all contacts that there are on top of
+/// it, which is never too long; or as if all bonds and contacts had become as much stiffer as the stiffest particle's contacts are by their sum.
 fn bound_s(state: &State, progress: &Progress) -> f64 {
     // Stiffness across a bond grows with the square of its levers.
-    let longer = (1.0 + progress.strain) / (1.0 + progress.limit_strain);
+    let longer = (1.0 + progress.strain) / (1.0 + progress.bound_strain);
     let of_bonds = Bound {
         step_s: progress.bound.step_s / (longer * longer),
         ..progress.bound
     };
-    of_bonds.with_more(contact_rates(state))
+    let rates = contact_rates(state);
+    let with_all_s = of_bonds.with_more(rates);
+    let stiffer = |n: usize| {
+        if rates[n] <= progress.bound_rates[n] {
+            1.0
+        } else {
+            rates[n] / progress.bound_rates[n]
+        }
+    };
+    let all_stiffer_s = of_bonds.step_s / stiffer(0).max(stiffer(1)).sqrt();
+    with_all_s.max(all_stiffer_s)
 }
 
 /// Stops a run in which a particle moves farther in a step than contacts can follow.

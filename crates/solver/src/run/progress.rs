@@ -37,10 +37,12 @@ pub struct Progress {
     largest_errors: [f64; 3],
     /// Largest stable step when it was last looked for, s.
     pub(super) limit_s: f64,
-    /// What was found then, of bonds and of the contacts that there were.
+    /// What was found when it was looked for last, of bonds and of the contacts that there were.
     pub(super) bound: Bound,
     /// Largest strain of a bond at that time.
-    pub(super) limit_strain: f64,
+    pub(super) bound_strain: f64,
+    /// Upper bounds of the eigenvalues of the contacts at that time, 1/s2 and 1/s; 0 where they are not known.
+    pub(super) bound_rates: [f64; 2],
     /// The largest since.
     pub(super) strain: f64,
     /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
@@ -148,6 +150,7 @@ impl Progress {
     pub(super) fn allow_for(&mut self, outlook: &Outlook) {
         self.limit_s = outlook.foreseen_s;
         self.bound = outlook.limit.bound();
+        self.bound_rates = [0.0; 2];
         self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
         self.impact_speed_m_s = outlook.impact_speed_m_s;
     }
@@ -156,6 +159,7 @@ impl Progress {
     pub(super) fn allow_as_well_for(&mut self, outlook: &Outlook) {
         if outlook.limit.step_s < self.bound.step_s {
             self.bound = outlook.limit.bound();
+            self.bound_rates = [0.0; 2];
         }
         self.limit_s = self.limit_s.min(outlook.foreseen_s);
         self.contact_rate_1_s2 = self.contact_rate_1_s2.max(outlook.contact_rate_1_s2);
