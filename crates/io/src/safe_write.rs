@@ -185,6 +185,22 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
     Ok(())
 }
 
+/// Finds out before the work whether there is a folder for a file.
+///
+/// # Errors
+/// There is none: bad input, as the name was given so.
+pub fn need_folder_of(target: &Path) -> Result<()> {
+    let folder = folder_of(target);
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        target.display().to_string(),
+        format!("there is no folder '{}'", folder.display()),
+        "make it first, or write elsewhere",
+    ))
+}
+
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,

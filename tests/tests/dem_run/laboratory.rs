@@ -235,4 +235,21 @@ fn what_a_test_cannot_be_made_of() {
         ),
         "{said}"
     );
+
+    // Pushed the other way, a pin and a plate leave the body alone.
+    for (name, body, wall) in [
+        ("four-point-bending.toml", "sample", "pin-left"),
+        ("compression.toml", "bar", "plate-above"),
+    ] {
+        let file = root().join("data/bodies/sample.vtp");
+        let body_of = format!("{body}={}", file.display());
+        let round = ["--body", &body_of, "--set", "test.direction=[0,0,1]"];
+        let said = bench.bad(&scene_of_data(name), &round, 2);
+        assert!(
+            said.contains(&format!(
+                "moves away from the body '{body}', whose middle lies"
+            )),
+            "{wall}: {said}"
+        );
+    }
 }

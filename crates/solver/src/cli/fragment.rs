@@ -7,7 +7,7 @@ use dem_io::body::files::body_files;
 use dem_io::body::write_body;
 use dem_io::results::folder::{frame_in, frames_in};
 use dem_io::results::{StoredFragment, read_frame};
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{need_folder_of, write_standard_output};
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 
@@ -38,7 +38,9 @@ pub(super) struct FragmentArguments {
 /// No such folder, frame or fragment; the body cannot be written.
 pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     let output = &arguments.output;
-    body_files(output)?;
+    for file in body_files(output)? {
+        need_folder_of(&file)?;
+    }
     let path = frame_path(&arguments.results, arguments.frame)?;
     let frame = read_frame(&path)?;
     let within = |error: Diagnostic| error.within(&path.display().to_string());

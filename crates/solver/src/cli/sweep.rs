@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use dem_io::results::write_json;
-use dem_io::safe_write::{write_file, write_standard_output};
+use dem_io::safe_write::{need_folder_of, write_file, write_standard_output};
 use dem_io::scene::text_of;
 use dem_io::study::{Study, read_study, reference_values, rewritten, scene_with};
 use dem_io::units::significant;
@@ -76,13 +76,8 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
             "1 measures run times best",
         ));
     }
-    let of_target = options.write.as_ref().and_then(|target| target.parent());
-    if let Some(missing) = of_target.filter(|f| !f.as_os_str().is_empty() && !f.is_dir()) {
-        return Err(Diagnostic::input(
-            "--write",
-            format!("there is no folder '{}'", missing.display()),
-            "make it first, or write elsewhere",
-        ));
+    if let Some(target) = &options.write {
+        need_folder_of(target).map_err(|error| error.within("--write"))?;
     }
     let study = read_study(&options.study)?;
     let scene_text = text_of(&study.scene, "a scene")

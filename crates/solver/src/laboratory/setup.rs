@@ -1,6 +1,7 @@
 //! What stands where in a test: the dimensions that its formulas need, and the particles whose way is measured.
 
 use dem_io::scene::{Scene, Test, TestKind, Wall, WallShape};
+use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -83,6 +84,9 @@ pub fn setup(
         TestKind::BrazilianDisc => disc(test, direction, extent),
         TestKind::Compression | TestKind::Tension => bar(test, direction, volume_m3, extent),
     };
+    if test.kind != TestKind::Tension {
+        all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
+    }
     let mut setup = Setup {
         mean_radius_m,
         ..found
@@ -225,12 +229,46 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f6
             "write cylinder = { from, to, radius }, or remove the wall",
         ));
     };
+    let [from, to] = [*from_m, *to_m].map(|end| placed(wall, end));
+    Ok((0.5 * (from + to), (to - from).normalize()))
+}
+
+/// Where a point of a wall's shape stands at the start.
+fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, wall.tilt_rad, 0.0));
     let turned = tilted * UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
-    let (from, to) = (Vector3::from(*from_m), Vector3::from(*to_m));
     let pivot = Vector3::from(wall.pivot_m);
-    let centre = pivot + turned * (0.5 * (from + to) - pivot);
-    Ok((centre, (turned * (to - from)).normalize()))
+    pivot + turned * (Vector3::from(point_m) - pivot)
+}
+
+/// Refuses walls that load by moving away from the body. Of an STL it is not known where it would meet the body.
+fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
+    for name in &test.moves {
+        let Some(wall) = scene.walls.get(name) else {
+            continue;
+        };
+        let place = match &wall.shape {
+            WallShape::Plane { point_m, .. } => placed(wall, *point_m),
+            WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
+            WallShape::Cylinder { from_m, to_m, .. } => {
+                0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
+            }
+            WallShape::Stl { .. } => continue,
+        };
+        let ahead_m = (middle - place).dot(&Vector3::from(test.direction));
+        if ahead_m <= 0.0 {
+            return Err(Diagnostic::input(
+                format!("{}: [test]", scene.source),
+                format!(
+                    "the wall '{name}' moves away from the body '{}', whose middle lies {} mm behind it",
+                    test.body,
+                    significant(-1e3 * ahead_m, 3)
+                ),
+                "turn direction round, or name the walls that press in moves",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.

@@ -163,6 +163,11 @@ fn what_cannot_be_written_is_told() {
         said,
         "error: --frame 6: there is no such frame in out; frames 0 to 5 are there\n"
     );
+    let said = bad(here, &["--largest", "-o", "none/piece.vtp"]);
+    assert!(
+        said.contains("none/piece.vtp: there is no folder 'none'; make it first"),
+        "{said}"
+    );
     let said = bad(here, &["--largest", "-o", "piece.xyz"]);
     assert!(
         said.starts_with("error: piece.xyz: '.xyz' is not the ending of a body"),
