@@ -582,16 +582,10 @@ impl Scene<'_> {
         particle: impl Fn(usize) -> usize,
     ) -> (Triple<T>, Ball<T>) {
         let [x, y, z, radius_m] = T::columns(proof, |lane| self.poses[particle(lane)].position_m);
-        let [vx, vy, vz, inverse_mass] = T::columns(proof, |lane| {
-            let motion = &self.motions[particle(lane)];
-            let [x, y, z] = motion.velocity_m_s;
-            [x, y, z, motion.inverse_mass]
-        });
-        let [wx, wy, wz, inverse_inertia] = T::columns(proof, |lane| {
-            let motion = &self.motions[particle(lane)];
-            let [x, y, z] = motion.spin_rad_s;
-            [x, y, z, motion.inverse_inertia]
-        });
+        let [vx, vy, vz, inverse_mass] =
+            T::columns(proof, |lane| self.motions[particle(lane)].velocity_row());
+        let [wx, wy, wz, inverse_inertia] =
+            T::columns(proof, |lane| self.motions[particle(lane)].spin_row());
         let ball = Ball {
             velocity_m_s: Triple(vx, vy, vz),
             spin_rad_s: Triple(wx, wy, wz),
