@@ -11,7 +11,7 @@ use crate::physics::contact::touch::{Ball, Touch, torques, touch};
 use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
-use crate::stages::lanes::{FOUR, LaneWork, Lanes, with_lanes};
+use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::motion::{ordered_sum, ordered_sums};
 use crate::stages::neighbours::near_pairs;
 use crate::state::contacts::{ContactShare, Contacts, Law, Memory, Rolling};
@@ -201,7 +201,7 @@ impl<'a> Books<'a> {
 fn for_each(shares: &mut [ContactShare], books: Books<'_>, scene: &Scene<'_>) {
     match shares {
         [] => {}
-        [share] => with_lanes(ShareWork {
+        [share] => with_most_lanes(ShareWork {
             share,
             books,
             scene,
@@ -288,22 +288,22 @@ fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'
     let close_m = T::all(proof, scene.contacts.close_m);
     let (of_first_kind, of_others) = share.close.split_at_mut(1);
     let list = &mut of_first_kind[0][1];
-    list.resize(own.len() + FOUR, 0);
+    list.resize(own.len() + MOST, 0);
     let close = &mut list[..];
     let mut count = 0;
-    for (first, was_close) in own.clone().step_by(FOUR).zip(&mut share.was_close) {
+    for (first, was_close) in own.clone().step_by(MOST).zip(&mut share.was_close) {
         for &[_, soon] in pairs
-            .get(first + AHEAD..first + AHEAD + FOUR)
+            .get(first + AHEAD..first + AHEAD + MOST)
             .unwrap_or_default()
         {
             fetch_soon(&poses[soon as usize]);
         }
-        let four = &pairs[first..(first + FOUR).min(own.end)];
-        let now = near::<T>(proof, four, poses, close_m);
+        let eight = &pairs[first..(first + MOST).min(own.end)];
+        let now = near::<T>(proof, eight, poses, close_m);
         // Whether they are close cannot be foretold, so there is no branch on it.
         let listed = usize::from(now | *was_close);
         *was_close = now;
-        for lane in 0..FOUR {
+        for lane in 0..MOST {
             close[count] = (first + lane) as u32;
             count += listed >> lane & 1;
         }
@@ -320,7 +320,7 @@ fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'
     }
 }
 
-/// For each of up to four pairs a bit, from the lowest on: whether the two are closer than `close_m`.
+/// For each of up to eight pairs a bit, from the lowest on: whether the two are closer than `close_m`.
 #[inline(always)]
 fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: T) -> u8 {
     let mut bits = 0;
@@ -335,7 +335,7 @@ fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: 
         let apart = Triple(bx - ax, by - ay, bz - az);
         bits |= (reach * reach).above(apart.square()) << first;
     }
-    bits & ((1 << pairs.len()) - 1)
+    bits & (0xff >> (MOST - pairs.len()))
 }
 
 impl ShareWork<'_> {
@@ -430,10 +430,11 @@ impl ShareWork<'_> {
                     fetch_soon(wrench);
                 }
             }
-            let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
-            let numbers = [number(0), number(1), number(2), number(3)];
-            let [p, q, r, s] = numbers;
-            let ends = [pairs[p], pairs[q], pairs[r], pairs[s]];
+            let (mut numbers, mut ends) = ([0; MOST], [[0; 2]; MOST]);
+            for lane in 0..T::COUNT {
+                numbers[lane] = some[lane.min(some.len() - 1)] as usize;
+                ends[lane] = pairs[numbers[lane]];
+            }
             let met = scene.meet::<T, _>(
                 proof,
                 law,
@@ -446,7 +447,7 @@ impl ShareWork<'_> {
                 let pair = ends[met.swallowed.trailing_zeros() as usize];
                 swallowed = Some(swallowed.map_or(pair, |other| other.min(pair)));
             }
-            let touched = met.touched & (0xff >> (8 - some.len()));
+            let touched = met.touched & (0xff >> (MOST - some.len()));
             computed += touched.count_ones() as usize;
             for lane in 0..T::COUNT {
                 if touched >> lane & 1 == 1 {
@@ -479,12 +480,12 @@ impl ShareWork<'_> {
 
 /// What becomes of contacts, row by row.
 struct Met {
-    slid: [[f64; 4]; FOUR],
-    damped: [[f64; 4]; FOUR],
+    slid: [[f64; 4]; MOST],
+    damped: [[f64; 4]; MOST],
     /// Spring and damping of rolling. None: there is no rolling friction.
-    rolled: Option<[[[f64; 4]; FOUR]; 2]>,
-    friction_j: [f64; FOUR],
-    damping_j: [f64; FOUR],
+    rolled: Option<[[[f64; 4]; MOST]; 2]>,
+    friction_j: [f64; MOST],
+    damping_j: [f64; MOST],
     forces: Forces,
     /// A bit for each, from the lowest on: whether the two overlap, or did in the step before.
     touched: u8,
@@ -494,8 +495,8 @@ struct Met {
 
 /// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
 struct Forces {
-    on_b: [[f64; 4]; FOUR],
-    torques: [[[f64; 4]; FOUR]; 2],
+    on_b: [[f64; 4]; MOST],
+    torques: [[[f64; 4]; MOST]; 2],
 }
 
 impl Forces {

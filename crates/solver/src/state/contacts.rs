@@ -150,7 +150,7 @@ pub struct ContactShare {
     pub border_memories: Vec<Memory>,
     /// For each kind the contacts that were close when all were looked at, or at the look before: numbers in `border`, and in all.
     pub close: Vec<[Vec<u32>; 2]>,
-    /// Which of its contacts were close when all were looked at: a bit for each, four to a byte.
+    /// Which of its contacts were close when all were looked at: a bit for each, eight to a byte.
     pub was_close: Vec<u8>,
     /// How many of its contacts touch in this step, or did in the one before.
     pub computed: usize,
@@ -218,8 +218,8 @@ impl Contacts {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
                 let own = first_of(w[0])..first_of(w[1]);
                 let remembers = |memory: &Memory| *memory != Memory::default();
-                let was_close = self.memories[own.clone()].chunks(4).map(|four| {
-                    (0..).zip(four).fold(0, |bits, (lane, memory)| {
+                let was_close = self.memories[own.clone()].chunks(8).map(|eight| {
+                    (0..).zip(eight).fold(0, |bits, (lane, memory)| {
                         bits | u8::from(remembers(memory)) << lane
                     })
                 });
