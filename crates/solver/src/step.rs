@@ -132,6 +132,8 @@ pub fn move_on(state: &mut State) {
         let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
         state.fastest_m_s += of_walls_m_s;
         let moved_m = state.fastest_m_s * state.time_step_s;
+        contacts.moved_m = moved_m;
+        contacts.close_room_m -= moved_m;
         contacts.room_m -= moved_m;
         if contacts.room_m < moved_m {
             // After one more such step, who is not listed could overlap.

@@ -1,40 +1,85 @@
 //! Rotation of a rigid body.
 
+use crate::physics::number::{Number, Triple};
+
+/// Square of the half angle, below which it is summed as a series, exact to rounding.
+const SMALL: f64 = 0.01;
+
 /// The orientation `turned` (unit quaternion x, y, z, w) after the rotation vector `turn` (rad, in space): the exponential of half of it, from the left.
 ///
-/// Half angles below a tenth are summed as a series, exact to rounding; the norm is set right to first order, so that it does not drift.
+/// The norm is set right to first order, so that it does not drift.
 #[inline(always)]
 pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
-    let half = turn.map(|t| 0.5 * t);
-    let square = half[0] * half[0] + half[1] * half[1] + half[2] * half[2];
-    let (sine_per_angle, cosine) = if square < 0.01 {
-        small_angle(square)
-    } else {
-        let angle = square.sqrt();
-        (angle.sin() / angle, angle.cos())
-    };
-    let [rx, ry, rz] = half.map(|h| h * sine_per_angle);
-    let rw = cosine;
-    let [x, y, z, w] = turned;
-    let new = [
-        rw * x + rx * w + ry * z - rz * y,
-        rw * y - rx * z + ry * w + rz * x,
-        rw * z + rx * y - ry * x + rz * w,
-        rw * w - rx * x - ry * y - rz * z,
-    ];
-    let norm = new.iter().map(|q| q * q).sum::<f64>();
-    new.map(|q| q * (1.5 - 0.5 * norm))
+    let half = half_angles(turn);
+    let square = half.square();
+    if square < SMALL {
+        return after(turned, half, small_angle(square));
+    }
+    let angle = square.root();
+    after(turned, half, (angle.sin() / angle, angle.cos()))
 }
 
-/// sin(a)/a and cos(a) from a^2 below 0.01.
+/// The same for an angle that [is small](room_to_small).
 #[inline(always)]
-fn small_angle(square: f64) -> (f64, f64) {
-    // Products, as a division takes several times as long.
-    let s = |divisor: f64| square * (1.0 / divisor);
+pub fn turn_a_little<T: Number>(turned: [T; 4], turn: [T; 3]) -> [T; 4] {
+    let half = half_angles(turn);
+    after(turned, half, small_angle(half.square()))
+}
+
+/// Above 0 where a rotation vector, rad, is small enough for [`turn_a_little`].
+#[inline(always)]
+pub fn room_to_small<T: Number>(turn: [T; 3]) -> T {
+    (-half_angles(turn).square()).plus(SMALL)
+}
+
+#[inline(always)]
+fn half_angles<T: Number>([x, y, z]: [T; 3]) -> Triple<T> {
+    Triple(x, y, z).times(0.5)
+}
+
+/// After a turn by these half angles, with their sine over angle and their cosine.
+#[inline(always)]
+fn after<T: Number>([x, y, z, w]: [T; 4], half: Triple<T>, (sine_per_angle, rw): (T, T)) -> [T; 4] {
+    let Triple(rx, ry, rz) = half * sine_per_angle;
+    let nx = rw * x + rx * w + ry * z - rz * y;
+    let ny = rw * y - rx * z + ry * w + rz * x;
+    let nz = rw * z + rx * y - ry * x + rz * w;
+    let nw = rw * w - rx * x - ry * y - rz * z;
+    let norm = nx * nx + ny * ny + nz * nz + nw * nw;
+    let right = norm.times(-0.5).plus(1.5);
+    [nx * right, ny * right, nz * right, nw * right]
+}
+
+/// sin(a)/a and cos(a) from a^2 below [`SMALL`].
+#[inline(always)]
+fn small_angle<T: Number>(square: T) -> (T, T) {
+    let one = square.zero().plus(1.0);
     (
-        1.0 - s(6.0) * (1.0 - s(20.0) * (1.0 - s(42.0) * (1.0 - s(72.0) * (1.0 - s(110.0))))),
-        1.0 - s(2.0) * (1.0 - s(12.0) * (1.0 - s(30.0) * (1.0 - s(56.0) * (1.0 - s(90.0))))),
+        less(
+            square,
+            6.0,
+            less(
+                square,
+                20.0,
+                less(square, 42.0, less(square, 72.0, less(square, 110.0, one))),
+            ),
+        ),
+        less(
+            square,
+            2.0,
+            less(
+                square,
+                12.0,
+                less(square, 30.0, less(square, 56.0, less(square, 90.0, one))),
+            ),
+        ),
     )
+}
+
+/// 1 less a quotient times the rest of a series. A product, as a division takes several times as long.
+#[inline(always)]
+fn less<T: Number>(square: T, divisor: f64, rest: T) -> T {
+    (-(square.times(1.0 / divisor) * rest)).plus(1.0)
 }
 
 /// The rotation vector of an orientation, rad: of the smaller of its two turns.

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST};
 use crate::physics::number::Triple;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
@@ -105,7 +105,7 @@ pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4
 
 /// Rows of x, y, z and something that makes four.
 #[inline(always)]
-pub(super) fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; BLOCK] {
+pub(super) fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; MOST] {
     T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
 }
 

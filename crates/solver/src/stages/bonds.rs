@@ -9,7 +9,7 @@ use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::answer;
 use crate::physics::number::{Triple, Turn};
 use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, ways};
-use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
 use crate::stages::motion::CHUNK;
 use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
@@ -138,7 +138,7 @@ struct Found<T> {
     force_on_b: Triple<T>,
     torques: [Triple<T>; 2],
     /// Square of the utilisation less [`NEARLY`], times (pi r^3)^2; below 0 if nothing can break.
-    beyond: [f64; BLOCK],
+    beyond: [f64; MOST],
 }
 
 /// What bonds of a rule have in common.
@@ -182,7 +182,7 @@ impl Kind {
             turns(proof, |lane| poses[ends[lane][1] as usize].turned),
         ];
         let answer = answer(&stiffness, direction, ways(proof, ends, poses), turned);
-        let mut beyond = [-1.0; BLOCK];
+        let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
             let [used, factor] = screen.used_and_factor(&answer.load, radius_m);
             beyond = (used - factor.times(NEARLY)).values();

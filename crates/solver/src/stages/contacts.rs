@@ -1,7 +1,5 @@
 //! Forces of contacts between particles.
 
-use std::ops::Range;
-
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::manner::Manner;
@@ -13,7 +11,7 @@ use crate::physics::contact::touch::{Ball, Touch, torques, touch};
 use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
-use crate::stages::lanes::{FOUR, LaneWork, Lanes, with_lanes};
+use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::motion::{ordered_sum, ordered_sums};
 use crate::stages::neighbours::near_pairs;
 use crate::state::contacts::{ContactShare, Contacts, Law, Memory, Rolling};
@@ -21,12 +19,21 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Contacts between those that are looked at and those whose second particles are fetched into the cache.
 const AHEAD: usize = 32;
-/// Contacts that are looked at before those of them that touch are computed: what the look fetches stays in the cache until then.
-const TOGETHER: usize = 128;
+/// The same of those that are computed.
+const SOON: usize = 16;
+/// Steps at the present speed until all pairs are looked at again, at most; and at least, else they are looked at in each step.
+const STEPS: [f64; 2] = [32.0, 4.0];
+/// Pairs that are further apart than this share of the skin are not computed.
+const CLOSE: f64 = 1.0 / 16.0;
 
 /// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes down what each contact remembers: after a step of `dt`, s, in
 /// which the particles moved as their motions say.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
+    let looks = contacts.close_room_m <= 0.0;
+    if looks {
+        contacts.close_m = close_m(contacts);
+        contacts.close_room_m = 0.45 * contacts.close_m;
+    }
     let mut shares = std::mem::take(&mut contacts.shares);
     let mut memories = std::mem::take(&mut contacts.memories);
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
@@ -42,6 +49,7 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         contacts: known,
         poses: &p.poses,
         motions: &p.motions,
+        looks,
         dt,
     };
     let books = Books {
@@ -54,6 +62,14 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.shares = shares;
     contacts.memories = memories;
     contacts.lost_j = lost_j;
+}
+
+/// Pairs closer than this, m, are computed until a particle may have moved almost half of it: then none of the others can have met, however places are rounded.
+/// 0 where that would be soon: then all pairs are looked at in each step.
+fn close_m(contacts: &Contacts) -> f64 {
+    let [most_m, least_m] = STEPS.map(|steps| 2.0 * steps * contacts.moved_m);
+    let close_m = most_m.min(CLOSE * contacts.skin_m);
+    if close_m < least_m { 0.0 } else { close_m }
 }
 
 /// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for each particle; those of one number do not touch each other.
@@ -149,6 +165,8 @@ struct Scene<'a> {
     contacts: &'a Contacts,
     poses: &'a [Pose],
     motions: &'a [Motion],
+    /// Whether all pairs are looked at, not only those that were close.
+    looks: bool,
     dt: f64,
 }
 
@@ -183,7 +201,7 @@ impl<'a> Books<'a> {
 fn for_each(shares: &mut [ContactShare], books: Books<'_>, scene: &Scene<'_>) {
     match shares {
         [] => {}
-        [share] => with_lanes(ShareWork {
+        [share] => with_most_lanes(ShareWork {
             share,
             books,
             scene,
@@ -212,33 +230,15 @@ struct ShareWork<'a> {
 impl LaneWork for ShareWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
-        // A particle meets its contacts kind by kind, whoever's they are: with several kinds there is no way but to look at all first.
-        let own = self.share.own.clone();
-        let together = match self.scene.contacts.kinds.len() {
-            1 => TOGETHER,
-            _ => own.len().max(1),
-        };
-        find_border(self.share, self.scene);
+        if self.scene.looks {
+            look::<T>(proof, self.share, self.scene);
+        }
         (self.share.computed, self.share.rolled) = (0, 0);
-        let mut first = own.start;
-        loop {
-            let end = (first + together).min(own.end);
-            find_own::<T>(proof, self.share, first..end, &mut self.books, self.scene);
-            for kind in 0..self.scene.contacts.kinds.len() {
-                self.with_kind::<T>(proof, kind);
-                let computed = self.share.touching[kind][1].len();
-                self.share.computed += computed;
-                if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
-                    self.share.rolled += computed;
-                }
-            }
-            for [of_border, touching] in &mut self.share.touching {
-                of_border.clear();
-                touching.clear();
-            }
-            first = end;
-            if first == own.end {
-                break;
+        for kind in 0..self.scene.contacts.kinds.len() {
+            let before = self.share.computed;
+            self.with_kind::<T>(proof, kind);
+            if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
+                self.share.rolled += self.share.computed - before;
             }
         }
     }
@@ -255,67 +255,60 @@ fn manner<T: Lanes>(proof: T::Proof, manner: &Manner) -> Manner<T> {
     }
 }
 
-/// Whether two spheres overlap.
+/// Lists the contacts of a share that are close.
 #[inline(always)]
-fn overlap(a: &Pose, b: &Pose) -> bool {
-    let reach = a.radius_m() + b.radius_m();
-    (b.place() - a.place()).norm_squared() < reach * reach
+fn look<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
+    for [of_border, own] in &mut share.close {
+        of_border.clear();
+        own.clear();
+    }
+    find_border(share, scene);
+    find_own::<T>(proof, share, scene);
 }
 
-/// Lists the contacts of the border that touch.
+/// Lists the contacts of the border that are close.
 fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
     let (contacts, poses) = (scene.contacts, scene.poses);
     for (n, &at) in (0..).zip(&share.border) {
         let pair = contacts.pairs[at as usize];
-        if overlap(&poses[pair[0] as usize], &poses[pair[1] as usize]) {
-            share.touching[contacts.kind(pair)][0].push(n);
+        let [a, b] = pair.map(|i| &poses[i as usize]);
+        let reach = a.radius_m() + b.radius_m() + contacts.close_m;
+        if (b.place() - a.place()).norm_squared() < reach * reach {
+            share.close[contacts.kind(pair)][0].push(n);
         }
     }
 }
 
-/// Lists those of some of its own contacts that touch, or did in the step before: they have an end to book. `some` begin at a whole number of fours.
+/// Lists those of its own contacts that are close, or were at the look before: they may have an end to book.
 #[inline(always)]
-fn find_own<T: Lanes>(
-    proof: T::Proof,
-    share: &mut ContactShare,
-    some: Range<usize>,
-    books: &mut Books<'_>,
-    scene: &Scene<'_>,
-) {
-    let (poses, motions) = (scene.poses, scene.motions);
-    let pairs = &scene.contacts.pairs[..share.own.end];
-    let (of_first_kind, of_others) = share.touching.split_at_mut(1);
+fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
+    let poses = scene.poses;
+    let own = share.own.clone();
+    let pairs = &scene.contacts.pairs[..own.end];
+    let close_m = T::all(proof, scene.contacts.close_m);
+    let (of_first_kind, of_others) = share.close.split_at_mut(1);
     let list = &mut of_first_kind[0][1];
-    list.resize(some.len() + FOUR, 0);
-    let touching = &mut list[..];
+    list.resize(own.len() + MOST, 0);
+    let close = &mut list[..];
     let mut count = 0;
-    let of_fours = (some.start - share.own.start) / FOUR..;
-    for (first, touched) in some.clone().step_by(FOUR).zip(&mut share.touched[of_fours]) {
+    for (first, was_close) in own.clone().step_by(MOST).zip(&mut share.was_close) {
         for &[_, soon] in pairs
-            .get(first + AHEAD..first + AHEAD + FOUR)
+            .get(first + AHEAD..first + AHEAD + MOST)
             .unwrap_or_default()
         {
             fetch_soon(&poses[soon as usize]);
         }
-        let four = &pairs[first..(first + FOUR).min(some.end)];
-        let now = overlapping::<T>(proof, four, poses);
-        // Whether they touch cannot be foretold, so there is no branch on it.
-        let listed = usize::from(now | *touched);
-        *touched = now;
-        for lane in 0..FOUR {
-            touching[count] = (first + lane) as u32;
+        let eight = &pairs[first..(first + MOST).min(own.end)];
+        let now = near::<T>(proof, eight, poses, close_m);
+        // Whether they are close cannot be foretold, so there is no branch on it.
+        let listed = usize::from(now | *was_close);
+        *was_close = now;
+        for lane in 0..MOST {
+            close[count] = (first + lane) as u32;
             count += listed >> lane & 1;
         }
     }
     list.truncate(count);
-    for &at in &*list {
-        let b = pairs[at as usize][1] as usize;
-        fetch_soon(&motions[b]);
-        fetch_soon(&books.memories[at as usize - share.own.start]);
-        if let Some(wrench) = books.wrenches.get(b.wrapping_sub(share.particles.start)) {
-            fetch_soon(wrench);
-        }
-    }
     if !of_others.is_empty() {
         list.retain(|&at| {
             let kind = scene.contacts.kind(pairs[at as usize]);
@@ -327,9 +320,9 @@ fn find_own<T: Lanes>(
     }
 }
 
-/// For each of up to four pairs a bit, from the lowest on: whether the two overlap.
+/// For each of up to eight pairs a bit, from the lowest on: whether the two are closer than `close_m`.
 #[inline(always)]
-fn overlapping<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose]) -> u8 {
+fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: T) -> u8 {
     let mut bits = 0;
     for first in (0..pairs.len()).step_by(T::COUNT) {
         let row = |lane: usize, end: usize| {
@@ -338,11 +331,11 @@ fn overlapping<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose]) ->
         };
         let [ax, ay, az, radius_a] = T::columns(proof, |lane| row(lane, 0));
         let [bx, by, bz, radius_b] = T::columns(proof, |lane| row(lane, 1));
-        let reach = radius_a + radius_b;
+        let reach = radius_a + radius_b + close_m;
         let apart = Triple(bx - ax, by - ay, bz - az);
         bits |= (reach * reach).above(apart.square()) << first;
     }
-    bits & ((1 << pairs.len()) - 1)
+    bits & (0xff >> (MOST - pairs.len()))
 }
 
 impl ShareWork<'_> {
@@ -410,7 +403,7 @@ impl ShareWork<'_> {
         } = self;
         let pairs = &scene.contacts.pairs;
         let (own, particles) = (&share.own, &share.particles);
-        let [of_border, touching] = &share.touching[kind];
+        let [of_border, close] = &share.close[kind];
         for some in of_border.chunks(T::COUNT) {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
             let pair = |lane: usize| pairs[share.border[number(lane)] as usize];
@@ -425,11 +418,23 @@ impl ShareWork<'_> {
         let wrenches = &mut books.wrenches[..];
         let lost_j = &mut books.lost_j[..];
         let mut swallowed = share.swallowed;
-        for some in touching.chunks(T::COUNT) {
-            let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
-            let numbers = [number(0), number(1), number(2), number(3)];
-            let [p, q, r, s] = numbers;
-            let ends = [pairs[p], pairs[q], pairs[r], pairs[s]];
+        let mut computed = 0;
+        for (n, some) in close.chunks(T::COUNT).enumerate() {
+            let soon = n * T::COUNT + SOON;
+            for &at in close.get(soon..soon + T::COUNT).unwrap_or_default() {
+                let b = pairs[at as usize][1] as usize;
+                fetch_soon(&scene.poses[b]);
+                fetch_soon(&scene.motions[b]);
+                fetch_soon(&memories[at as usize - own.start]);
+                if let Some(wrench) = wrenches.get(b.wrapping_sub(particles.start)) {
+                    fetch_soon(wrench);
+                }
+            }
+            let (mut numbers, mut ends) = ([0; MOST], [[0; 2]; MOST]);
+            for lane in 0..T::COUNT {
+                numbers[lane] = some[lane.min(some.len() - 1)] as usize;
+                ends[lane] = pairs[numbers[lane]];
+            }
             let met = scene.meet::<T, _>(
                 proof,
                 law,
@@ -442,8 +447,10 @@ impl ShareWork<'_> {
                 let pair = ends[met.swallowed.trailing_zeros() as usize];
                 swallowed = Some(swallowed.map_or(pair, |other| other.min(pair)));
             }
+            let touched = met.touched & (0xff >> (MOST - some.len()));
+            computed += touched.count_ones() as usize;
             for lane in 0..T::COUNT {
-                if lane < some.len() {
+                if touched >> lane & 1 == 1 {
                     let a = ends[lane][0] as usize - particles.start;
                     lost_j[a][0] += met.friction_j[lane];
                     lost_j[a][1] += met.damping_j[lane];
@@ -457,7 +464,7 @@ impl ShareWork<'_> {
                 }
             }
             for lane in 0..T::COUNT {
-                if lane < some.len() {
+                if touched >> lane & 1 == 1 {
                     let [a, b] = ends[lane].map(|end| (end as usize).wrapping_sub(particles.start));
                     met.forces.add_to_a(lane, &mut wrenches[a]);
                     if b < wrenches.len() {
@@ -466,27 +473,30 @@ impl ShareWork<'_> {
                 }
             }
         }
+        share.computed += computed;
         share.swallowed = swallowed;
     }
 }
 
 /// What becomes of contacts, row by row.
 struct Met {
-    slid: [[f64; 4]; FOUR],
-    damped: [[f64; 4]; FOUR],
+    slid: [[f64; 4]; MOST],
+    damped: [[f64; 4]; MOST],
     /// Spring and damping of rolling. None: there is no rolling friction.
-    rolled: Option<[[[f64; 4]; FOUR]; 2]>,
-    friction_j: [f64; FOUR],
-    damping_j: [f64; FOUR],
+    rolled: Option<[[[f64; 4]; MOST]; 2]>,
+    friction_j: [f64; MOST],
+    damping_j: [f64; MOST],
     forces: Forces,
-    /// A bit for each, from the lowest on: whether the two are pressed into each other by more than the radius of the smaller one.
+    /// A bit for each, from the lowest on: whether the two overlap, or did in the step before.
+    touched: u8,
+    /// The same: whether the two are pressed into each other by more than the radius of the smaller one.
     swallowed: u8,
 }
 
 /// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
 struct Forces {
-    on_b: [[f64; 4]; FOUR],
-    torques: [[[f64; 4]; FOUR]; 2],
+    on_b: [[f64; 4]; MOST],
+    torques: [[[f64; 4]; MOST]; 2],
 }
 
 impl Forces {
@@ -530,7 +540,8 @@ impl Scene<'_> {
         let (place_b, b) = self.ball::<T>(proof, |lane| pair(lane)[1] as usize);
         let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| memory(lane).slid);
         let [dx, dy, dz, origin_m] = T::columns(proof, |lane| memory(lane).damped);
-        let none = Triple(overlap_m.zero(), overlap_m.zero(), overlap_m.zero());
+        let nothing = overlap_m.zero();
+        let none = Triple(nothing, nothing, nothing);
         let (rolling_rad, moment_n_m) = if R::REMEMBERS {
             (
                 vectors(proof, |lane| memory(lane).rolled),
@@ -542,6 +553,8 @@ impl Scene<'_> {
         let mut touch = touch(place_b - place_a, [a, b], self.dt);
         let least_m = touch.radius_m.times(self.contacts.least_overlap);
         let relaxed = relaxed(touch.overlap_m, origin_m, least_m);
+        let touched =
+            touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
         touch.overlap_m = relaxed.overlap_m;
         let history = History {
             tangential_m: Triple(sx, sy, sz),
@@ -564,6 +577,7 @@ impl Scene<'_> {
         let Triple(sx, sy, sz) = history.tangential_m;
         let Triple(dx, dy, dz) = damped.force_n;
         Met {
+            touched,
             swallowed: (touch.overlap_m).above(a.radius_m.smaller(b.radius_m)),
             slid: T::rows([sx, sy, sz, history.overlap_m]),
             damped: T::rows([dx, dy, dz, relaxed.origin_m]),
@@ -582,16 +596,10 @@ impl Scene<'_> {
         particle: impl Fn(usize) -> usize,
     ) -> (Triple<T>, Ball<T>) {
         let [x, y, z, radius_m] = T::columns(proof, |lane| self.poses[particle(lane)].position_m);
-        let [vx, vy, vz, inverse_mass] = T::columns(proof, |lane| {
-            let motion = &self.motions[particle(lane)];
-            let [x, y, z] = motion.velocity_m_s;
-            [x, y, z, motion.inverse_mass]
-        });
-        let [wx, wy, wz, inverse_inertia] = T::columns(proof, |lane| {
-            let motion = &self.motions[particle(lane)];
-            let [x, y, z] = motion.spin_rad_s;
-            [x, y, z, motion.inverse_inertia]
-        });
+        let [vx, vy, vz, inverse_mass] =
+            T::columns(proof, |lane| self.motions[particle(lane)].velocity_row());
+        let [wx, wy, wz, inverse_inertia] =
+            T::columns(proof, |lane| self.motions[particle(lane)].spin_row());
         let ball = Ball {
             velocity_m_s: Triple(vx, vy, vz),
             spin_rad_s: Triple(wx, wy, wz),

@@ -4,8 +4,9 @@
 
 use rayon::prelude::*;
 
-use crate::physics::rigid::turn;
-use crate::state::particles::{Particles, Wrench};
+use crate::physics::rigid::{room_to_small, turn, turn_a_little};
+use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
@@ -62,27 +63,108 @@ pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
         .par_chunks_mut(CHUNK)
         .enumerate()
         .map(|(chunk, poses)| {
-            let mut fastest = 0.0_f64;
-            let first = chunk * CHUNK;
-            for ((i, pose), motion) in (first..).zip(poses).zip(&motions[first..]) {
-                if asleep.get(i).is_some_and(|asleep| *asleep) {
-                    continue;
-                }
-                let mut square = 0.0;
-                for k in 0..3 {
-                    pose.position_m[k] += time_step_s * motion.velocity_m_s[k];
-                    square += motion.velocity_m_s[k] * motion.velocity_m_s[k];
-                }
-                fastest = fastest.max(square);
-                pose.turned = turn(
-                    pose.turned,
-                    motion.spin_rad_s.map(|spin| spin * time_step_s),
-                );
-            }
+            let own = chunk * CHUNK..chunk * CHUNK + poses.len();
+            let mut fastest = 0.0;
+            with_lanes(DriftWork {
+                poses,
+                motions: &motions[own.clone()],
+                asleep: asleep.get(own).unwrap_or_default(),
+                time_step_s,
+                fastest: &mut fastest,
+            });
             fastest
         })
         .reduce(|| 0.0, f64::max)
         .sqrt()
+}
+
+/// The drift of some particles.
+struct DriftWork<'a> {
+    poses: &'a mut [Pose],
+    motions: &'a [Motion],
+    /// Empty: none sleeps.
+    asleep: &'a [bool],
+    time_step_s: f64,
+    /// Square of their largest speed, m2/s2.
+    fastest: &'a mut f64,
+}
+
+impl LaneWork for DriftWork<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(self, proof: T::Proof) {
+        let mut fastest = T::all(proof, 0.0);
+        let count = T::COUNT;
+        for (n, (poses, motions)) in (self.poses.chunks_mut(count))
+            .zip(self.motions.chunks(count))
+            .enumerate()
+        {
+            let first = n * count;
+            let asleep = self.asleep.get(first..first + poses.len());
+            let awake = asleep.is_none_or(|asleep| !asleep.contains(&true));
+            if poses.len() == count
+                && awake
+                && let Some(square) = move_on::<T>(proof, poses, motions, self.time_step_s)
+            {
+                fastest = square.larger(fastest);
+                continue;
+            }
+            for (i, (pose, motion)) in (first..).zip(poses.iter_mut().zip(motions)) {
+                if !self.asleep.get(i).is_some_and(|asleep| *asleep) {
+                    *self.fastest = self.fastest.max(move_one(pose, motion, self.time_step_s));
+                }
+            }
+        }
+        for square in fastest.values() {
+            *self.fastest = self.fastest.max(square);
+        }
+    }
+}
+
+/// Moves a particle, and returns the square of its speed, m2/s2.
+fn move_one(pose: &mut Pose, motion: &Motion, time_step_s: f64) -> f64 {
+    let mut square = 0.0;
+    for k in 0..3 {
+        pose.position_m[k] += time_step_s * motion.velocity_m_s[k];
+        square += motion.velocity_m_s[k] * motion.velocity_m_s[k];
+    }
+    let about = motion.spin_rad_s.map(|spin| spin * time_step_s);
+    pose.turned = turn(pose.turned, about);
+    square
+}
+
+/// The same of as many particles as there are lanes. None, and nothing is moved: one of them turns by more than a little.
+#[inline(always)]
+fn move_on<T: Lanes>(
+    proof: T::Proof,
+    poses: &mut [Pose],
+    motions: &[Motion],
+    time_step_s: f64,
+) -> Option<T> {
+    let [vx, vy, vz, _] = T::columns(proof, |lane| motions[lane].velocity_row());
+    let [wx, wy, wz, _] = T::columns(proof, |lane| motions[lane].spin_row());
+    let about = [
+        wx.times(time_step_s),
+        wy.times(time_step_s),
+        wz.times(time_step_s),
+    ];
+    let room = room_to_small(about);
+    if room.above(room.zero()).count_ones() < T::COUNT as u32 {
+        return None;
+    }
+    let [x, y, z, radius_m] = T::columns(proof, |lane| poses[lane].position_m);
+    let turned = turn_a_little(T::columns(proof, |lane| poses[lane].turned), about);
+    let places = T::rows([
+        x + vx.times(time_step_s),
+        y + vy.times(time_step_s),
+        z + vz.times(time_step_s),
+        radius_m,
+    ]);
+    let turned = T::rows(turned);
+    for (lane, pose) in poses.iter_mut().enumerate() {
+        pose.position_m = places[lane];
+        pose.turned = turned[lane];
+    }
+    Some(vx * vx + vy * vy + vz * vz)
 }
 
 /// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each component of force and torque, against the motion.

@@ -117,6 +117,12 @@ pub struct Contacts {
     pub skin_m: f64,
     /// What every particle may move before pairs have to be looked for again, m.
     pub room_m: f64,
+    /// What the fastest particle moved in the last step, m.
+    pub moved_m: f64,
+    /// Of the near pairs those that were closer than this when all were looked at are computed, m.
+    pub close_m: f64,
+    /// What every particle may move before all are looked at again, m: that is due at 0.
+    pub close_room_m: f64,
     /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No pairs are looked for.
     pub alone: bool,
     /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
@@ -142,11 +148,11 @@ pub struct ContactShare {
     pub border: Vec<u32>,
     /// What those remembered before this step.
     pub border_memories: Vec<Memory>,
-    /// For each kind the contacts that touch in this step, or did in the one before: numbers in `border`, and in all.
-    pub touching: Vec<[Vec<u32>; 2]>,
-    /// Which of its contacts touched in the step before: a bit for each, four to a byte.
-    pub touched: Vec<u8>,
-    /// How many of its contacts it has computed in this step.
+    /// For each kind the contacts that were close when all were looked at, or at the look before: numbers in `border`, and in all.
+    pub close: Vec<[Vec<u32>; 2]>,
+    /// Which of its contacts were close when all were looked at: a bit for each, eight to a byte.
+    pub was_close: Vec<u8>,
+    /// How many of its contacts touch in this step, or did in the one before.
     pub computed: usize,
     /// How many of those with rolling friction.
     pub rolled: usize,
@@ -193,6 +199,7 @@ impl Contacts {
     /// Divides the contacts into `count` shares of about the same number each.
     pub fn divide(&mut self, particles: usize, count: usize) {
         self.wanted_shares = count;
+        self.close_room_m = 0.0;
         let wanted = self.pairs.len().div_ceil(count).max(1);
         let mut starts = vec![0];
         for k in 1..count {
@@ -211,19 +218,19 @@ impl Contacts {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
                 let own = first_of(w[0])..first_of(w[1]);
                 let remembers = |memory: &Memory| *memory != Memory::default();
-                let touched = self.memories[own.clone()].chunks(4).map(|four| {
-                    (0..).zip(four).fold(0, |bits, (lane, memory)| {
+                let was_close = self.memories[own.clone()].chunks(8).map(|eight| {
+                    (0..).zip(eight).fold(0, |bits, (lane, memory)| {
                         bits | u8::from(remembers(memory)) << lane
                     })
                 });
                 ContactShare {
                     particles: w[0]..w[1],
-                    touched: touched.collect(),
+                    was_close: was_close.collect(),
                     own,
                     border: Vec::new(),
                     border_memories: Vec::new(),
                     swallowed: None,
-                    touching: vec![Default::default(); self.kinds.len()],
+                    close: vec![Default::default(); self.kinds.len()],
                     computed: 0,
                     rolled: 0,
                 }

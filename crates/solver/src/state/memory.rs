@@ -34,7 +34,7 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
             let of_shares = c.shares.iter().map(|share| {
                 size_of_val(&share.border[..])
                     + size_of_val(&share.border_memories[..])
-                    + share.touched.len()
+                    + share.was_close.len()
             });
             size_of_val(&c.memories[..]) + of_shares.sum::<usize>()
         }),

@@ -67,6 +67,22 @@ pub struct Motion {
     pub inverse_inertia: f64,
 }
 
+impl Motion {
+    /// Velocity x, y, z, m/s, and one over the mass, 1/kg: as they stand in memory.
+    #[inline(always)]
+    pub fn velocity_row(&self) -> [f64; 4] {
+        let [x, y, z] = self.velocity_m_s;
+        [x, y, z, self.inverse_mass]
+    }
+
+    /// Spin x, y, z, rad/s, and one over the moment of inertia, 1/(kg m2): as they stand in memory.
+    #[inline(always)]
+    pub fn spin_row(&self) -> [f64; 4] {
+        let [x, y, z] = self.spin_rad_s;
+        [x, y, z, self.inverse_inertia]
+    }
+}
+
 /// What acts on a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]

@@ -123,6 +123,32 @@ fn the_books_of_a_meeting_cloud_balance() {
 }
 
 #[test]
+fn to_look_at_all_pairs_in_each_step_changes_no_bit() {
+    let run = |always: bool| {
+        let mut state = cloud(0.1e-3, 2, 2e-7);
+        let mut looks = 0;
+        for _ in 0..4000 {
+            let contacts = state.contacts.as_mut().unwrap();
+            if always {
+                // Nothing seems to move: who is close now is not computed longer than now.
+                (contacts.moved_m, contacts.close_room_m) = (0.0, 0.0);
+            }
+            looks += usize::from(contacts.close_room_m <= 0.0);
+            step(&mut state);
+        }
+        let contacts = state.contacts.unwrap();
+        let books = (contacts.memories, contacts.lost_j);
+        (looks, state.particles.poses, state.particles.motions, books)
+    };
+    let (often, seldom) = (run(true), run(false));
+    assert_eq!(often.0, 4000);
+    assert!(seldom.0 < 400, "{}", seldom.0);
+    assert_eq!(often.1, seldom.1);
+    assert_eq!(often.2, seldom.2);
+    assert_eq!(often.3, seldom.3);
+}
+
+#[test]
 fn shares_and_skins_change_no_bit() {
     let run = |skin_m: f64, shares: usize| {
         let mut state = cloud(skin_m, shares, 2e-7);

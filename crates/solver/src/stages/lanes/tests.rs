@@ -1,7 +1,8 @@
 //! Several at once give the same bits as one by one.
 
 use super::avx2::Lanes4;
-use super::{FOUR, Lanes};
+use super::avx512::Lanes8;
+use super::{Lanes, MOST};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::manner::Manner;
@@ -21,7 +22,7 @@ const DT: f64 = 1e-6;
 /// Numbers of one contact or several, taken one after the other.
 struct Taken<'a, T: Lanes> {
     proof: T::Proof,
-    columns: &'a [[f64; FOUR]],
+    columns: &'a [[f64; MOST]],
     first: usize,
     next: usize,
 }
@@ -48,7 +49,7 @@ impl<T: Lanes> Taken<'_, T> {
     }
 }
 
-fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; FOUR]>) {
+fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; MOST]>) {
     let damping = &response.damping;
     for Triple(x, y, z) in [
         response.history.tangential_m,
@@ -79,14 +80,14 @@ fn add<T: Lanes>(
     rolling: &impl RollingFriction<T>,
     touch: &Touch<T>,
     history: &History<T>,
-    to: &mut Vec<[f64; FOUR]>,
+    to: &mut Vec<[f64; MOST]>,
 ) {
     written(&response(hertz, rolling, touch, history, DT), to);
     written(&response(linear, rolling, touch, history, DT), to);
 }
 
 /// All that contact laws say of the contacts from `first` on.
-fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; FOUR]], first: usize) -> Vec<[f64; FOUR]> {
+fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> Vec<[f64; MOST]> {
     let mut taken = Taken::<T> {
         proof,
         columns,
@@ -152,21 +153,54 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; FOUR]], first: usize) -> 
     found
 }
 
-proptest! {
-    #[test]
-    fn four_contacts_at_once_give_the_bits_of_one_by_one(
-        columns in prop::collection::vec(prop::array::uniform4(-1.0..1.0_f64), COLUMNS),
-    ) {
-        let Some(simd) = pulp::x86::V3::try_new() else {
-            return Ok(());
-        };
-        let at_once = answers::<Lanes4>(simd, &columns, 0);
-        for lane in 0..FOUR {
-            let alone = answers::<f64>((), &columns, lane);
+/// Whether as many as there are lanes give the bits of one by one.
+fn compare<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]]) -> Result<(), TestCaseError> {
+    for first in (0..MOST).step_by(T::COUNT) {
+        let at_once = answers::<T>(proof, columns, first);
+        for lane in 0..T::COUNT {
+            let alone = answers::<f64>((), columns, first + lane);
             prop_assert_eq!(at_once.len(), alone.len());
-            for (four, one) in at_once.iter().zip(&alone) {
-                prop_assert_eq!(four[lane].to_bits(), one[0].to_bits());
+            for (several, one) in at_once.iter().zip(&alone) {
+                prop_assert_eq!(several[lane].to_bits(), one[0].to_bits());
             }
         }
     }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn contacts_at_once_give_the_bits_of_one_by_one(
+        columns in prop::collection::vec(prop::array::uniform8(-1.0..1.0_f64), COLUMNS),
+    ) {
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            compare::<Lanes4>(simd, &columns)?;
+        }
+        if let Some(simd) = pulp::x86::V4::try_new() {
+            compare::<Lanes8>(simd, &columns)?;
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_and_rows_again(
+        rows in prop::array::uniform8(prop::array::uniform4(-1.0..1.0_f64)),
+    ) {
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            turn_over::<Lanes4>(simd, &rows)?;
+        }
+        if let Some(simd) = pulp::x86::V4::try_new() {
+            turn_over::<Lanes8>(simd, &rows)?;
+        }
+    }
+}
+
+fn turn_over<T: Lanes>(proof: T::Proof, rows: &[[f64; 4]; MOST]) -> Result<(), TestCaseError> {
+    let columns = T::columns(proof, |lane| rows[lane]);
+    for (k, column) in columns.into_iter().enumerate() {
+        for (value, row) in column.values().iter().zip(&rows[..T::COUNT]) {
+            prop_assert_eq!(*value, row[k]);
+        }
+    }
+    prop_assert_eq!(&T::rows(columns)[..T::COUNT], &rows[..T::COUNT]);
+    Ok(())
 }
