@@ -8,7 +8,7 @@ use crate::physics::contact::{Linearised, NormalLaw, linearised};
 use crate::physics::number::Triple;
 use crate::stages::walls::wall_touch;
 use crate::state::State;
-use crate::state::contacts::{ContactKind, Law, Rolling};
+use crate::state::contacts::{ContactKind, ContactShare, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallTouch};
 
@@ -200,23 +200,24 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
         return 0.0;
     };
     let p = &state.particles;
-    let of_pair = |at: usize| {
+    let of_pair = |kind: &ContactKind, at: usize| {
         let overlap_m = contacts.memories[at].overlap_m();
         if overlap_m <= 0.0 {
             return 0.0;
         }
-        let pair = contacts.pairs[at];
-        let [a, b] = pair.map(|end| end as usize);
+        let [a, b] = contacts.pairs[at].map(|end| end as usize);
         let [ra, rb] = [a, b].map(|i| p.poses[i].radius_m());
-        let kind = &contacts.kinds[contacts.kind(pair)];
         let per_mass = p.motions[a].inverse_mass + p.motions[b].inverse_mass;
         kind.normal_n_m(overlap_m, ra * rb / (ra + rb)) * per_mass
     };
-    let of_pairs = (0..contacts.pairs.len())
-        .into_par_iter()
-        .with_min_len(4096)
-        .map(of_pair)
-        .reduce(|| 0.0, f64::max);
+    // Whatever touches was close when pairs were looked at last.
+    let of_share = |share: &ContactShare| {
+        let kinds = contacts.kinds.iter().zip(&share.close);
+        let rates = kinds
+            .flat_map(|(kind, [_, own])| own.iter().map(move |&at| of_pair(kind, at as usize)));
+        rates.fold(0.0, f64::max)
+    };
+    let of_pairs = (contacts.shares.par_iter().map(of_share)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
