@@ -5,6 +5,8 @@
 //! A place on the halo is a unit vector p; the cap around the unit vector u is p . u > c.
 //! Candidate points are the corners of the free area: where the rims of two caps meet and no other cap covers the point.
 
+pub mod patches;
+
 use crate::Vector3;
 use crate::grid::Ball;
 use crate::rims::{LANES, Rims};
@@ -150,6 +152,31 @@ impl Halo {
                 }
             });
         }
+    }
+
+    /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if there is one.
+    pub fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let mut found = None;
+                let mut j = 1;
+                while found.is_none() && j < self.caps.len() {
+                    let caps = &self.caps;
+                    self.rims.open_corners(j, |k| {
+                        let places = corners_of(&caps[j], &caps[k]);
+                        for p in places.into_iter().flatten() {
+                            let centre = self.centre + p * self.radius;
+                            if found.is_none() && is_free(caps, &p) && takes(&centre) {
+                                found = Some(centre);
+                            }
+                        }
+                    });
+                    j += 1;
+                }
+                found
+            },
+        )
     }
 
     /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is the direction to the wall,

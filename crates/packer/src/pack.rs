@@ -149,6 +149,8 @@ pub fn pack(
         overlap: settings.overlap,
         wall_factor: (1.0 - 1e-12) / shrink,
         most_cells: MORE_CELLS + expected as usize,
+        expected,
+        fills_voids: share == 0.0,
         seed: settings.seed,
     };
     let extent = Vector3::from(surface.extent());
@@ -170,6 +172,15 @@ pub fn pack(
         &|placed| progress("front", placed as f64 / expected),
     )?;
     history.unplaced = front.waiting.len();
+    eprintln!(
+        "stats imbalance {} of {} fillers {} loose {} with room {} unplaced {}",
+        front.ledger.imbalance(),
+        1.358 * (front.balls.len() as f64).sqrt(),
+        front.fillers,
+        front.loose,
+        front.with_room.len(),
+        front.waiting.len()
+    );
     let mut balls = std::mem::take(&mut front.balls);
     drop(front);
     sort_along_curve(&mut balls, range[1]);
@@ -196,6 +207,8 @@ pub fn pack(
         overlap: settings.overlap,
         wall_factor: 1.0,
         most_cells: MORE_CELLS + balls.len(),
+        expected: balls.len() as f64,
+        fills_voids: false,
         seed: settings.seed ^ 0x5eed,
     };
     let mut front = Front::new(settings_full, boundary, &extent);
@@ -348,12 +361,13 @@ fn run_fronts(
 
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
 fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -> Range<u32> {
-    let radii = front.next_radii();
+    let draws = front.next_draws();
+    let radii = draws.map(|u| front.radius(u));
     let reduced = radii.map(|r| front.reduced(r));
     let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
         front.fits(centre, radius) && is_inside(boundary, centre)
     });
-    front.waiting.extend_from_slice(&radii[placed.len()..]);
+    front.waiting.extend_from_slice(&draws[placed.len()..]);
     front.begin(seed);
     let first = front.balls.len() as u32;
     for (centre, radius) in &placed {
@@ -367,7 +381,7 @@ fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -
 fn fill_voids(front: &mut Front, history: &mut PackHistory) {
     let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
     let count = front.balls.len();
-    let most = if one_size {
+    let most = if one_size || std::env::var("ALL").is_ok() {
         usize::MAX
     } else {
         (0.1 * 1.36 * (count as f64).sqrt()).ceil() as usize

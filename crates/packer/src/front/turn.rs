@@ -1,0 +1,221 @@
+//! What one block does in its turn.
+
+use super::places::Workspace;
+use super::{Front, FrontBall, distance};
+use crate::Vector3;
+use crate::grid::Ball;
+use crate::ledger::class_of;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+/// What a block begins its turn with.
+pub(super) struct Task {
+    pub(super) block: usize,
+    /// Its front spheres: indices of `Front::balls`.
+    pub(super) queue: Vec<u32>,
+    /// A draw that waits for a place.
+    pub(super) waiting: Option<f64>,
+    /// Of random numbers.
+    pub(super) stream: u64,
+}
+
+/// What all blocks of one colour share.
+pub(super) struct Rules<'a> {
+    /// How far from their seeds front spheres are worked off, local units.
+    pub(super) within: f64,
+    /// For each class of the ledger the probability with which a draw is left out.
+    pub(super) left_out: &'a [f64],
+    /// Whether voids may be filled.
+    pub(super) fills: bool,
+}
+
+/// What one block did in its turn.
+#[derive(Default)]
+pub(super) struct Turn {
+    /// Spheres placed.
+    pub(super) placed: Vec<Placed>,
+    /// A draw that waits for a place.
+    pub(super) waiting: Option<f64>,
+    /// Quantiles of the spheres that were chosen to fill voids.
+    pub(super) fillers: Vec<f64>,
+    /// Quantiles of draws left out.
+    pub(super) left_out: Vec<f64>,
+    /// Front spheres that left the queue with room around them for the smallest sphere.
+    pub(super) with_room: Vec<Ball>,
+    /// Spheres that fill voids and touch no three others or walls.
+    pub(super) loose: usize,
+}
+
+/// A sphere placed.
+pub(super) struct Placed {
+    pub(super) ball: FrontBall,
+    /// Not even the smallest sphere fits around it any more: it need not enter the queue.
+    pub(super) is_closed: bool,
+}
+
+/// A place in a void.
+pub(super) struct Filler {
+    pub(super) centre: Vector3,
+    pub(super) quantile: f64,
+    pub(super) is_loose: bool,
+}
+
+impl Front<'_> {
+    /// Works off the front spheres of one block as far as the rules say.
+    pub(super) fn advance_block(
+        &self,
+        workspace: &mut Workspace,
+        task: &Task,
+        rules: &Rules,
+    ) -> Turn {
+        let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
+        random.set_stream(task.stream);
+        let mut turn = Turn::default();
+        let mut left_out = Vec::new();
+        let mut draw = || loop {
+            let u = random.random::<f64>();
+            let share = rules.left_out[class_of(u, rules.left_out.len())];
+            if share > 0.0 && random.random::<f64>() < share {
+                left_out.push(u);
+            } else {
+                return u;
+            }
+        };
+        let largest = self.settings.radius_range[1];
+        let mut waiting = task.waiting;
+        let mut placed: Vec<Ball> = Vec::new();
+        let mut queue: Vec<FrontBall> = task
+            .queue
+            .iter()
+            .map(|i| (self.balls[*i as usize], self.grew_from[*i as usize]))
+            .collect();
+        let mut next = 0;
+        while next < queue.len() {
+            let (initial, number) = queue[next];
+            let seed = &self.seeds[number as usize];
+            next += 1;
+            self.look_around(workspace, &initial, &placed, largest);
+            // Spheres of this quantile and above do not fit around this one any more.
+            let mut too_large = f64::INFINITY;
+            loop {
+                let void = if self.settings.fills_voids {
+                    match self.place_for_smallest(workspace, &initial) {
+                        Some(place) => Some(place),
+                        None => break,
+                    }
+                } else {
+                    None
+                };
+                let u = *waiting.get_or_insert_with(&mut draw);
+                let drawn = if u < too_large {
+                    self.best_place(workspace, &initial, self.radius(u), seed)
+                } else {
+                    None
+                };
+                let (centre, u) = if let Some(centre) = drawn {
+                    waiting = None;
+                    (centre, u)
+                } else if let Some(void) = void.filter(|_| rules.fills) {
+                    too_large = too_large.min(u);
+                    let filler =
+                        self.filler(workspace, &initial, &placed, &void, &mut too_large, seed);
+                    turn.fillers.push(filler.quantile);
+                    turn.loose += usize::from(filler.is_loose);
+                    (filler.centre, filler.quantile)
+                } else {
+                    if void.is_some() {
+                        turn.with_room.push(initial);
+                    }
+                    break;
+                };
+                let ball = [centre.x, centre.y, centre.z, self.reduced(self.radius(u))];
+                workspace
+                    .neighbours
+                    .gather(&initial, &[ball], self.reduced(largest));
+                workspace.neighbours.sort();
+                placed.push(ball);
+                let is_next =
+                    self.block_of(&ball).1 == task.block && distance(&ball, seed) < rules.within;
+                turn.placed.push(Placed {
+                    ball: (ball, number),
+                    is_closed: is_next && self.settings.fills_voids,
+                });
+                if is_next {
+                    queue.push((ball, number));
+                }
+            }
+        }
+        turn.waiting = waiting;
+        turn.left_out = left_out;
+        turn
+    }
+
+    /// A sphere for a void around `front` that takes the smallest one at `void`: about the largest that fits and touches three.
+    /// `too_large` is a quantile that does not fit, and becomes the smallest one known.
+    fn filler(
+        &self,
+        workspace: &mut Workspace,
+        front: &Ball,
+        placed: &[Ball],
+        void: &Vector3,
+        too_large: &mut f64,
+        seed: &Vector3,
+    ) -> Filler {
+        /// Bisections of the quantile at most, and as many as are made once a larger one than the smallest has been found to fit.
+        const BISECTIONS: [i32; 2] = [9, 3];
+        let mut found = None;
+        let (mut low, mut high) = (0.0, too_large.min(1.0));
+        for bisection in 1..=BISECTIONS[0] {
+            let middle = 0.5 * (low + high);
+            match self.best_place(workspace, front, self.radius(middle), seed) {
+                Some(centre) => {
+                    found = Some(centre);
+                    low = middle;
+                }
+                None => high = middle,
+            }
+            if low > 0.0 && bisection >= BISECTIONS[1] {
+                break;
+            }
+        }
+        *too_large = high;
+        let centre = found
+            .or_else(|| self.best_place(workspace, front, self.settings.radius_range[0], seed));
+        match centre {
+            Some(centre) => Filler {
+                centre,
+                quantile: low,
+                is_loose: false,
+            },
+            None => self.roomiest(void, placed),
+        }
+    }
+
+    /// The largest sphere for the void around a place that takes the smallest one.
+    fn roomiest(&self, void: &Vector3, placed: &[Ball]) -> Filler {
+        let [smallest, largest] = self.settings.radius_range;
+        let enlarge = 1.0 + self.settings.overlap;
+        // No farther from the void than blocks of one colour can bear.
+        let room = |p: &Vector3| {
+            if (p - void).norm() > 0.5 * self.reduced(largest) {
+                return f64::NEG_INFINITY;
+            }
+            let gap = placed
+                .iter()
+                .map(|ball| (distance(ball, p) - ball[3]) * enlarge)
+                .fold(self.room(p), f64::min);
+            gap * (1.0 - 1e-12)
+        };
+        let roomiest = crate::seed::climb(void, 0.1 * smallest, 1e-6 * smallest, &room);
+        let quantile = self.largest_quantile_below(roomiest.radius);
+        Filler {
+            centre: if quantile > 0.0 {
+                roomiest.centre
+            } else {
+                *void
+            },
+            quantile,
+            is_loose: true,
+        }
+    }
+}
