@@ -43,6 +43,8 @@ pub struct FrontSettings<'a> {
     pub expected: f64,
     /// Where a radius drawn does not fit but a smaller one does, a smaller one is placed, and a later draw of its size left out.
     pub fills_voids: bool,
+    /// Experiment.
+    pub budget: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -68,9 +70,13 @@ pub struct Front<'a> {
     /// Sizes placed out of turn.
     pub ledger: Ledger,
     /// Spheres that left the queue with room around them for the smallest sphere.
-    pub with_room: Vec<Ball>,
+    with_room: BTreeMap<u32, Vec<FrontBall>>,
+    /// Spheres around which voids had to be left.
+    pub left_open: Vec<Ball>,
+    /// Spheres around which not even the smallest fits.
+    pub closed: usize,
     /// Spheres that were chosen to fill voids.
-    pub fillers: usize,
+    pub fillers: [usize; 2],
     /// Those of them that touch no three others or walls.
     pub loose: usize,
     streams: u64,
@@ -79,8 +85,12 @@ pub struct Front<'a> {
 /// A sphere and the number of the seed that its front grew from.
 type FrontBall = (Ball, u32);
 
-/// Spheres too many or too few up to any size because of filled voids, in roots of the number of spheres, at most: a fifth of what chance does.
-const MOST_IMBALANCE: f64 = 0.27;
+/// Spheres too many or too few up to any size because of filled voids, in roots of the number of spheres, at most: in the front and behind it.
+static MOST_IMBALANCE: std::sync::LazyLock<[f64; 2]> = std::sync::LazyLock::new(|| {
+    ["IMB0", "IMB1"].map(|k| std::env::var(k).unwrap().parse().unwrap())
+});
+/// Shells.
+const LAG: u32 = 3;
 
 /// Cells along the edge of a block.
 const BLOCK: usize = 2;
@@ -128,8 +138,10 @@ impl<'a> Front<'a> {
             seeds: Vec::new(),
             waiting: Vec::new(),
             ledger,
-            with_room: Vec::new(),
-            fillers: 0,
+            with_room: BTreeMap::new(),
+            left_open: Vec::new(),
+            closed: 0,
+            fillers: [0; 2],
             loose: 0,
             streams: 0,
         }
@@ -307,69 +319,108 @@ impl<'a> Front<'a> {
         while let Some((shell, front)) = shells.pop_first() {
             progress(self.balls.len())?;
             let within = f64::from(shell + 1) * self.shell_thickness();
-            let mut colours: [BTreeMap<usize, Vec<u32>>; 8] = Default::default();
-            for i in front {
-                let (colour, block) = self.block_of(&self.balls[i as usize]);
-                colours[colour].entry(block).or_default().push(i);
-            }
-            for blocks in colours {
-                if blocks.is_empty() {
-                    continue;
-                }
-                let stream = self.streams;
-                self.streams += blocks.len() as u64;
-                let tasks: Vec<Task> = blocks
-                    .into_iter()
-                    .zip(stream..)
-                    .map(|((block, queue), stream)| Task {
-                        block,
-                        queue,
-                        waiting: self.waiting.pop(),
-                        stream,
-                    })
-                    .collect();
-                let expected = tasks.iter().map(|task| task.queue.len()).sum();
-                let rules = Rules {
-                    within,
-                    left_out: &self.ledger.shares_left_out(expected),
-                    fills: self.may_fill(),
-                };
-                let turns: Vec<Turn> = tasks
-                    .into_par_iter()
-                    .map_init(Workspace::default, |workspace, task| {
-                        self.advance_block(workspace, &task, &rules)
-                    })
-                    .collect();
-                for turn in turns {
-                    self.take(turn, &mut shells);
-                }
-            }
+            let front = front.into_iter().map(|i| {
+                let i = i as usize;
+                (self.balls[i], self.grew_from[i])
+            });
+            self.work_off(front.collect(), Some(within), &mut shells);
+            self.fill_voids_behind(shell, &mut shells);
         }
+        self.fill_voids_behind(u32::MAX, &mut shells);
         Ok(())
     }
 
-    /// Whether one more sphere out of turn would not show in the distribution of sizes.
-    pub fn may_fill(&self) -> bool {
-        self.ledger.imbalance() < MOST_IMBALANCE * self.settings.expected.sqrt()
+    /// Fills the voids that were left `LAG` shells and more behind `shell`.
+    fn fill_voids_behind(&mut self, shell: u32, shells: &mut BTreeMap<u32, Vec<u32>>) {
+        while let Some(entry) = self.with_room.first_entry() {
+            if *entry.key() > shell.saturating_sub(LAG) {
+                break;
+            }
+            let front = entry.remove();
+            self.work_off(front, None, shells);
+        }
+    }
+
+    /// Works off spheres of the front: with draws as far as `within` from the seeds, or filling voids only.
+    fn work_off(
+        &mut self,
+        front: Vec<FrontBall>,
+        within: Option<f64>,
+        shells: &mut BTreeMap<u32, Vec<u32>>,
+    ) {
+        let mut colours: [BTreeMap<usize, Vec<FrontBall>>; 8] = Default::default();
+        for front_ball in front {
+            let (colour, block) = self.block_of(&front_ball.0);
+            colours[colour].entry(block).or_default().push(front_ball);
+        }
+        for blocks in colours {
+            if blocks.is_empty() {
+                continue;
+            }
+            let stream = self.streams;
+            self.streams += blocks.len() as u64;
+            let tasks: Vec<Task> = blocks
+                .into_iter()
+                .zip(stream..)
+                .map(|((block, queue), stream)| Task {
+                    block,
+                    queue,
+                    waiting: within.and_then(|_| self.waiting.pop()),
+                    stream,
+                })
+                .collect();
+            let draws = tasks.iter().map(|task| task.queue.len()).sum();
+            let rules = Rules {
+                within,
+                left_out: &self.ledger.shares_left_out(draws),
+                fills: self.ledger.imbalance_now()
+                    < (if within.is_some() {
+                        MOST_IMBALANCE[0]
+                    } else {
+                        self.settings.budget
+                    }) * self.settings.expected.sqrt(),
+            };
+            let turns: Vec<Turn> = tasks
+                .into_par_iter()
+                .map_init(Workspace::default, |workspace, task| {
+                    self.advance_block(workspace, task, &rules)
+                })
+                .collect();
+            for turn in turns {
+                self.take(turn, within.is_some(), shells);
+            }
+        }
     }
 
     /// Adds what a block did in its turn; spheres around which there may be room are put into their shells.
-    fn take(&mut self, turn: Turn, shells: &mut BTreeMap<u32, Vec<u32>>) {
+    fn take(&mut self, turn: Turn, draws: bool, shells: &mut BTreeMap<u32, Vec<u32>>) {
         self.waiting.extend(turn.waiting);
         for placed in turn.placed {
-            if !placed.is_closed {
-                shells
-                    .entry(self.shell_of(&placed.ball))
-                    .or_default()
-                    .push(self.balls.len() as u32);
+            if !placed.is_done {
+                let shell = self.shell_of(&placed.ball);
+                if draws {
+                    shells
+                        .entry(shell)
+                        .or_default()
+                        .push(self.balls.len() as u32);
+                } else {
+                    self.with_room.entry(shell).or_default().push(placed.ball);
+                }
             }
             self.add(placed.ball);
         }
-        turn.fillers.iter().for_each(|u| self.ledger.owe(*u));
-        turn.left_out.iter().for_each(|u| self.ledger.pay(*u));
-        self.fillers += turn.fillers.len();
+        for front_ball in turn.with_room {
+            if draws {
+                let shell = self.shell_of(&front_ball);
+                self.with_room.entry(shell).or_default().push(front_ball);
+            } else {
+                self.left_open.push(front_ball.0);
+            }
+        }
+        turn.quantiles.iter().for_each(|u| self.ledger.place(*u));
+        self.closed += turn.closed;
+        self.fillers[usize::from(!draws)] += turn.fillers;
         self.loose += turn.loose;
-        self.with_room.extend(turn.with_room);
     }
 
     fn add(&mut self, (ball, seed): FrontBall) {

@@ -1,61 +1,93 @@
-//! Keeps the sizes true where spheres were chosen to fill voids: what was taken out of turn is left out of the draws that follow.
+//! Keeps the sizes true where spheres are chosen to fill voids: classes of sizes that have had more than their share are drawn less often.
 
-/// How many spheres of each class of sizes were placed out of turn and have not been left out of the draws yet.
-/// The classes are equal shares of the distribution by number.
+/// How many spheres of each class of sizes have been placed, drawn or chosen. The classes are equal shares of the distribution by number.
 #[derive(Debug, Clone)]
 pub struct Ledger {
-    owed: Vec<f64>,
+    placed: Vec<f64>,
+    total: f64,
+    /// The share of each class while there are draws: less than equal where voids will take more at the end.
+    shares: Vec<f64>,
 }
 
 impl Ledger {
     /// For a packing of about so many spheres. More classes would tell sizes better apart, but each draw hits a class more seldom:
     /// with the root of the number both errors stay a small part of the noise of as many draws.
     pub fn new(spheres: f64) -> Self {
+        let classes = spheres.sqrt().clamp(1.0, 1e4) as usize;
         Self {
-            owed: vec![0.0; spheres.sqrt().clamp(1.0, 1e4) as usize],
+            placed: vec![0.0; classes],
+            total: 0.0,
+            shares: vec![1.0 / classes as f64; classes],
         }
     }
 
-    /// A sphere of quantile `u` (0 to 1) was placed out of turn.
-    pub fn owe(&mut self, u: f64) {
-        let class = self.class(u);
-        self.owed[class] += 1.0;
+    /// For another attempt that keeps back what each class has had too many of in the end.
+    pub fn corrected(&self) -> Self {
+        let classes = self.placed.len();
+        let mut shares: Vec<f64> = self
+            .shares
+            .iter()
+            .zip(&self.placed)
+            .map(|(share, placed)| {
+                (share - (placed / self.total.max(1.0) - 1.0 / classes as f64)).max(0.0)
+            })
+            .collect();
+        let sum: f64 = shares.iter().sum();
+        shares.iter_mut().for_each(|share| *share /= sum);
+        Self {
+            placed: vec![0.0; classes],
+            total: 0.0,
+            shares,
+        }
     }
 
-    /// A draw of quantile `u` was left out.
-    pub fn pay(&mut self, u: f64) {
-        let class = self.class(u);
-        self.owed[class] -= 1.0;
+    /// Spheres placed.
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// A sphere of quantile `u` (0 to 1) was placed.
+    pub fn place(&mut self, u: f64) {
+        let class = class_of(u, self.placed.len());
+        self.placed[class] += 1.0;
+        self.total += 1.0;
     }
 
     /// For each class the probability with which a draw is to be left out, if about so many are to be made before the next look:
-    /// half of what would pay all, since the number is a guess.
+    /// half of what would even out all, since the number is a guess.
     pub fn shares_left_out(&self, draws: usize) -> Vec<f64> {
-        let draws_of_class = draws as f64 / self.owed.len() as f64;
-        self.owed
-            .iter()
-            .map(|owed| (0.5 * owed / draws_of_class).max(0.0))
+        let draws_of_class = draws as f64 / self.placed.len() as f64;
+        self.surplus(&self.shares)
+            .map(|surplus| (0.5 * surplus / draws_of_class).max(0.0))
             .collect()
     }
 
-    /// By how many spheres the number up to some size, and its share of all, is off at most.
+    /// By how many spheres there are too many up to some size, at most, beside the shares aimed at now.
+    pub fn imbalance_now(&self) -> f64 {
+        largest_sum(self.surplus(&self.shares))
+    }
+
+    /// By how many spheres the number up to some size is off, at most.
     pub fn imbalance(&self) -> f64 {
-        let mean = self.owed.iter().sum::<f64>() / self.owed.len() as f64;
-        let mut sum = 0.0;
-        self.owed.iter().fold(0.0, |most: f64, owed| {
-            sum += owed - mean;
-            most.max(f64::abs(sum))
-        })
+        let equal = vec![1.0 / self.placed.len() as f64; self.placed.len()];
+        largest_sum(self.surplus(&equal)).max(largest_sum(self.surplus(&equal).map(|s| -s)))
     }
 
-    /// What is owed, class by class.
-    pub fn owed(&self) -> &[f64] {
-        &self.owed
+    fn surplus(&self, shares: &[f64]) -> impl Iterator<Item = f64> {
+        self.placed
+            .iter()
+            .zip(shares)
+            .map(|(placed, share)| placed - self.total * share)
     }
+}
 
-    fn class(&self, u: f64) -> usize {
-        class_of(u, self.owed.len())
-    }
+/// The largest sum of a row from its beginning.
+fn largest_sum(row: impl Iterator<Item = f64>) -> f64 {
+    let mut sum = 0.0;
+    row.fold(0.0, |most: f64, x| {
+        sum += x;
+        most.max(sum)
+    })
 }
 
 /// The class of a quantile among so many.

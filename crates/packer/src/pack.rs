@@ -4,6 +4,7 @@ use crate::boundary::Boundary;
 use crate::front::{Front, FrontSettings};
 use crate::grid::Ball;
 use crate::inside::is_inside;
+use crate::ledger::Ledger;
 use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
 use crate::settle::{default_share, settle};
 use crate::sizes::Sizes;
@@ -143,7 +144,8 @@ pub fn pack(
             "ask for larger diameters, or check the units of --diameter and --unit",
         ));
     }
-    let front_settings = FrontSettings {
+    let front_settings = |expected: f64, budget: f64| FrontSettings {
+        budget,
         radius: &small,
         radius_range: range.map(|r| shrink * r),
         overlap: settings.overlap,
@@ -154,7 +156,7 @@ pub fn pack(
         seed: settings.seed,
     };
     let extent = Vector3::from(surface.extent());
-    let mut front = Front::new(front_settings, boundary, &extent);
+    let mut front = Front::new(front_settings(expected, 0.27), boundary, &extent);
     let seeds = front_seeds(
         surface,
         boundary,
@@ -163,24 +165,42 @@ pub fn pack(
         share > 0.0,
         2.0 * front.reduced(front.settings.radius_range[1]),
     );
-    run_fronts(
-        &mut front,
-        boundary,
-        &seeds,
-        &inner,
-        &mut history,
-        &|placed| progress("front", placed as f64 / expected),
-    )?;
+    let budgets: Vec<f64> = if share > 0.0 {
+        vec![0.0]
+    } else {
+        vec![2.7, 2.7, 2.7, 2.7, 0.5]
+    };
+    let mut ledger: Option<Ledger> = None;
+    for budget in budgets {
+        let many = ledger.as_ref().map_or(expected, Ledger::total);
+        front = Front::new(front_settings(many, budget), boundary, &extent);
+        if let Some(ledger) = ledger {
+            front.ledger = ledger.corrected();
+        }
+        history.fronts = 0;
+        run_fronts(
+            &mut front,
+            boundary,
+            &seeds,
+            &inner,
+            &mut history,
+            &|placed| progress("front", placed as f64 / expected),
+        )?;
+        let imb = front.ledger.imbalance() / (front.balls.len() as f64).sqrt();
+        eprintln!(
+            "stats {budget} imbalance {:.2} fillers {:?} loose {} with room {} unplaced {}",
+            imb / 1.358,
+            front.fillers,
+            front.loose,
+            front.left_open.len(),
+            front.waiting.len()
+        );
+        if share > 0.0 || imb < 0.5 {
+            break;
+        }
+        ledger = Some(front.ledger.clone());
+    }
     history.unplaced = front.waiting.len();
-    eprintln!(
-        "stats imbalance {} of {} fillers {} loose {} with room {} unplaced {}",
-        front.ledger.imbalance(),
-        1.358 * (front.balls.len() as f64).sqrt(),
-        front.fillers,
-        front.loose,
-        front.with_room.len(),
-        front.waiting.len()
-    );
     let mut balls = std::mem::take(&mut front.balls);
     drop(front);
     sort_along_curve(&mut balls, range[1]);
@@ -209,6 +229,7 @@ pub fn pack(
         most_cells: MORE_CELLS + balls.len(),
         expected: balls.len() as f64,
         fills_voids: false,
+        budget: 0.0,
         seed: settings.seed ^ 0x5eed,
     };
     let mut front = Front::new(settings_full, boundary, &extent);

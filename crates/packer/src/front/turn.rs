@@ -11,8 +11,8 @@ use rand::{RngExt, SeedableRng};
 /// What a block begins its turn with.
 pub(super) struct Task {
     pub(super) block: usize,
-    /// Its front spheres: indices of `Front::balls`.
-    pub(super) queue: Vec<u32>,
+    /// Its front spheres.
+    pub(super) queue: Vec<FrontBall>,
     /// A draw that waits for a place.
     pub(super) waiting: Option<f64>,
     /// Of random numbers.
@@ -21,8 +21,8 @@ pub(super) struct Task {
 
 /// What all blocks of one colour share.
 pub(super) struct Rules<'a> {
-    /// How far from their seeds front spheres are worked off, local units.
-    pub(super) within: f64,
+    /// How far from their seeds front spheres are worked off, local units; None: voids are filled only.
+    pub(super) within: Option<f64>,
     /// For each class of the ledger the probability with which a draw is left out.
     pub(super) left_out: &'a [f64],
     /// Whether voids may be filled.
@@ -36,12 +36,14 @@ pub(super) struct Turn {
     pub(super) placed: Vec<Placed>,
     /// A draw that waits for a place.
     pub(super) waiting: Option<f64>,
-    /// Quantiles of the spheres that were chosen to fill voids.
-    pub(super) fillers: Vec<f64>,
-    /// Quantiles of draws left out.
-    pub(super) left_out: Vec<f64>,
+    /// Their quantiles.
+    pub(super) quantiles: Vec<f64>,
+    /// How many of them were chosen to fill voids.
+    pub(super) fillers: usize,
     /// Front spheres that left the queue with room around them for the smallest sphere.
-    pub(super) with_room: Vec<Ball>,
+    pub(super) with_room: Vec<FrontBall>,
+    /// Front spheres that left the queue without.
+    pub(super) closed: usize,
     /// Spheres that fill voids and touch no three others or walls.
     pub(super) loose: usize,
 }
@@ -50,7 +52,7 @@ pub(super) struct Turn {
 pub(super) struct Placed {
     pub(super) ball: FrontBall,
     /// Not even the smallest sphere fits around it any more: it need not enter the queue.
-    pub(super) is_closed: bool,
+    pub(super) is_done: bool,
 }
 
 /// A place in a void.
@@ -65,30 +67,23 @@ impl Front<'_> {
     pub(super) fn advance_block(
         &self,
         workspace: &mut Workspace,
-        task: &Task,
+        task: Task,
         rules: &Rules,
     ) -> Turn {
         let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
         random.set_stream(task.stream);
         let mut turn = Turn::default();
-        let mut left_out = Vec::new();
         let mut draw = || loop {
             let u = random.random::<f64>();
             let share = rules.left_out[class_of(u, rules.left_out.len())];
-            if share > 0.0 && random.random::<f64>() < share {
-                left_out.push(u);
-            } else {
+            if share == 0.0 || random.random::<f64>() >= share {
                 return u;
             }
         };
         let largest = self.settings.radius_range[1];
         let mut waiting = task.waiting;
         let mut placed: Vec<Ball> = Vec::new();
-        let mut queue: Vec<FrontBall> = task
-            .queue
-            .iter()
-            .map(|i| (self.balls[*i as usize], self.grew_from[*i as usize]))
-            .collect();
+        let mut queue = task.queue;
         let mut next = 0;
         while next < queue.len() {
             let (initial, number) = queue[next];
@@ -101,30 +96,38 @@ impl Front<'_> {
                 let void = if self.settings.fills_voids {
                     match self.place_for_smallest(workspace, &initial) {
                         Some(place) => Some(place),
-                        None => break,
+                        None => {
+                            turn.closed += 1;
+                            break;
+                        }
                     }
                 } else {
                     None
                 };
-                let u = *waiting.get_or_insert_with(&mut draw);
-                let drawn = if u < too_large {
-                    self.best_place(workspace, &initial, self.radius(u), seed)
-                } else {
-                    None
-                };
-                let (centre, u) = if let Some(centre) = drawn {
-                    waiting = None;
-                    (centre, u)
+                let mut drawn = None;
+                if rules.within.is_some() {
+                    let u = *waiting.get_or_insert_with(&mut draw);
+                    if u < too_large {
+                        drawn = self
+                            .best_place(workspace, &initial, self.radius(u), seed)
+                            .map(|centre| (centre, u));
+                        match drawn {
+                            Some(_) => waiting = None,
+                            None => too_large = u,
+                        }
+                    }
+                }
+                let (centre, u) = if let Some(drawn) = drawn {
+                    drawn
                 } else if let Some(void) = void.filter(|_| rules.fills) {
-                    too_large = too_large.min(u);
                     let filler =
                         self.filler(workspace, &initial, &placed, &void, &mut too_large, seed);
-                    turn.fillers.push(filler.quantile);
+                    turn.fillers += 1;
                     turn.loose += usize::from(filler.is_loose);
                     (filler.centre, filler.quantile)
                 } else {
                     if void.is_some() {
-                        turn.with_room.push(initial);
+                        turn.with_room.push((initial, number));
                     }
                     break;
                 };
@@ -134,11 +137,14 @@ impl Front<'_> {
                     .gather(&initial, &[ball], self.reduced(largest));
                 workspace.neighbours.sort();
                 placed.push(ball);
-                let is_next =
-                    self.block_of(&ball).1 == task.block && distance(&ball, seed) < rules.within;
+                turn.quantiles.push(u);
+                let is_next = self.block_of(&ball).1 == task.block
+                    && rules
+                        .within
+                        .is_none_or(|within| distance(&ball, seed) < within);
                 turn.placed.push(Placed {
                     ball: (ball, number),
-                    is_closed: is_next && self.settings.fills_voids,
+                    is_done: is_next && self.settings.fills_voids,
                 });
                 if is_next {
                     queue.push((ball, number));
@@ -146,7 +152,6 @@ impl Front<'_> {
             }
         }
         turn.waiting = waiting;
-        turn.left_out = left_out;
         turn
     }
 
