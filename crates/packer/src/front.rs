@@ -8,6 +8,9 @@
 //! - A radius that does not fit waits until it does, so that the radii placed are the radii drawn.
 //! - The front may begin at many seeds at once: each grows outwards, and the directions of growth, along which a front puts
 //!   more contacts, average out.
+//! - Where a front sphere would leave the queue although a smaller sphere than the one drawn fits around it, about the largest that fits is
+//!   placed, and its size is drawn less often afterwards (see ledger.rs): so no void is left that takes the smallest sphere, and the radii
+//!   placed still follow the distribution. Not before settling, which moves the spheres anyway.
 //! - The queue is worked off in shells around the seeds and, within a shell, in blocks of space in eight colours:
 //!   blocks of one colour are too far apart to disturb each other and run on several threads; what comes out does not depend on how many.
 
@@ -43,8 +46,8 @@ pub struct FrontSettings<'a> {
     pub expected: f64,
     /// Where a radius drawn does not fit but a smaller one does, a smaller one is placed, and a later draw of its size left out.
     pub fills_voids: bool,
-    /// Experiment.
-    pub budget: f64,
+    /// As long as small spheres are not more than expected by this many roots of the number of spheres, voids are filled at all.
+    pub most_too_many: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -69,14 +72,12 @@ pub struct Front<'a> {
     pub waiting: Vec<f64>,
     /// Sizes placed out of turn.
     pub ledger: Ledger,
-    /// Spheres that left the queue with room around them for the smallest sphere.
+    /// Spheres that left the queue with room around them for the smallest sphere, by shell.
     with_room: BTreeMap<u32, Vec<FrontBall>>,
-    /// Spheres around which voids had to be left.
-    pub left_open: Vec<Ball>,
-    /// Spheres around which not even the smallest fits.
-    pub closed: usize,
+    /// Those of them around which voids had to be left.
+    left_open: Vec<Ball>,
     /// Spheres that were chosen to fill voids.
-    pub fillers: [usize; 2],
+    pub fillers: usize,
     /// Those of them that touch no three others or walls.
     pub loose: usize,
     streams: u64,
@@ -85,12 +86,12 @@ pub struct Front<'a> {
 /// A sphere and the number of the seed that its front grew from.
 type FrontBall = (Ball, u32);
 
-/// Spheres too many or too few up to any size because of filled voids, in roots of the number of spheres, at most: in the front and behind it.
-static MOST_IMBALANCE: std::sync::LazyLock<[f64; 2]> = std::sync::LazyLock::new(|| {
-    ["IMB0", "IMB1"].map(|k| std::env::var(k).unwrap().parse().unwrap())
-});
-/// Shells.
+/// As long as small spheres are not more than expected by this many roots of the number of spheres (a fifth of what chance does), voids are
+/// filled at once. Others wait until the front is `LAG` shells farther: draws that were made meanwhile may have filled them.
+const MOST_AT_ONCE: f64 = 0.27;
 const LAG: u32 = 3;
+/// Voids are counted up to this number, and extrapolated from there.
+const MOST_COUNTED: usize = 10_000;
 
 /// Cells along the edge of a block.
 const BLOCK: usize = 2;
@@ -140,8 +141,7 @@ impl<'a> Front<'a> {
             ledger,
             with_room: BTreeMap::new(),
             left_open: Vec::new(),
-            closed: 0,
-            fillers: [0; 2],
+            fillers: 0,
             loose: 0,
             streams: 0,
         }
@@ -316,17 +316,19 @@ impl<'a> Front<'a> {
             let shell = self.shell_of(&(self.balls[*i as usize], self.grew_from[*i as usize]));
             shells.entry(shell).or_default().push(*i);
         }
-        while let Some((shell, front)) = shells.pop_first() {
-            progress(self.balls.len())?;
-            let within = f64::from(shell + 1) * self.shell_thickness();
-            let front = front.into_iter().map(|i| {
-                let i = i as usize;
-                (self.balls[i], self.grew_from[i])
-            });
-            self.work_off(front.collect(), Some(within), &mut shells);
-            self.fill_voids_behind(shell, &mut shells);
+        while !shells.is_empty() {
+            while let Some((shell, front)) = shells.pop_first() {
+                progress(self.balls.len())?;
+                let within = f64::from(shell + 1) * self.shell_thickness();
+                let front = front.into_iter().map(|i| {
+                    let i = i as usize;
+                    (self.balls[i], self.grew_from[i])
+                });
+                self.work_off(front.collect(), Some(within), &mut shells);
+                self.fill_voids_behind(shell, &mut shells);
+            }
+            self.fill_voids_behind(u32::MAX, &mut shells);
         }
-        self.fill_voids_behind(u32::MAX, &mut shells);
         Ok(())
     }
 
@@ -370,15 +372,14 @@ impl<'a> Front<'a> {
                 })
                 .collect();
             let draws = tasks.iter().map(|task| task.queue.len()).sum();
+            let most_too_many = match within {
+                Some(_) => MOST_AT_ONCE,
+                None => self.settings.most_too_many,
+            };
             let rules = Rules {
                 within,
                 left_out: &self.ledger.shares_left_out(draws),
-                fills: self.ledger.imbalance_now()
-                    < (if within.is_some() {
-                        MOST_IMBALANCE[0]
-                    } else {
-                        self.settings.budget
-                    }) * self.settings.expected.sqrt(),
+                fills: self.ledger.too_many() < most_too_many * self.settings.expected.sqrt(),
             };
             let turns: Vec<Turn> = tasks
                 .into_par_iter()
@@ -397,15 +398,10 @@ impl<'a> Front<'a> {
         self.waiting.extend(turn.waiting);
         for placed in turn.placed {
             if !placed.is_done {
-                let shell = self.shell_of(&placed.ball);
-                if draws {
-                    shells
-                        .entry(shell)
-                        .or_default()
-                        .push(self.balls.len() as u32);
-                } else {
-                    self.with_room.entry(shell).or_default().push(placed.ball);
-                }
+                shells
+                    .entry(self.shell_of(&placed.ball))
+                    .or_default()
+                    .push(self.balls.len() as u32);
             }
             self.add(placed.ball);
         }
@@ -418,9 +414,39 @@ impl<'a> Front<'a> {
             }
         }
         turn.quantiles.iter().for_each(|u| self.ledger.place(*u));
-        self.closed += turn.closed;
-        self.fillers[usize::from(!draws)] += turn.fillers;
+        self.fillers += turn.fillers;
         self.loose += turn.loose;
+    }
+
+    /// Whether voids were left that take the smallest sphere.
+    pub fn has_left_voids(&self) -> bool {
+        !self.left_open.is_empty()
+    }
+
+    /// About how many more of the smallest spheres would fit around the spheres around which voids had to be left.
+    pub fn voids_left(mut self) -> usize {
+        let open = std::mem::take(&mut self.left_open);
+        let mut workspace = Workspace::default();
+        let smallest = self.settings.radius_range[0];
+        let mut found = 0;
+        // In strides, so that what is found first is spread evenly.
+        let stride = open.len().div_ceil(100).max(1);
+        let spread = (0..stride).flat_map(|first| open.iter().skip(first).step_by(stride));
+        for (searched, ball) in spread.enumerate() {
+            if found >= MOST_COUNTED {
+                return found * open.len() / searched;
+            }
+            loop {
+                self.look_around(&mut workspace, ball, &[], smallest);
+                let Some(place) = self.place_for_smallest(&mut workspace, ball) else {
+                    break;
+                };
+                self.grid
+                    .insert([place.x, place.y, place.z, self.reduced(smallest)]);
+                found += 1;
+            }
+        }
+        found
     }
 
     fn add(&mut self, (ball, seed): FrontBall) {

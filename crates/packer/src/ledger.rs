@@ -10,10 +10,10 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// For a packing of about so many spheres. More classes would tell sizes better apart, but each draw hits a class more seldom:
-    /// with the root of the number both errors stay a small part of the noise of as many draws.
+    /// For a packing of about so many spheres. More classes would tell sizes better apart, but have fewer spheres each, and draws hit them
+    /// more seldom: with so many both errors stay a part of the noise of as many draws.
     pub fn new(spheres: f64) -> Self {
-        let classes = spheres.sqrt().clamp(1.0, 1e4) as usize;
+        let classes = (0.7 * spheres.sqrt()).clamp(1.0, 1e4) as usize;
         Self {
             placed: vec![0.0; classes],
             total: 0.0,
@@ -62,8 +62,8 @@ impl Ledger {
             .collect()
     }
 
-    /// By how many spheres there are too many up to some size, at most, beside the shares aimed at now.
-    pub fn imbalance_now(&self) -> f64 {
+    /// By how many spheres there are more up to some size than aimed at, at most.
+    pub fn too_many(&self) -> f64 {
         largest_sum(self.surplus(&self.shares))
     }
 

@@ -54,6 +54,7 @@ impl Front<'_> {
             neighbours,
             halo,
             walls,
+            ..
         } = workspace;
         halo.set(front, self.reduced(radius), neighbours);
         let from_seed = halo.centre - seed;
@@ -124,19 +125,30 @@ impl Front<'_> {
         front: &Ball,
     ) -> Option<Vector3> {
         let smallest = self.settings.radius_range[0];
+        let clearance = self.wall_clearance(smallest);
         let Workspace {
-            neighbours, halo, ..
+            neighbours,
+            halo,
+            planes,
+            ..
         } = workspace;
         halo.set(front, self.reduced(smallest), neighbours);
-        if let Some(place) = halo.any_corner(|centre| self.clears_wall(centre, smallest)) {
+        let reach = halo.radius + clearance;
+        let is_near_wall =
+            self.is_near(&self.wall_in_reach, front) && !self.boundary.clears(&halo.centre, reach);
+        if !is_near_wall {
+            return halo.any_corner(|_| true);
+        }
+        if self.boundary.flat_walls(&halo.centre, reach, planes) {
+            halo.add_walls(
+                planes
+                    .iter()
+                    .map(|(towards, distance)| (*towards, distance - clearance)),
+            );
+            return halo.any_corner(|_| true);
+        }
+        if let Some(place) = halo.any_corner(|centre| self.boundary.clears(centre, clearance)) {
             return Some(place);
-        }
-        if !self.is_near(&self.wall_in_reach, front) {
-            return None;
-        }
-        let clearance = self.wall_clearance(smallest);
-        if self.boundary.clears(&halo.centre, halo.radius + clearance) {
-            return None;
         }
         halo.free_place(|centre, reach| {
             match self.boundary.nearest_triangle(centre, clearance + reach) {
@@ -168,4 +180,6 @@ pub(super) struct Workspace {
     pub(super) neighbours: Neighbours,
     pub(super) halo: Halo,
     pub(super) walls: Vec<Nearest>,
+    /// Direction and distance of flat walls.
+    pub(super) planes: Vec<(Vector3, f64)>,
 }

@@ -5,6 +5,7 @@ use super::{Front, FrontBall, distance};
 use crate::Vector3;
 use crate::grid::Ball;
 use crate::ledger::class_of;
+use crate::seed::climb;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -42,8 +43,6 @@ pub(super) struct Turn {
     pub(super) fillers: usize,
     /// Front spheres that left the queue with room around them for the smallest sphere.
     pub(super) with_room: Vec<FrontBall>,
-    /// Front spheres that left the queue without.
-    pub(super) closed: usize,
     /// Spheres that fill voids and touch no three others or walls.
     pub(super) loose: usize,
 }
@@ -92,18 +91,15 @@ impl Front<'_> {
             self.look_around(workspace, &initial, &placed, largest);
             // Spheres of this quantile and above do not fit around this one any more.
             let mut too_large = f64::INFINITY;
+            // A place for the smallest sphere.
+            let mut void: Option<Vector3> = None;
             loop {
-                let void = if self.settings.fills_voids {
-                    match self.place_for_smallest(workspace, &initial) {
-                        Some(place) => Some(place),
-                        None => {
-                            turn.closed += 1;
-                            break;
-                        }
+                if self.settings.fills_voids && void.is_none() {
+                    void = self.place_for_smallest(workspace, &initial);
+                    if void.is_none() {
+                        break;
                     }
-                } else {
-                    None
-                };
+                }
                 let mut drawn = None;
                 if rules.within.is_some() {
                     let u = *waiting.get_or_insert_with(&mut draw);
@@ -137,11 +133,15 @@ impl Front<'_> {
                     .gather(&initial, &[ball], self.reduced(largest));
                 workspace.neighbours.sort();
                 placed.push(ball);
-                turn.quantiles.push(u);
+                let reach = ball[3] + self.reduced(self.settings.radius_range[0]);
+                void = void.filter(|place| distance(&ball, place) >= reach);
+                if self.settings.fills_voids {
+                    turn.quantiles.push(u);
+                }
                 let is_next = self.block_of(&ball).1 == task.block
                     && rules
                         .within
-                        .is_none_or(|within| distance(&ball, seed) < within);
+                        .is_some_and(|within| distance(&ball, seed) < within);
                 turn.placed.push(Placed {
                     ball: (ball, number),
                     is_done: is_next && self.settings.fills_voids,
@@ -155,7 +155,7 @@ impl Front<'_> {
         turn
     }
 
-    /// A sphere for a void around `front` that takes the smallest one at `void`: about the largest that fits and touches three.
+    /// A sphere for a void around `front` that takes the smallest one at `void`: the first that fits as quantiles are halved.
     /// `too_large` is a quantile that does not fit, and becomes the smallest one known.
     fn filler(
         &self,
@@ -166,34 +166,22 @@ impl Front<'_> {
         too_large: &mut f64,
         seed: &Vector3,
     ) -> Filler {
-        /// Bisections of the quantile at most, and as many as are made once a larger one than the smallest has been found to fit.
-        const BISECTIONS: [i32; 2] = [9, 3];
-        let mut found = None;
-        let (mut low, mut high) = (0.0, too_large.min(1.0));
-        for bisection in 1..=BISECTIONS[0] {
-            let middle = 0.5 * (low + high);
-            match self.best_place(workspace, front, self.radius(middle), seed) {
+        /// Halvings of the quantile at most.
+        const HALVINGS: i32 = 9;
+        for _ in 0..HALVINGS {
+            let quantile = 0.5 * too_large.min(1.0);
+            match self.best_place(workspace, front, self.radius(quantile), seed) {
                 Some(centre) => {
-                    found = Some(centre);
-                    low = middle;
+                    return Filler {
+                        centre,
+                        quantile,
+                        is_loose: false,
+                    };
                 }
-                None => high = middle,
-            }
-            if low > 0.0 && bisection >= BISECTIONS[1] {
-                break;
+                None => *too_large = quantile,
             }
         }
-        *too_large = high;
-        let centre = found
-            .or_else(|| self.best_place(workspace, front, self.settings.radius_range[0], seed));
-        match centre {
-            Some(centre) => Filler {
-                centre,
-                quantile: low,
-                is_loose: false,
-            },
-            None => self.roomiest(void, placed),
-        }
+        self.roomiest(void, placed)
     }
 
     /// The largest sphere for the void around a place that takes the smallest one.
@@ -211,7 +199,7 @@ impl Front<'_> {
                 .fold(self.room(p), f64::min);
             gap * (1.0 - 1e-12)
         };
-        let roomiest = crate::seed::climb(void, 0.1 * smallest, 1e-6 * smallest, &room);
+        let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &room);
         let quantile = self.largest_quantile_below(roomiest.radius);
         Filler {
             centre: if quantile > 0.0 {
