@@ -75,7 +75,7 @@ pub struct Front<'a> {
     /// Spheres that left the queue with room around them for the smallest sphere, by shell.
     with_room: BTreeMap<u32, Vec<FrontBall>>,
     /// Those of them around which voids had to be left.
-    left_open: Vec<Ball>,
+    left_open: Vec<FrontBall>,
     /// Spheres that were chosen to fill voids.
     pub fillers: usize,
     /// Those of them that touch no three others or walls.
@@ -328,6 +328,9 @@ impl<'a> Front<'a> {
                 self.fill_voids_behind(shell, &mut shells);
             }
             self.fill_voids_behind(u32::MAX, &mut shells);
+            // Small spheres may have become fewer than expected meanwhile.
+            let left_open = std::mem::take(&mut self.left_open);
+            self.work_off(left_open, None, &mut shells);
         }
         Ok(())
     }
@@ -410,7 +413,7 @@ impl<'a> Front<'a> {
                 let shell = self.shell_of(&front_ball);
                 self.with_room.entry(shell).or_default().push(front_ball);
             } else {
-                self.left_open.push(front_ball.0);
+                self.left_open.push(front_ball);
             }
         }
         turn.quantiles.iter().for_each(|u| self.ledger.place(*u));
@@ -432,7 +435,7 @@ impl<'a> Front<'a> {
         // In strides, so that what is found first is spread evenly.
         let stride = open.len().div_ceil(100).max(1);
         let spread = (0..stride).flat_map(|first| open.iter().skip(first).step_by(stride));
-        for (searched, ball) in spread.enumerate() {
+        for (searched, (ball, _)) in spread.enumerate() {
             if found >= MOST_COUNTED {
                 return found * open.len() / searched;
             }

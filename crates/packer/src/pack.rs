@@ -77,10 +77,12 @@ pub struct Packing {
 const SEED_SPACING: f64 = 8.0;
 
 /// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
-/// at first twice what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
-const MOST_TOO_MANY: [f64; 9] = [2.7, 2.7, 2.7, 2.7, 2.7, 2.7, 2.7, 2.7, 0.5];
-/// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance does.
-const MOST_IMBALANCE: f64 = 0.68;
+/// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
+const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.5];
+/// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance
+/// does, after some attempts two thirds.
+const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
+const STRICT_ATTEMPTS: usize = 4;
 
 /// Spheres at most: some 30 GB.
 const MOST_SPHERES: f64 = 1e8;
@@ -185,19 +187,24 @@ pub fn pack(
             &|placed| progress("front", placed as f64 / expected),
         )?;
         let placed = front.balls.len() as f64;
-        let is_true = front.ledger.imbalance() < MOST_IMBALANCE * placed.sqrt();
+        let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
+        let is_true =
+            front.ledger.imbalance() < most_imbalance * placed.sqrt() && !front.has_left_voids();
         if share > 0.0 || is_true || next == MOST_TOO_MANY.len() {
             break;
         }
         // Where too few small spheres can be kept back for all voids, more attempts would not change that.
-        if front.has_left_voids() {
+        if history.attempts == 1 && front.has_left_voids() {
             next = MOST_TOO_MANY.len() - 1;
         }
         let ledger = front.ledger.corrected();
         let most_too_many = MOST_TOO_MANY[next];
         next += 1;
         front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
-        front.ledger = ledger;
+        // Nothing is kept back where voids are left anyway.
+        if next < MOST_TOO_MANY.len() {
+            front.ledger = ledger;
+        }
     }
     history.unplaced = front.waiting.len();
     history.void_fillers = front.fillers;
