@@ -213,10 +213,44 @@ impl Boundary {
         origin: &Vector3,
         direction: &Vector3,
     ) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
-        on_ray(self.wall(), origin, direction).map(|t| {
-            let triangle = self.wall().triangle(t);
-            [triangle.a, triangle.b, triangle.c].map(Into::into)
-        })
+        on_ray(self.wall(), origin, direction).map(|t| self.corners_of_wall(t))
+    }
+
+    /// The planes of the triangles that come within `reach` (local units) of a point inside, as directions to them and distances, if the
+    /// solid lies behind each of these planes as far as the triangles go: a ball within reach then clears the wall where it clears
+    /// the planes. False where the wall is curved or hollow.
+    pub fn flat_walls(&self, point: &Vector3, reach: f64, found: &mut Vec<(Vector3, f64)>) -> bool {
+        const MOST: usize = 24;
+        const SAME_PLANE: f64 = 1e-11;
+        found.clear();
+        for triangle in self.triangles_near(point, reach).take(MOST + 1) {
+            let plane = &self.planes[triangle as usize];
+            let distance = (plane.corner - point).dot(&plane.normal);
+            let is_known = |(normal, other): &(Vector3, f64)| {
+                (normal - plane.normal).norm() < SAME_PLANE
+                    && (other - distance).abs() < SAME_PLANE * reach
+            };
+            if !found.iter().any(is_known) {
+                found.push((plane.normal, distance));
+            }
+        }
+        self.triangles_near(point, reach)
+            .enumerate()
+            .all(|(k, triangle)| {
+                k < MOST
+                    && self.corners_of_wall(triangle).iter().all(|corner| {
+                        let from_point = Vector3::from(*corner) - point;
+                        // NaN, of a thin triangle, is behind nothing.
+                        found.iter().all(|(normal, distance)| {
+                            from_point.dot(normal) <= distance + SAME_PLANE * reach
+                        })
+                    })
+            })
+    }
+
+    fn corners_of_wall(&self, triangle: u32) -> [[f64; 3]; 3] {
+        let triangle = self.wall().triangle(triangle);
+        [triangle.a, triangle.b, triangle.c].map(Into::into)
     }
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,

@@ -8,13 +8,21 @@
 //! - A radius that does not fit waits until it does, so that the radii placed are the radii drawn.
 //! - The front may begin at many seeds at once: each grows outwards, and the directions of growth, along which a front puts
 //!   more contacts, average out.
+//! - Where a front sphere would leave the queue although a smaller sphere than the one drawn fits around it, about the largest that fits is
+//!   placed, and its size is drawn less often afterwards (see ledger.rs): so no void is left that takes the smallest sphere, and the radii
+//!   placed still follow the distribution. Not before settling, which moves the spheres anyway.
 //! - The queue is worked off in shells around the seeds and, within a shell, in blocks of space in eight colours:
 //!   blocks of one colour are too far apart to disturb each other and run on several threads; what comes out does not depend on how many.
 
+mod places;
+mod turn;
+
+use self::places::Workspace;
+use self::turn::{Rules, Task, Turn};
 use crate::Vector3;
-use crate::boundary::{Boundary, Nearest};
+use crate::boundary::Boundary;
 use crate::grid::{Ball, Grid};
-use crate::halo::{Halo, Neighbours};
+use crate::ledger::Ledger;
 use crate::seed::climb;
 use dem_io::Result;
 use rand::rngs::ChaCha8Rng;
@@ -34,6 +42,12 @@ pub struct FrontSettings<'a> {
     pub wall_factor: f64,
     /// Cells of the grid at most: for shapes that fill little of their box.
     pub most_cells: usize,
+    /// Spheres expected, about.
+    pub expected: f64,
+    /// Where a radius drawn does not fit but a smaller one does, a smaller one is placed, and a later draw of its size left out.
+    pub fills_voids: bool,
+    /// As long as small spheres are not more than expected by this many roots of the number of spheres, voids are filled at all.
+    pub most_too_many: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -46,31 +60,41 @@ pub struct Front<'a> {
     grid: Grid,
     /// Cells that a sphere may have its centre in only after a distance query.
     near_wall: Vec<bool>,
+    /// Cells in which a sphere may have neighbours that touch the wall.
+    wall_in_reach: Vec<bool>,
     /// All spheres in order of placement: centre and reduced radius.
     pub balls: Vec<Ball>,
     /// For each sphere, the number of the seed that its front grew from.
     grew_from: Vec<u32>,
     /// Where fronts began, local units.
     seeds: Vec<Vector3>,
-    /// Drawn radii (not reduced) that have found no place yet.
+    /// Draws, as quantiles of the radius, that have found no place yet.
     pub waiting: Vec<f64>,
+    /// Sizes placed out of turn.
+    pub ledger: Ledger,
+    /// Spheres that left the queue with room around them for the smallest sphere, by shell.
+    with_room: BTreeMap<u32, Vec<FrontBall>>,
+    /// Those of them around which voids had to be left.
+    left_open: Vec<FrontBall>,
+    /// Spheres that were chosen to fill voids.
+    pub fillers: usize,
+    /// Those of them that touch no three others or walls.
+    pub loose: usize,
     streams: u64,
 }
 
 /// A sphere and the number of the seed that its front grew from.
 type FrontBall = (Ball, u32);
 
+/// As long as small spheres are not more than expected by this many roots of the number of spheres (a fifth of what chance does), voids are
+/// filled at once. Others wait until the front is `LAG` shells farther: draws that were made meanwhile may have filled them.
+const MOST_AT_ONCE: f64 = 0.27;
+const LAG: u32 = 3;
+/// Voids are counted up to this number, and extrapolated from there.
+const MOST_COUNTED: usize = 10_000;
+
 /// Cells along the edge of a block.
 const BLOCK: usize = 2;
-
-/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it fills the first layer at the wall.
-const WALL_PREFERENCE: f64 = 0.5;
-
-/// What one block does in its turn.
-struct Turn {
-    balls: Vec<FrontBall>,
-    waiting: Option<f64>,
-}
 
 impl<'a> Front<'a> {
     /// An empty packing in the box up to `extent`.
@@ -85,28 +109,40 @@ impl<'a> Front<'a> {
         );
         let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.lattice.cell;
         let [nx, ny, nz] = grid.lattice.counts;
-        let near_wall = (0..nx * ny * nz)
-            .into_par_iter()
-            .map(|at| {
-                let cell = [at % nx, at / nx % ny, at / (nx * ny)];
-                cell.iter()
-                    .zip(grid.lattice.counts)
-                    .any(|(c, n)| *c == 0 || *c + 1 == n)
-                    || !boundary.clears(
-                        &grid.lattice.centre(cell),
-                        half_diagonal + largest * settings.wall_factor,
-                    )
-            })
-            .collect();
+        let cells_near_wall = |distance: f64| {
+            (0..nx * ny * nz)
+                .into_par_iter()
+                .map(|at| {
+                    let cell = [at % nx, at / nx % ny, at / (nx * ny)];
+                    cell.iter()
+                        .zip(grid.lattice.counts)
+                        .any(|(c, n)| *c == 0 || *c + 1 == n)
+                        || !boundary.clears(&grid.lattice.centre(cell), half_diagonal + distance)
+                })
+                .collect()
+        };
+        let near_wall = cells_near_wall(largest * settings.wall_factor);
+        let wall_in_reach = if settings.fills_voids {
+            cells_near_wall(2.0 * reduced + largest * settings.wall_factor)
+        } else {
+            Vec::new()
+        };
+        let ledger = Ledger::new(settings.expected);
         Self {
             settings,
             boundary,
             grid,
             near_wall,
+            wall_in_reach,
             balls: Vec::new(),
             grew_from: Vec::new(),
             seeds: Vec::new(),
             waiting: Vec::new(),
+            ledger,
+            with_room: BTreeMap::new(),
+            left_open: Vec::new(),
+            fillers: 0,
+            loose: 0,
             streams: 0,
         }
     }
@@ -120,14 +156,13 @@ impl<'a> Front<'a> {
         self.grew_from.resize(self.balls.len(), 0);
     }
 
-    /// The three smallest radii (not reduced, ascending) that wait for a place, drawn as far as fewer wait. They wait no longer.
-    pub fn next_radii(&mut self) -> [f64; 3] {
+    /// The three smallest draws (quantiles, ascending) that wait for a place, made as far as fewer wait. They wait no longer.
+    pub fn next_draws(&mut self) -> [f64; 3] {
         while self.waiting.len() < 3 {
             let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
             random.set_stream(self.streams);
             self.streams += 1;
-            self.waiting
-                .push((self.settings.radius)(random.random::<f64>()));
+            self.waiting.push(random.random::<f64>());
         }
         self.waiting.sort_unstable_by(|a, b| b.total_cmp(a));
         let mut next = self
@@ -135,17 +170,21 @@ impl<'a> Front<'a> {
             .split_off(self.waiting.len() - 3)
             .into_iter()
             .rev();
-        [0; 3].map(|_| next.next().unwrap_or(self.settings.radius_range[0]))
+        [0; 3].map(|_| next.next().unwrap_or(0.0))
     }
 
     /// The smallest radius (not reduced) that may be placed next.
     pub fn smallest_next(&self) -> f64 {
-        let waiting = self.waiting.iter().copied().fold(f64::INFINITY, f64::min);
-        if self.waiting.len() < 3 {
+        if self.waiting.len() < 3 || self.settings.fills_voids {
             self.settings.radius_range[0]
         } else {
-            waiting
+            self.radius(self.waiting.iter().copied().fold(1.0, f64::min))
         }
+    }
+
+    /// Radius (not reduced) of a quantile.
+    pub fn radius(&self, u: f64) -> f64 {
+        (self.settings.radius)(u)
     }
 
     /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`, local units.
@@ -175,34 +214,42 @@ impl<'a> Front<'a> {
 
     /// The roomiest place near a void (where the smallest sphere fits), and a radius (not reduced) drawn among those that fit there.
     pub fn fill(&mut self, void: &Vector3) -> (Vector3, f64) {
-        let [smallest, largest] = self.settings.radius_range;
-        let room = |p: &Vector3| {
-            let wall = self
-                .boundary
-                .nearest(p, largest)
-                .map_or(largest, |near| near.distance);
-            wall.min(self.reach_to_spheres(p, largest)).min(largest)
-        };
-        let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &room);
+        let smallest = self.settings.radius_range[0];
+        let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &|p| self.room(p));
         let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
         random.set_stream(self.streams);
         self.streams += 1;
-        // The share of draws that fit, by bisection of the distribution's quantile function.
-        let (mut fits, mut fits_not) = (0.0, 1.0);
-        for _ in 0..52 {
-            let middle = 0.5 * (fits + fits_not);
-            if (self.settings.radius)(middle) <= roomiest.radius {
-                fits = middle
-            } else {
-                fits_not = middle
-            }
-        }
-        let radius = (self.settings.radius)(fits * random.random::<f64>());
+        let fits = self.largest_quantile_below(roomiest.radius);
+        let radius = self.radius(fits * random.random::<f64>());
         if self.fits(&roomiest.centre, radius) {
             (roomiest.centre, radius)
         } else {
             (*void, smallest)
         }
+    }
+
+    /// Radius (not reduced) of the largest sphere around a place that overlaps neither sphere nor wall, at most the largest asked for.
+    fn room(&self, place: &Vector3) -> f64 {
+        let largest = self.settings.radius_range[1];
+        let wall = self
+            .boundary
+            .nearest(place, largest)
+            .map_or(largest, |near| near.distance);
+        wall.min(self.reach_to_spheres(place, largest)).min(largest)
+    }
+
+    /// The share of draws whose radius is at most this.
+    fn largest_quantile_below(&self, radius: f64) -> f64 {
+        let (mut fits, mut fits_not) = (0.0, 1.0);
+        for _ in 0..52 {
+            let middle = 0.5 * (fits + fits_not);
+            if self.radius(middle) <= radius {
+                fits = middle
+            } else {
+                fits_not = middle
+            }
+        }
+        fits
     }
 
     /// Places that take a sphere of the smallest radius next to the spheres `around` (indices of `balls`).
@@ -250,8 +297,13 @@ impl<'a> Front<'a> {
 
     /// Whether the cell that the ball's centre lies in is near the wall.
     fn is_near_wall(&self, ball: &Ball) -> bool {
+        self.is_near(&self.near_wall, ball)
+    }
+
+    /// What `cells` says of the cell that the ball's centre lies in.
+    fn is_near(&self, cells: &[bool], ball: &Ball) -> bool {
         let lattice = &self.grid.lattice;
-        self.near_wall[lattice.index(lattice.cell_of(ball[0], ball[1], ball[2]))]
+        cells[lattice.index(lattice.cell_of(ball[0], ball[1], ball[2]))]
     }
 
     /// Advances the front from the spheres `queue` (indices of `balls`), until nothing fits around any of them and their followers.
@@ -264,54 +316,140 @@ impl<'a> Front<'a> {
             let shell = self.shell_of(&(self.balls[*i as usize], self.grew_from[*i as usize]));
             shells.entry(shell).or_default().push(*i);
         }
-        while let Some((shell, front)) = shells.pop_first() {
-            progress(self.balls.len())?;
-            let within = f64::from(shell + 1) * self.shell_thickness();
-            let mut colours: [BTreeMap<usize, Vec<u32>>; 8] = Default::default();
-            for i in front {
-                let (colour, block) = self.block_of(&self.balls[i as usize]);
-                colours[colour].entry(block).or_default().push(i);
+        while !shells.is_empty() {
+            while let Some((shell, front)) = shells.pop_first() {
+                progress(self.balls.len())?;
+                let within = f64::from(shell + 1) * self.shell_thickness();
+                let front = front.into_iter().map(|i| {
+                    let i = i as usize;
+                    (self.balls[i], self.grew_from[i])
+                });
+                self.work_off(front.collect(), Some(within), &mut shells);
+                self.fill_voids_behind(shell, &mut shells);
             }
-            for blocks in colours {
-                if blocks.is_empty() {
-                    continue;
-                }
-                let stream = self.streams;
-                self.streams += blocks.len() as u64;
-                let tasks: Vec<(usize, Vec<u32>, Option<f64>)> = blocks
-                    .into_iter()
-                    .map(|(block, queue)| (block, queue, self.waiting.pop()))
-                    .collect();
-                let turns: Vec<Turn> = tasks
-                    .into_par_iter()
-                    .enumerate()
-                    .map_init(
-                        Workspace::default,
-                        |workspace, (task, (block, queue, waiting))| {
-                            self.advance_block(
-                                workspace,
-                                within,
-                                block,
-                                &queue,
-                                waiting,
-                                stream + task as u64,
-                            )
-                        },
-                    )
-                    .collect();
-                for turn in turns {
-                    self.waiting.extend(turn.waiting);
-                    for front_ball in turn.balls {
-                        shells
-                            .entry(self.shell_of(&front_ball))
-                            .or_default()
-                            .push(self.balls.len() as u32);
-                        self.add(front_ball);
-                    }
-                }
-            }
+            self.fill_voids_behind(u32::MAX, &mut shells);
+            // Small spheres may have become fewer than expected meanwhile.
+            let left_open = std::mem::take(&mut self.left_open);
+            self.work_off(left_open, None, &mut shells);
         }
         Ok(())
+    }
+
+    /// Fills the voids that were left `LAG` shells and more behind `shell`.
+    fn fill_voids_behind(&mut self, shell: u32, shells: &mut BTreeMap<u32, Vec<u32>>) {
+        while let Some(entry) = self.with_room.first_entry() {
+            if *entry.key() > shell.saturating_sub(LAG) {
+                break;
+            }
+            let front = entry.remove();
+            self.work_off(front, None, shells);
+        }
+    }
+
+    /// Works off spheres of the front: with draws as far as `within` from the seeds, or filling voids only.
+    fn work_off(
+        &mut self,
+        front: Vec<FrontBall>,
+        within: Option<f64>,
+        shells: &mut BTreeMap<u32, Vec<u32>>,
+    ) {
+        let mut colours: [BTreeMap<usize, Vec<FrontBall>>; 8] = Default::default();
+        for front_ball in front {
+            let (colour, block) = self.block_of(&front_ball.0);
+            colours[colour].entry(block).or_default().push(front_ball);
+        }
+        for blocks in colours {
+            if blocks.is_empty() {
+                continue;
+            }
+            let stream = self.streams;
+            self.streams += blocks.len() as u64;
+            let tasks: Vec<Task> = blocks
+                .into_iter()
+                .zip(stream..)
+                .map(|((block, queue), stream)| Task {
+                    block,
+                    queue,
+                    waiting: within.and_then(|_| self.waiting.pop()),
+                    stream,
+                })
+                .collect();
+            let draws = tasks.iter().map(|task| task.queue.len()).sum();
+            let most_too_many = match within {
+                Some(_) => MOST_AT_ONCE,
+                None => self.settings.most_too_many,
+            };
+            let rules = Rules {
+                within,
+                left_out: &self.ledger.shares_left_out(draws),
+                fills: self.ledger.too_many() < most_too_many * self.settings.expected.sqrt(),
+            };
+            let turns: Vec<Turn> = tasks
+                .into_par_iter()
+                .map_init(Workspace::default, |workspace, task| {
+                    self.advance_block(workspace, task, &rules)
+                })
+                .collect();
+            for turn in turns {
+                self.take(turn, within.is_some(), shells);
+            }
+        }
+    }
+
+    /// Adds what a block did in its turn; spheres around which there may be room are put into their shells.
+    fn take(&mut self, turn: Turn, draws: bool, shells: &mut BTreeMap<u32, Vec<u32>>) {
+        self.waiting.extend(turn.waiting);
+        for placed in turn.placed {
+            if !placed.is_done {
+                shells
+                    .entry(self.shell_of(&placed.ball))
+                    .or_default()
+                    .push(self.balls.len() as u32);
+            }
+            self.add(placed.ball);
+        }
+        for front_ball in turn.with_room {
+            if draws {
+                let shell = self.shell_of(&front_ball);
+                self.with_room.entry(shell).or_default().push(front_ball);
+            } else {
+                self.left_open.push(front_ball);
+            }
+        }
+        turn.quantiles.iter().for_each(|u| self.ledger.place(*u));
+        self.fillers += turn.fillers;
+        self.loose += turn.loose;
+    }
+
+    /// Whether voids were left that take the smallest sphere.
+    pub fn has_left_voids(&self) -> bool {
+        !self.left_open.is_empty()
+    }
+
+    /// About how many more of the smallest spheres would fit around the spheres around which voids had to be left.
+    pub fn voids_left(mut self) -> usize {
+        let open = std::mem::take(&mut self.left_open);
+        let mut workspace = Workspace::default();
+        let smallest = self.settings.radius_range[0];
+        let mut found = 0;
+        // In strides, so that what is found first is spread evenly.
+        let stride = open.len().div_ceil(100).max(1);
+        let spread = (0..stride).flat_map(|first| open.iter().skip(first).step_by(stride));
+        for (searched, (ball, _)) in spread.enumerate() {
+            if found >= MOST_COUNTED {
+                return found * open.len() / searched;
+            }
+            loop {
+                self.look_around(&mut workspace, ball, &[], smallest);
+                let Some(place) = self.place_for_smallest(&mut workspace, ball) else {
+                    break;
+                };
+                self.grid
+                    .insert([place.x, place.y, place.z, self.reduced(smallest)]);
+                found += 1;
+            }
+        }
+        found
     }
 
     fn add(&mut self, (ball, seed): FrontBall) {
@@ -338,160 +476,6 @@ impl<'a> Front<'a> {
         let colour = block[0] % 2 + 2 * (block[1] % 2) + 4 * (block[2] % 2);
         (colour, self.grid.lattice.index(block))
     }
-
-    /// Works off the front spheres of one block as far as `within` from the seed.
-    fn advance_block(
-        &self,
-        workspace: &mut Workspace,
-        within: f64,
-        block: usize,
-        queue: &[u32],
-        mut waiting: Option<f64>,
-        stream: u64,
-    ) -> Turn {
-        let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
-        random.set_stream(stream);
-        let mut draw = || (self.settings.radius)(random.random::<f64>());
-        let largest = self.settings.radius_range[1];
-        let mut placed: Vec<Ball> = Vec::new();
-        let mut balls: Vec<FrontBall> = Vec::new();
-        let mut queue: Vec<FrontBall> = queue
-            .iter()
-            .map(|i| (self.balls[*i as usize], self.grew_from[*i as usize]))
-            .collect();
-        let mut next = 0;
-        while next < queue.len() {
-            let (initial, number) = queue[next];
-            let seed = &self.seeds[number as usize];
-            next += 1;
-            self.look_around(workspace, &initial, &placed, largest);
-            loop {
-                let radius = *waiting.get_or_insert_with(&mut draw);
-                let Some(place) = self.best_place(workspace, &initial, radius, seed) else {
-                    break;
-                };
-                waiting = None;
-                let ball = [place.x, place.y, place.z, self.reduced(radius)];
-                workspace
-                    .neighbours
-                    .gather(&initial, &[ball], self.reduced(largest));
-                workspace.neighbours.sort();
-                placed.push(ball);
-                balls.push((ball, number));
-                if self.block_of(&ball).1 == block && distance(&ball, seed) < within {
-                    queue.push((ball, number));
-                }
-            }
-        }
-        Turn { balls, waiting }
-    }
-
-    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest` on the halo of `front` could touch.
-    fn look_around(&self, workspace: &mut Workspace, front: &Ball, placed: &[Ball], largest: f64) {
-        let reduced = self.reduced(largest);
-        let reach = front[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
-        let neighbours = &mut workspace.neighbours;
-        neighbours.clear();
-        self.grid.near(front[0], front[1], front[2], reach, |cell| {
-            neighbours.gather(front, cell, reduced)
-        });
-        neighbours.gather(front, placed, reduced);
-        neighbours.sort();
-        workspace.walls.clear();
-        if self.is_near_wall(front) {
-            let centre = centre_of(front);
-            let reach = front[3] + reduced + self.wall_clearance(largest);
-            self.boundary.walls(
-                self.boundary.triangles_near(&centre, reach),
-                &centre,
-                reach,
-                &mut workspace.walls,
-            );
-        }
-    }
-
-    /// The place nearest to the seed for a new sphere of (not reduced) `radius` on the halo of `front`.
-    fn best_place(
-        &self,
-        workspace: &mut Workspace,
-        front: &Ball,
-        radius: f64,
-        seed: &Vector3,
-    ) -> Option<Vector3> {
-        let Workspace {
-            neighbours,
-            halo,
-            walls,
-        } = workspace;
-        halo.set(front, self.reduced(radius), neighbours);
-        let from_seed = halo.centre - seed;
-        let mut best: Option<Vector3> = None;
-        halo.corners(&from_seed, |centre| {
-            let takes = self.clears_wall(centre, radius);
-            if takes {
-                best = Some(*centre);
-            }
-            takes
-        });
-        let order_at = |place: &Vector3| (place - centre_of(front)).dot(&from_seed);
-        let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
-        for wall in walls.iter() {
-            let towards = (wall.point - halo.centre) / wall.distance;
-            for j in 0..halo.neighbours() {
-                let Some(places) =
-                    halo.wall_corners(j, &towards, wall.distance - self.wall_clearance(radius))
-                else {
-                    continue;
-                };
-                for p in places {
-                    let order =
-                        order_at(&halo.position(&p)) - WALL_PREFERENCE * radius * from_seed.norm();
-                    if order >= least || !halo.is_free(&p) {
-                        continue;
-                    }
-                    if let Some(centre) = self.touch_wall(halo, radius, j, &p) {
-                        (least, best) = (order, Some(centre));
-                    }
-                }
-            }
-        }
-        best
-    }
-
-    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
-    /// if it is free. The wall is taken for a plane at its nearest point, again and again.
-    fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
-        let radius = self.wall_clearance(radius);
-        let wanted = radius * (1.0 + 1e-12);
-        let mut p = *p;
-        for _ in 0..8 {
-            let centre = halo.position(&p);
-            let near = self.boundary.nearest(&centre, 2.0 * radius)?;
-            if near.distance >= radius && near.distance <= radius * (1.0 + 1e-10) {
-                return halo.is_free(&p).then_some(centre);
-            }
-            let towards = (near.point - centre) / near.distance;
-            let places = halo.wall_corners(
-                j,
-                &towards,
-                (near.point - halo.centre).dot(&towards) - wanted,
-            )?;
-            p = if (places[0] - p).norm_squared() < (places[1] - p).norm_squared() {
-                places[0]
-            } else {
-                places[1]
-            };
-        }
-        None
-    }
-}
-
-/// Arrays that a thread uses again for every front sphere.
-#[derive(Default)]
-struct Workspace {
-    neighbours: Neighbours,
-    halo: Halo,
-    walls: Vec<Nearest>,
 }
 
 fn centre_of(ball: &Ball) -> Vector3 {

@@ -5,6 +5,8 @@
 //! A place on the halo is a unit vector p; the cap around the unit vector u is p . u > c.
 //! Candidate points are the corners of the free area: where the rims of two caps meet and no other cap covers the point.
 
+pub mod patches;
+
 use crate::Vector3;
 use crate::grid::Ball;
 use crate::rims::{LANES, Rims};
@@ -35,6 +37,8 @@ pub struct Halo {
     caps: Vec<Cap>,
     /// The same in single precision.
     rims: Rims,
+    /// The least order of any point on a rim in the upper half, the number of its cap in the lower one.
+    order: Vec<u64>,
 }
 
 /// A sphere near one front sphere, with what all radii of a new sphere share.
@@ -110,6 +114,25 @@ impl Halo {
                 });
             }
         }
+        self.group_rims();
+    }
+
+    /// Adds what flat walls cut out: direction and distance from the halo's centre less the radius of the new sphere.
+    pub fn add_walls(&mut self, walls: impl Iterator<Item = (Vector3, f64)>) {
+        let radius = self.radius;
+        let caps = walls.map(|(axis, clearance)| {
+            let rim = clearance / radius;
+            Cap {
+                axis,
+                rim,
+                sine_squared: 1.0 - rim * rim,
+            }
+        });
+        self.caps.splice(0..0, caps.filter(|cap| cap.rim < 1.0));
+        self.group_rims();
+    }
+
+    fn group_rims(&mut self) {
         self.rims.clear();
         for group in self.caps.chunks(LANES) {
             self.rims.push(group.iter().map(|cap| (cap.axis, cap.rim)));
@@ -134,22 +157,65 @@ impl Halo {
 
     #[inline(always)]
     fn visit_corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
-        let mut least = f64::INFINITY;
-        for j in 1..self.caps.len() {
-            let caps = &self.caps;
+        let squared = wanted.norm_squared();
+        self.order.clear();
+        self.order
+            .extend(self.caps.iter().enumerate().map(|(j, cap)| {
+                let along = cap.axis.dot(wanted);
+                let across = (cap.sine_squared * (squared - along * along))
+                    .max(0.0)
+                    .sqrt();
+                // From 0 to 4: positive numbers are ordered as their bits are.
+                let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
+                u64::from((least as f32).max(0.0).to_bits()) << 32 | j as u64
+            }));
+        self.order.sort_unstable();
+        let (mut least, mut of_rim) = (f64::INFINITY, 0);
+        for entry in &self.order {
+            let least_on_rim = f64::from(f32::from_bits((entry >> 32) as u32)) - 2.0;
+            if (least_on_rim - 1e-6) * squared.sqrt() > least {
+                break;
+            }
+            let (caps, j) = (&self.caps, (entry & 0xffff_ffff) as usize);
             self.rims.open_corners(j, |k| {
                 let Some(places) = corners_of(&caps[j], &caps[k]) else {
                     return;
                 };
                 for p in places {
                     let order = p.dot(wanted);
-                    if order < least && is_free(caps, &p) && found(&(self.centre + p * self.radius))
-                    {
-                        least = order;
+                    // Of equals, as in a regular packing, the one of the nearest neighbours.
+                    let is_better = order < least || (order == least && j < of_rim);
+                    if is_better && is_free(caps, &p) && found(&(self.centre + p * self.radius)) {
+                        (least, of_rim) = (order, j);
                     }
                 }
             });
         }
+    }
+
+    /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if there is one.
+    pub fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let mut found = None;
+                let mut j = 1;
+                while found.is_none() && j < self.caps.len() {
+                    let caps = &self.caps;
+                    self.rims.open_corners(j, |k| {
+                        let places = corners_of(&caps[j], &caps[k]);
+                        for p in places.into_iter().flatten() {
+                            let centre = self.centre + p * self.radius;
+                            if found.is_none() && is_free(caps, &p) && takes(&centre) {
+                                found = Some(centre);
+                            }
+                        }
+                    });
+                    j += 1;
+                }
+                found
+            },
+        )
     }
 
     /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is the direction to the wall,

@@ -11,6 +11,7 @@ pub mod front;
 pub mod grid;
 pub mod halo;
 pub mod inside;
+pub mod ledger;
 pub mod make;
 pub mod pack;
 pub mod quality;

@@ -45,8 +45,12 @@ pub struct PackHistory {
     pub settling_steps: usize,
     /// Spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// Spheres put into voids at the end, of sizes that fit there.
+    /// How often the front was run: again with other sizes kept back where filling the voids had distorted the distribution.
+    pub attempts: usize,
+    /// Spheres put into voids, of sizes that fit there: by the bare front as it goes, after settling at the end.
     pub void_fillers: usize,
+    /// Those of them that stand where they have most room, and need not touch three others or walls.
+    pub loose_fillers: usize,
     /// Voids that would still take the smallest sphere, about: extrapolated when more fillers would distort the sizes.
     pub voids_left: usize,
     /// Radii drawn that found no place.
@@ -71,6 +75,14 @@ pub struct Packing {
 /// Before settling a front begins in every cube of so many largest diameters: near enough that directions of growth average out,
 /// far enough that few fronts meet, since where they meet there is less.
 const SEED_SPACING: f64 = 8.0;
+
+/// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
+/// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
+const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.5];
+/// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance
+/// does, after some attempts two thirds.
+const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
+const STRICT_ATTEMPTS: usize = 4;
 
 /// Spheres at most: some 30 GB.
 const MOST_SPHERES: f64 = 1e8;
@@ -143,35 +155,62 @@ pub fn pack(
             "ask for larger diameters, or check the units of --diameter and --unit",
         ));
     }
-    let front_settings = FrontSettings {
+    let front_settings = |expected: f64, most_too_many: f64| FrontSettings {
         radius: &small,
         radius_range: range.map(|r| shrink * r),
         overlap: settings.overlap,
         wall_factor: (1.0 - 1e-12) / shrink,
         most_cells: MORE_CELLS + expected as usize,
+        expected,
+        fills_voids: share == 0.0,
+        most_too_many,
         seed: settings.seed,
     };
     let extent = Vector3::from(surface.extent());
-    let mut front = Front::new(front_settings, boundary, &extent);
-    let seeds = front_seeds(
-        surface,
+    let diameter = 2.0 * range[1] * shrink / (1.0 + settings.overlap);
+    let seeds = front_seeds(surface, boundary, settings, &seed, share > 0.0, diameter);
+    let mut front = Front::new(
+        front_settings(expected, MOST_TOO_MANY[0]),
         boundary,
-        settings,
-        &seed,
-        share > 0.0,
-        2.0 * front.reduced(front.settings.radius_range[1]),
+        &extent,
     );
-    run_fronts(
-        &mut front,
-        boundary,
-        &seeds,
-        &inner,
-        &mut history,
-        &|placed| progress("front", placed as f64 / expected),
-    )?;
+    let mut next = 1;
+    loop {
+        history.attempts += 1;
+        history.fronts = 0;
+        run_fronts(
+            &mut front,
+            boundary,
+            &seeds,
+            &inner,
+            &mut history,
+            &|placed| progress("front", placed as f64 / expected),
+        )?;
+        let placed = front.balls.len() as f64;
+        let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
+        let is_true =
+            front.ledger.imbalance() < most_imbalance * placed.sqrt() && !front.has_left_voids();
+        if share > 0.0 || is_true || next == MOST_TOO_MANY.len() {
+            break;
+        }
+        // Where too few small spheres can be kept back for all voids, more attempts would not change that.
+        if history.attempts == 1 && front.has_left_voids() {
+            next = MOST_TOO_MANY.len() - 1;
+        }
+        let ledger = front.ledger.corrected();
+        let most_too_many = MOST_TOO_MANY[next];
+        next += 1;
+        front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
+        // Nothing is kept back where voids are left anyway.
+        if next < MOST_TOO_MANY.len() {
+            front.ledger = ledger;
+        }
+    }
     history.unplaced = front.waiting.len();
+    history.void_fillers = front.fillers;
+    history.loose_fillers = front.loose;
     let mut balls = std::mem::take(&mut front.balls);
-    drop(front);
+    history.voids_left = front.voids_left();
     sort_along_curve(&mut balls, range[1]);
     history.front_seconds = started.elapsed().as_secs_f64();
 
@@ -188,22 +227,29 @@ pub fn pack(
         history.settle_seconds = started.elapsed().as_secs_f64();
     }
 
-    let started = Instant::now();
-    progress("filling voids", 0.0)?;
-    let settings_full = FrontSettings {
-        radius: &full,
-        radius_range: range,
-        overlap: settings.overlap,
-        wall_factor: 1.0,
-        most_cells: MORE_CELLS + balls.len(),
-        seed: settings.seed ^ 0x5eed,
-    };
-    let mut front = Front::new(settings_full, boundary, &extent);
-    front.adopt(&balls);
-    fill_voids(&mut front, &mut history);
-    history.fill_seconds = started.elapsed().as_secs_f64();
+    if share > 0.0 {
+        let started = Instant::now();
+        progress("filling voids", 0.0)?;
+        let settings_full = FrontSettings {
+            radius: &full,
+            radius_range: range,
+            overlap: settings.overlap,
+            wall_factor: 1.0,
+            most_cells: MORE_CELLS + balls.len(),
+            expected: balls.len() as f64,
+            fills_voids: false,
+            most_too_many: 0.0,
+            seed: settings.seed ^ 0x5eed,
+        };
+        let mut front = Front::new(settings_full, boundary, &extent);
+        front.adopt(&balls);
+        fill_voids(&mut front, &mut history);
+        history.loose_fillers = history.void_fillers;
+        history.fill_seconds = started.elapsed().as_secs_f64();
+        balls = front.balls;
+    }
 
-    if front.balls.is_empty() {
+    if balls.is_empty() {
         return Err(Diagnostic::input(
             surface.source.clone(),
             format!(
@@ -215,9 +261,8 @@ pub fn pack(
     }
     let enlarge = 1.0 + settings.overlap;
     let spheres = Spheres {
-        positions: front.balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
-        radii: front
-            .balls
+        positions: balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
+        radii: balls
             .iter()
             .map(|b| (b[3] * enlarge).clamp(exact_range[0], exact_range[1]))
             .collect(),
@@ -348,12 +393,13 @@ fn run_fronts(
 
 /// Places as many of the first three spheres around `seed` as find room. Returns their indices.
 fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -> Range<u32> {
-    let radii = front.next_radii();
+    let draws = front.next_draws();
+    let radii = draws.map(|u| front.radius(u));
     let reduced = radii.map(|r| front.reduced(r));
     let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
         front.fits(centre, radius) && is_inside(boundary, centre)
     });
-    front.waiting.extend_from_slice(&radii[placed.len()..]);
+    front.waiting.extend_from_slice(&draws[placed.len()..]);
     front.begin(seed);
     let first = front.balls.len() as u32;
     for (centre, radius) in &placed {

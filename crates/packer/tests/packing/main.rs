@@ -13,3 +13,4 @@ mod seed;
 mod settle;
 mod solids;
 mod union;
+mod voids;

@@ -1,0 +1,241 @@
+//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes, without halos, grids or trees.
+
+use super::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
+use super::facets::{Facets, Point, cuboid, prism};
+use super::solids::{icosphere, local_facets, surface_of, torus};
+use dem_io::Surface;
+use dem_pack::boundary::Boundary;
+use dem_pack::pack::{PackSettings, Packing, pack};
+use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
+
+/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
+/// the smallest is found, a narrower one need not be.
+const FINEST: f64 = 1e-3;
+
+struct Search<'a> {
+    facets: &'a [[Point; 3]],
+    balls: Vec<(Point, f64)>,
+    radius: f64,
+    reduced: f64,
+    found: Vec<Point>,
+}
+
+impl Search<'_> {
+    /// How far a point is from the nearest place where the smallest sphere would touch something; less than 0 where it would overlap.
+    fn clearance(&self, p: &Point, facets: &[u32], balls: &[u32]) -> f64 {
+        let to_wall = facets
+            .iter()
+            .map(|f| distance_to_triangle(p, &self.facets[*f as usize]) - self.radius);
+        let to_balls = balls.iter().map(|b| {
+            let (centre, reduced) = self.balls[*b as usize];
+            distance(p, &centre) - reduced - self.reduced
+        });
+        to_wall.chain(to_balls).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Looks for places in a cube, given the facets and balls that may come near it.
+    fn search(&mut self, middle: Point, half: f64, facets: &[u32], balls: &[u32], is_inside: bool) {
+        let reach = half * 3.0_f64.sqrt();
+        let near_facets: Vec<u32> = facets
+            .iter()
+            .copied()
+            .filter(|f| {
+                distance_to_triangle(&middle, &self.facets[*f as usize]) < self.radius + reach
+            })
+            .collect();
+        let near_balls: Vec<u32> = balls
+            .iter()
+            .copied()
+            .filter(|b| {
+                let (centre, reduced) = self.balls[*b as usize];
+                distance(&middle, &centre) < reduced + self.reduced + reach
+            })
+            .collect();
+        let clearance = self.clearance(&middle, &near_facets, &near_balls);
+        if clearance + reach < 0.0 {
+            return;
+        }
+        let touches_wall = near_facets
+            .iter()
+            .any(|f| distance_to_triangle(&middle, &self.facets[*f as usize]) < reach);
+        // What no facet passes through is inside or outside as a whole, and so are its parts.
+        if !touches_wall && !is_inside && winding_number(self.facets, &middle) == 0 {
+            return;
+        }
+        if clearance >= EXACT * self.radius && !touches_wall {
+            self.found.push(middle);
+            // One place of a void is enough.
+            self.balls.push((middle, self.reduced));
+            return;
+        }
+        if reach < FINEST * self.radius {
+            return;
+        }
+        for octant in 0..8 {
+            let near_balls: Vec<u32> = near_balls
+                .iter()
+                .copied()
+                .chain((self.balls.len() - self.found.len()..self.balls.len()).map(|b| b as u32))
+                .collect();
+            let child = [0, 1, 2].map(|k| {
+                middle[k]
+                    + if octant >> k & 1 == 0 {
+                        -0.5 * half
+                    } else {
+                        0.5 * half
+                    }
+            });
+            self.search(child, 0.5 * half, &near_facets, &near_balls, !touches_wall);
+        }
+    }
+}
+
+fn distance(a: &Point, b: &Point) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Places that take a sphere of this radius, none overlapping another: local units.
+fn voids(facets: &[[Point; 3]], packing: &Packing, overlap: f64, radius: f64) -> Vec<Point> {
+    let spheres = &packing.spheres;
+    let balls = spheres.positions.iter().zip(&spheres.radii);
+    let mut search = Search {
+        facets,
+        balls: balls.map(|(p, r)| (*p, r / (1.0 + overlap))).collect(),
+        radius,
+        reduced: radius / (1.0 + overlap),
+        found: Vec::new(),
+    };
+    let largest = facets.iter().flatten().flatten().fold(0.0, |m, x| x.max(m));
+    let half = 0.5 * f64::max(largest, 0.0);
+    let all_facets: Vec<u32> = (0..facets.len() as u32).collect();
+    let all_balls: Vec<u32> = (0..search.balls.len() as u32).collect();
+    search.search([half; 3], half, &all_facets, &all_balls, false);
+    search.found
+}
+
+fn bare_front(surface: &Surface, diameter: &str, overlap: f64, seed: u64) -> (Sizes, Packing) {
+    let boundary = Boundary::new(surface).unwrap();
+    let sizes = Sizes::parse(diameter, By::Number).unwrap();
+    let settings = PackSettings {
+        sizes: sizes.clone(),
+        overlap,
+        seed,
+        settle: Some(0.0),
+        seed_point_m: None,
+    };
+    let packing = pack(surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
+    (sizes, packing)
+}
+
+fn assert_full_and_true(name: &str, surface: &Surface, diameter: &str, overlap: f64, seed: u64) {
+    let (sizes, packing) = bare_front(surface, diameter, overlap, seed);
+    let facets = local_facets(surface);
+    let radius = 0.5 * sizes.min_m() / surface.unit_m;
+    let left = voids(&facets, &packing, overlap, radius);
+    assert!(
+        left.is_empty(),
+        "{name}: {} voids among {} spheres, the first at {:?}, {:?}",
+        left.len(),
+        packing.spheres.radii.len(),
+        left.first(),
+        packing.history
+    );
+    assert_eq!(packing.history.voids_left, 0, "{name}");
+    let diameters: Vec<f64> = packing
+        .spheres
+        .radii
+        .iter()
+        .map(|r| 2.0 * r * surface.unit_m)
+        .collect();
+    for fit in [
+        ks_distance_by_number(&diameters, &sizes),
+        ks_distance_by_mass(&diameters, &sizes),
+    ] {
+        assert!(fit.passes(), "{name}: sizes are off, {fit:?}");
+    }
+}
+
+#[test]
+fn the_search_finds_the_room_of_a_sphere_taken_out() {
+    let facets = cuboid([8.0, 7.0, 6.0]);
+    let (surface, _) = surface_of(&facets);
+    let (sizes, mut packing) = bare_front(&surface, "0.8mm..1.2mm", 0.1, 1);
+    let facets = local_facets(&surface);
+    let radius = 0.5 * sizes.min_m() / surface.unit_m;
+    assert_eq!(voids(&facets, &packing, 0.1, radius).len(), 0);
+    for taken in [3, 50, 200] {
+        let place = packing.spheres.positions.remove(taken);
+        packing.spheres.radii.remove(taken);
+        let found = voids(&facets, &packing, 0.1, radius * (1.0 - 1e-6));
+        assert!(
+            found.iter().any(|p| distance(p, &place) < 2.0 * radius),
+            "{found:?} {place:?}"
+        );
+    }
+}
+
+#[test]
+fn no_void_is_left_that_takes_the_smallest_sphere() {
+    let l_shape = prism(
+        &[
+            [0.0, 0.0],
+            [12.0, 0.0],
+            [12.0, 5.0],
+            [5.0, 5.0],
+            [5.0, 10.0],
+            [0.0, 10.0],
+        ],
+        6.0,
+    );
+    let bumpy = icosphere(3, &|p: Point| {
+        4.5 + 0.4 * (3.0 * p[0]).sin() * (2.0 * p[1]).cos()
+    });
+    let mut two_parts = cuboid([6.0, 6.0, 6.0]);
+    two_parts.extend(
+        cuboid([6.0, 6.0, 6.0])
+            .into_iter()
+            .map(|c| c.map(|p| [p[0] + 10.0, p[1], p[2]])),
+    );
+    let solids: [(&str, Facets); 6] = [
+        ("box", cuboid([9.0, 8.0, 7.0])),
+        ("L", l_shape),
+        ("ball", icosphere(2, &|_| 4.8)),
+        ("bumpy ball", bumpy),
+        ("torus", torus(7.0, 2.4, 40, 20)),
+        ("two parts", two_parts),
+    ];
+    let asked = [
+        ("0.6mm..0.9mm", 0.25),
+        ("0.8mm..1mm", 0.0),
+        ("normal:0.9mm,0.1mm,0.75mm..1.1mm", 0.1),
+    ];
+    for (k, (name, facets)) in solids.into_iter().enumerate() {
+        let (surface, _) = surface_of(&facets);
+        let (diameter, overlap) = asked[k % 3];
+        let name = format!("{name}, {diameter}");
+        assert_full_and_true(&name, &surface, diameter, overlap, k as u64);
+    }
+}
+
+#[test]
+fn where_small_ones_are_too_few_voids_are_counted() {
+    let (surface, _) = surface_of(&cuboid([9.0, 8.0, 7.0]));
+    let (sizes, packing) = bare_front(&surface, "0.5mm..2mm", 0.0, 1);
+    let facets = local_facets(&surface);
+    let radius = 0.5 * sizes.min_m() / surface.unit_m;
+    let left = voids(&facets, &packing, 0.0, radius).len();
+    let counted = packing.history.voids_left;
+    assert!(left > 100, "{left}");
+    assert!(
+        counted as f64 > 0.7 * left as f64 && (counted as f64) < 1.4 * left as f64,
+        "{counted} counted, {left} found"
+    );
+    assert_exact(
+        "wide",
+        &facets,
+        &packing.spheres.positions,
+        &packing.spheres.radii,
+        0.0,
+        0.0,
+    );
+}
