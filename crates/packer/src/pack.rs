@@ -76,6 +76,9 @@ pub struct Packing {
 /// far enough that few fronts meet, since where they meet there is less.
 const SEED_SPACING: f64 = 8.0;
 
+/// The bare front fills all voids where the largest radius is at most so many times the smallest.
+const WIDEST_FILLED: f64 = 1.5 + 1e-6;
+
 /// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
 /// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
 const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.5];
@@ -155,6 +158,8 @@ pub fn pack(
             "ask for larger diameters, or check the units of --diameter and --unit",
         ));
     }
+    // Wider sizes have fewer small spheres than voids: to place them all would change the sizes.
+    let fills_voids = share == 0.0 && range[1] <= WIDEST_FILLED * range[0];
     let front_settings = |expected: f64, most_too_many: f64| FrontSettings {
         radius: &small,
         radius_range: range.map(|r| shrink * r),
@@ -162,7 +167,7 @@ pub fn pack(
         wall_factor: (1.0 - 1e-12) / shrink,
         most_cells: MORE_CELLS + expected as usize,
         expected,
-        fills_voids: share == 0.0,
+        fills_voids,
         most_too_many,
         seed: settings.seed,
     };
@@ -190,7 +195,7 @@ pub fn pack(
         let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
         let is_true =
             front.ledger.imbalance() < most_imbalance * placed.sqrt() && !front.has_left_voids();
-        if share > 0.0 || is_true || next == MOST_TOO_MANY.len() {
+        if !fills_voids || is_true || next == MOST_TOO_MANY.len() {
             break;
         }
         // Where too few small spheres can be kept back for all voids, more attempts would not change that.
@@ -227,7 +232,7 @@ pub fn pack(
         history.settle_seconds = started.elapsed().as_secs_f64();
     }
 
-    if share > 0.0 {
+    if !fills_voids {
         let started = Instant::now();
         progress("filling voids", 0.0)?;
         let settings_full = FrontSettings {
