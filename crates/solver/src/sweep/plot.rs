@@ -354,7 +354,7 @@ fn write_legend(out: &mut String, table: &SweepTable, marks: &[Mark<'_>]) -> std
         writeln!(
             out,
             "<g stroke=\"{INK}\">{mark}</g>{}",
-            text(LEGEND + 20.0, y, "another is faster and")
+            text(LEGEND + 20.0, y, "another is as fast and")
         )?;
         y += 15.0;
         writeln!(out, "{}", text(LEGEND + 20.0, y, "as exact"))?;
