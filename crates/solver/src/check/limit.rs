@@ -236,6 +236,12 @@ fn largest_eigenvalue(
     let roots = inverse_mass_roots(state);
     // Allocated once: allocators find it hard to use the place of an aligned array again.
     let mut displaced = state.particles.poses.clone();
+    // One difference does where a thousandth does not matter.
+    let at_rest = (enough == ROUGH && weights.stiffness > 0.0).then(|| {
+        bonds_as_total(state, &displaced);
+        state.particles.wrenches.clone()
+    });
+    let at_rest = at_rest.as_deref();
     let mut present = start(&roots);
     let mut before: Field = vec![[0.0; 6]; roots.len()];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
@@ -247,7 +253,15 @@ fn largest_eigenvalue(
         image.iter_mut().flatten().for_each(|f| *f *= -beta_before);
         if weights.stiffness > 0.0 {
             let weight = weights.stiffness;
-            add_stiffness_times(state, weight, &roots, &present, &mut displaced, &mut image);
+            add_stiffness_times(
+                state,
+                weight,
+                &roots,
+                &present,
+                at_rest,
+                &mut displaced,
+                &mut image,
+            );
         }
         if weights.damping > 0.0 && !state.bond_resistance.is_empty() {
             add_damping_times(state, weights.damping, &roots, &present, &mut image);
@@ -357,13 +371,15 @@ fn scaled(field: &[f64; 6], roots: &[f64; 6]) -> [f64; 6] {
     [0, 1, 2, 3, 4, 5].map(|k| field[k] * roots[k])
 }
 
-/// Adds `weight` times the stiffness times a field, each scaled by `roots`, to `sum`: minus the change of the forces in a small displacement, by a central difference.
+/// Adds `weight` times the stiffness times a field, each scaled by `roots`, to `sum`: minus the change of the forces in a small displacement, by a central difference, or
+/// from what they are `at_rest`: for half the work, good to about 1e-5.
 /// The poses in `displaced` (one for each particle) are overwritten.
 pub(super) fn add_stiffness_times(
     state: &mut State,
     weight: f64,
     roots: &Field,
     field: &Field,
+    at_rest: Option<&[Wrench]>,
     displaced: &mut [Pose],
     sum: &mut Field,
 ) {
@@ -391,7 +407,14 @@ pub(super) fn add_stiffness_times(
         return;
     }
     let step = STEP / largest;
-    for side in [1.0, -1.0] {
+    let (sides, apart) = match at_rest {
+        Some(wrenches) => {
+            add_forces(weight / step, wrenches, roots, sum);
+            (&[1.0][..], step)
+        }
+        None => (&[1.0, -1.0][..], 2.0 * step),
+    };
+    for side in sides {
         let rest = state.particles.poses.iter();
         for ((pose, rest), moved) in displaced.iter_mut().zip(rest).zip(&moves) {
             let [x, y, z, rx, ry, rz] = moved.map(|m| side * step * m);
@@ -400,7 +423,7 @@ pub(super) fn add_stiffness_times(
             pose.turned = turn(rest.turned, [rx, ry, rz]);
         }
         bonds_as_total(state, displaced);
-        let factor = -side * weight / (2.0 * step);
+        let factor = -side * weight / apart;
         add_forces(factor, &state.particles.wrenches, roots, sum);
     }
 }

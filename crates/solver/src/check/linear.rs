@@ -1,6 +1,7 @@
 //! Contacts as the limit of the time step sees them: springs and dashpots at the overlap that they have, or that an impact will give them.
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use crate::physics::contact::rolling::NoRolling;
 use crate::physics::contact::touch::{Touch, torques, touch};
@@ -193,29 +194,33 @@ pub fn linear_wrenches(
 }
 
 /// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all that touch, 1/s2: how far the limit may have fallen since
-/// this was smaller. 0 where nothing touches.
-pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
-    use rayon::prelude::*;
+/// this was smaller. 0 where nothing touches. Of particles that are not stiffer than `matters` says, it may be left out.
+pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
     let p = &state.particles;
-    let of_pair = |kind: &ContactKind, at: usize| {
-        let overlap_m = contacts.memories[at].overlap_m();
-        if overlap_m <= 0.0 {
-            return 0.0;
-        }
+    let of_pair = |kind: &ContactKind, at: usize, overlap_m: f64| {
         let [a, b] = contacts.pairs[at].map(|end| end as usize);
         let [ra, rb] = [a, b].map(|i| p.poses[i].radius_m());
         let per_mass = p.motions[a].inverse_mass + p.motions[b].inverse_mass;
         kind.normal_n_m(overlap_m, ra * rb / (ra + rb)) * per_mass
     };
+    let least_m: Vec<f64> = (contacts.kinds.iter())
+        .map(|kind| matters.least_overlap_m(&kind.law))
+        .collect();
     // Whatever touches was close when pairs were looked at last.
     let of_share = |share: &ContactShare| {
-        let kinds = contacts.kinds.iter().zip(&share.close);
-        let rates = kinds
-            .flat_map(|(kind, [_, own])| own.iter().map(move |&at| of_pair(kind, at as usize)));
-        rates.fold(0.0, f64::max)
+        let mut largest = 0.0_f64;
+        for ((kind, [_, own]), least_m) in contacts.kinds.iter().zip(&share.close).zip(&least_m) {
+            for at in own.iter().map(|&at| at as usize) {
+                let overlap_m = contacts.memories[at].overlap_m();
+                if overlap_m > *least_m {
+                    largest = largest.max(of_pair(kind, at, overlap_m));
+                }
+            }
+        }
+        largest
     };
     let of_pairs = (contacts.shares.par_iter().map(of_share)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
@@ -227,6 +232,41 @@ pub fn largest_contact_rate_1_s2(state: &State) -> f64 {
         })
     });
     of_walls.fold(of_pairs, f64::max)
+}
+
+/// Which contacts matter for a step: those that are stiffer than others have been.
+#[derive(Debug, Clone, Copy)]
+pub struct Matters {
+    /// Stiffness over mass that contacts have had, 1/s2.
+    pub above_1_s2: f64,
+    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be.
+    pub extremes: [f64; 2],
+}
+
+impl Matters {
+    /// All do.
+    pub const ALL: Self = Self {
+        above_1_s2: 0.0,
+        extremes: [f64::INFINITY; 2],
+    };
+
+    /// Overlap up to which no contact of a law matters, m: not even that of two of the largest, were they as light as the lightest.
+    fn least_overlap_m(&self, law: &Law) -> f64 {
+        let [radius_m, inverse_kg] = self.extremes;
+        if !(radius_m.is_finite() && inverse_kg.is_finite()) {
+            return 0.0;
+        }
+        let stiffness_n_m = 0.5 * self.above_1_s2 / inverse_kg;
+        match law {
+            // It grows with the root of the overlap.
+            Law::HertzMindlin(law) => {
+                let root = stiffness_n_m / law.normal_n_m((0.5 * radius_m).sqrt());
+                root * root
+            }
+            Law::Linear(law) if law.normal_n_m > stiffness_n_m => 0.0,
+            Law::Linear(_) => f64::INFINITY,
+        }
+    }
 }
 
 /// What the first impact at a speed, m/s, will add to the largest eigenvalues of stiffness and damping over mass, 1/s2 and 1/s, if a particle meets a wall or

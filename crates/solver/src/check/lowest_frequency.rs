@@ -39,7 +39,7 @@ pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {
     for j in 0..FIELDS {
         let field = basis.field(state, j);
         let mut forces: Field = vec![[0.0; 6]; count];
-        add_stiffness_times(state, 1.0, &ones, &field, &mut displaced, &mut forces);
+        add_stiffness_times(state, 1.0, &ones, &field, None, &mut displaced, &mut forces);
         stiffness.set_column(j, &basis.work(state, &forces));
         let p = &state.particles;
         for (i, (force, moved)) in forces.iter_mut().zip(&field).enumerate() {

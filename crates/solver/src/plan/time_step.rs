@@ -6,7 +6,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
-use crate::check::linear::{at_impact, contact_rates, largest_contact_rate_1_s2};
+use crate::check::linear::{Matters, at_impact, contact_rates, largest_contact_rate_1_s2};
 use crate::clusters::Clusters;
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::{Changes, change};
@@ -100,7 +100,7 @@ impl Outlook {
             limit: found,
             foreseen_s,
             impact_speed_m_s,
-            contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state)),
+            contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state, Matters::ALL)),
             step_s,
         }
     }

@@ -8,11 +8,12 @@ use super::events::{change, look_anew_for_near, new_step};
 use super::progress::Progress;
 use crate::check::ledger::kinetic_energy;
 use crate::check::limit::{Bound, bound_near, limit};
-use crate::check::linear::{contact_rates, largest_contact_rate_1_s2};
+use crate::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
 use crate::state::State;
+use crate::state::particles::Pose;
 
 /// Steps between two looks at the strains of the bonds.
 const STRAIN_EVERY: u64 = 64;
@@ -39,6 +40,8 @@ const SMALLER: f64 = 1.05;
 #[derive(Debug)]
 pub(super) struct Limits<'a> {
     smallest_radius_m: f64,
+    /// Largest radius, m, and largest inverse mass, 1/kg; infinite where bodies may come or clumps become clusters.
+    extremes: [f64; 2],
     /// None: the scene names a step, which is kept.
     safety: Option<f64>,
     end_s: f64,
@@ -59,6 +62,7 @@ impl<'a> Limits<'a> {
     pub(super) fn of(scene: &'a Scene, state: &State, choice: &StepChoice) -> Self {
         Self {
             smallest_radius_m: state.smallest_radius_m(),
+            extremes: extremes(state),
             safety: scene.run.time_step_s.is_none().then_some(scene.run.safety),
             end_s: scene.run.end_time_s,
             adaptive: scene.run.adaptive.then(|| Adaptive {
@@ -129,8 +133,13 @@ impl<'a> Limits<'a> {
         let touches = state.contacts.is_some();
         let look_at_contacts = touches && state.steps.is_multiple_of(LOOKS_EVERY);
         if look_at_contacts {
-            let rate = largest_contact_rate_1_s2(state);
-            if rate > STIFFER * progress.contact_rate_1_s2 {
+            let above_1_s2 = STIFFER * progress.contact_rate_1_s2;
+            let matters = Matters {
+                above_1_s2,
+                extremes: self.extremes,
+            };
+            let rate = largest_contact_rate_1_s2(state, matters);
+            if rate > above_1_s2 {
                 progress.contact_rate_1_s2 = rate;
                 may_be_less = true;
             }
@@ -215,6 +224,20 @@ impl<'a> Limits<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// See [`Limits::extremes`].
+fn extremes(state: &State) -> [f64; 2] {
+    if !state.clumps.templates.is_empty() {
+        return [f64::INFINITY; 2];
+    }
+    let p = &state.particles;
+    let radii = p.poses.iter().map(Pose::radius_m);
+    let inverse_masses = p.motions.iter().map(|motion| motion.inverse_mass);
+    [
+        radii.fold(0.0, f64::max),
+        inverse_masses.fold(0.0, f64::max),
+    ]
 }
 
 /// A step that is stable by what was found last, s, with bonds that are longer since and contacts that are stiffer. Either with all contacts that there are on top of

@@ -3,7 +3,7 @@
 use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::ledger::{Ledger, balance};
 use dem_run::check::limit::{Bound, limit};
-use dem_run::check::linear::contact_rates;
+use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::state::State;
 use dem_run::state::walls::Wall;
@@ -129,4 +129,41 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
         shares.len() > 30 && smallest > 0.3 && largest < 1.0 + 1e-4,
         "{shares:?}"
     );
+}
+
+/// Contacts that cannot be stiffer than a limit are passed over; the stiffest is found whenever it is above that.
+#[test]
+fn the_stiffest_contact_is_found_among_those_that_matter() {
+    let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);
+    let p = &state.particles;
+    let radius_m = p
+        .poses
+        .iter()
+        .fold(0.0, |r: f64, pose| r.max(pose.radius_m()));
+    let inverse_kg = p
+        .motions
+        .iter()
+        .fold(0.0, |m: f64, motion| m.max(motion.inverse_mass));
+    let mut looks = 0;
+    while state.time_s < 4e-3 {
+        act(&mut state);
+        if state.steps.is_multiple_of(100) {
+            let largest = largest_contact_rate_1_s2(&state, Matters::ALL);
+            looks += usize::from(largest > 0.0);
+            for share in [0.0, 0.3, 0.9, 0.999, 1.001, 3.0] {
+                let matters = Matters {
+                    above_1_s2: share * largest,
+                    extremes: [radius_m, inverse_kg],
+                };
+                let found = largest_contact_rate_1_s2(&state, matters);
+                if share < 1.0 {
+                    assert_eq!(found, largest, "above {share} of it");
+                } else {
+                    assert!(found <= largest, "above {share} of it");
+                }
+            }
+        }
+        move_on(&mut state);
+    }
+    assert!(looks > 30, "{looks} looks with contacts");
 }
