@@ -38,11 +38,18 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     let mut memories = std::mem::take(&mut contacts.memories);
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
     for share in &mut shares {
-        // Their owners take down what comes next while others still need what was.
-        let remembered = share.border.iter().map(|&at| memories[at as usize]);
         share.swallowed = None;
-        share.border_memories.clear();
-        share.border_memories.extend(remembered);
+        // Their owners take down what comes next while others still need what was.
+        if looks {
+            let remembered = share.border.iter().map(|&at| memories[at as usize]);
+            share.border_memories.clear();
+            share.border_memories.extend(remembered);
+        } else {
+            for n in share.close.iter().flat_map(|[of_border, _]| of_border) {
+                let n = *n as usize;
+                share.border_memories[n] = memories[share.border[n] as usize];
+            }
+        }
     }
     let (known, p) = (&*contacts, &mut *particles);
     let scene = Scene {
