@@ -452,6 +452,12 @@ impl<'a> Front<'a> {
         found
     }
 
+    /// About how many of the smallest spheres would fit around all spheres.
+    pub fn count_voids(mut self) -> usize {
+        self.left_open = self.balls.iter().map(|ball| (*ball, 0)).collect();
+        self.voids_left()
+    }
+
     fn add(&mut self, (ball, seed): FrontBall) {
         self.grid.insert(ball);
         self.balls.push(ball);

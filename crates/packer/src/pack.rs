@@ -235,20 +235,24 @@ pub fn pack(
     if !fills_voids {
         let started = Instant::now();
         progress("filling voids", 0.0)?;
-        let settings_full = FrontSettings {
+        let settings_full = |fills_voids: bool| FrontSettings {
             radius: &full,
             radius_range: range,
             overlap: settings.overlap,
             wall_factor: 1.0,
             most_cells: MORE_CELLS + balls.len(),
             expected: balls.len() as f64,
-            fills_voids: false,
+            fills_voids,
             most_too_many: 0.0,
             seed: settings.seed ^ 0x5eed,
         };
-        let mut front = Front::new(settings_full, boundary, &extent);
+        let mut front = Front::new(settings_full(false), boundary, &extent);
         front.adopt(&balls);
-        fill_voids(&mut front, &mut history);
+        if fill_voids(&mut front, &mut history) {
+            let mut filled = Front::new(settings_full(true), boundary, &extent);
+            filled.adopt(&front.balls);
+            history.voids_left = filled.count_voids();
+        }
         history.loose_fillers = history.void_fillers;
         history.fill_seconds = started.elapsed().as_secs_f64();
         balls = front.balls;
@@ -414,8 +418,8 @@ fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -
 }
 
 /// Puts spheres into the voids that take at least the smallest one, each of a size drawn among those that fit there,
-/// as long as their number does not distort the distribution of sizes by more than a tenth of its statistical noise.
-fn fill_voids(front: &mut Front, history: &mut PackHistory) {
+/// as long as their number does not distort the distribution of sizes by more than a tenth of its statistical noise. Whether it would have, so that voids may be left.
+fn fill_voids(front: &mut Front, history: &mut PackHistory) -> bool {
     let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
     let count = front.balls.len();
     let most = if one_size {
@@ -429,11 +433,10 @@ fn fill_voids(front: &mut Front, history: &mut PackHistory) {
         let around: Vec<u32> = (group..count).step_by(groups).map(|i| i as u32).collect();
         fill_voids_around(front, around, most, history);
         if history.void_fillers == most {
-            let searched = (group + 1) as f64 / groups as f64;
-            history.voids_left = (most as f64 * (1.0 / searched - 1.0)).round() as usize;
-            return;
+            return true;
         }
     }
+    false
 }
 
 /// Searches around the spheres `around` and then around those that were added, until there are `most` of them.
