@@ -190,15 +190,24 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
 /// # Errors
 /// There is none: bad input, as the name was given so.
 pub fn need_folder_of(target: &Path) -> Result<()> {
-    let folder = folder_of(target);
-    if folder.is_dir() {
+    if folder_of(target).is_dir() {
         return Ok(());
     }
+    let (problem, remedy) = no_folder_of(target);
     Err(Diagnostic::input(
         target.display().to_string(),
-        format!("there is no folder '{}'", folder.display()),
-        "make it first, or write elsewhere",
+        problem,
+        remedy,
     ))
+}
+
+/// Problem and remedy of a file whose folder is missing.
+fn no_folder_of(target: &Path) -> (String, &'static str) {
+    let folder = folder_of(target).display();
+    (
+        format!("there is no folder '{folder}'"),
+        "make it first, or write elsewhere",
+    )
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -235,10 +244,7 @@ fn usual_permissions() -> Option<Permissions> {
 pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
-        ErrorKind::NotFound if !folder_of(path).exists() => (
-            format!("there is no folder '{folder}'"),
-            "make it first, or write elsewhere",
-        ),
+        ErrorKind::NotFound if !folder_of(path).exists() => no_folder_of(path),
         ErrorKind::NotADirectory => (format!("'{folder}' is not a folder"), "write elsewhere"),
         ErrorKind::PermissionDenied => (
             format!("no permission to write in '{folder}'"),

@@ -10,7 +10,7 @@ use crate::pack::PackSettings;
 use crate::sizes::{By, Sizes};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{need_folder_of, write_standard_output};
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{density_kg_m3, length_m, length_unit_m, show_length, significant};
 use dem_io::{Diagnostic, Result, Surface};
@@ -449,17 +449,7 @@ fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
 /// Finds out before the work whether the body can be written at all.
 fn check_output(output: &Path) -> Result<()> {
     for file in body_files(output)? {
-        let folder = file
-            .parent()
-            .filter(|f| *f != Path::new(""))
-            .unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(Diagnostic::input(
-                output.display().to_string(),
-                format!("there is no folder '{}'", folder.display()),
-                "make it, or choose another place with --output",
-            ));
-        }
+        need_folder_of(&file)?;
     }
     if output == Path::new("-") && std::io::stdout().is_terminal() {
         return Err(Diagnostic::input(

@@ -260,9 +260,8 @@ impl<'a> Front<'a> {
             .with_min_len(256)
             .map_init(Workspace::default, |workspace, i| {
                 let ball = self.balls[*i as usize];
-                let here = Vector3::new(ball[0], ball[1], ball[2]);
                 self.look_around(workspace, &ball, &[], smallest);
-                self.best_place(workspace, &ball, smallest, &here)
+                self.best_place(workspace, &ball, smallest, &centre_of(&ball))
             })
             .flatten_iter()
             .collect()
@@ -489,5 +488,5 @@ fn centre_of(ball: &Ball) -> Vector3 {
 }
 
 fn distance(ball: &Ball, point: &Vector3) -> f64 {
-    (Vector3::new(ball[0], ball[1], ball[2]) - point).norm()
+    (centre_of(ball) - point).norm()
 }

@@ -41,11 +41,6 @@ impl Ledger {
         }
     }
 
-    /// Spheres placed.
-    pub fn total(&self) -> f64 {
-        self.total
-    }
-
     /// A sphere of quantile `u` (0 to 1) was placed.
     pub fn place(&mut self, u: f64) {
         let class = class_of(u, self.placed.len());

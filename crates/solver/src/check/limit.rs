@@ -14,17 +14,32 @@ use crate::state::particles::{Motion, Pose, Wrench};
 const ITERATIONS: [usize; 2] = [20, 200];
 /// Beyond the least number of iterations, one in so many asks whether it was enough.
 const EVERY: usize = 5;
-/// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second largest eigenvalue, 1e-3 below the largest, in a
-/// damped body; ten iterations more cost little.
-const RESIDUAL: f64 = 1e-5;
-/// The same where a thousandth does not matter: a bound near a step is to say whether there is room.
-const ROUGH: f64 = 1e-4;
 /// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes of bonds, in radians.
 const STEP: f64 = 1e-5;
 
 /// Largest distance from 1 of the eigenvalue at which the search for a damped limit ends, and most eigenvalues computed for it.
 const NEAR: f64 = 1e-3;
 const TRIES: usize = 8;
+
+/// How well an eigenvalue is to be known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Search {
+    /// As well as a limit needs it.
+    Fine,
+    /// Where a thousandth does not matter, as of a bound near a step that is to say whether there is room: with one difference for two.
+    Rough,
+}
+
+impl Search {
+    /// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second largest eigenvalue, 1e-3 below the largest, in a
+    /// damped body; ten iterations more cost little.
+    fn residual(self) -> f64 {
+        match self {
+            Self::Fine => 1e-5,
+            Self::Rough => 1e-4,
+        }
+    }
+}
 
 /// What was found of the largest stable step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -61,10 +76,10 @@ pub struct Bound {
 /// The wrenches of particles that move by themselves are overwritten; spheres of clumps have none afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
-    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, RESIDUAL);
+    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
     let stiffer = stiffer_by_damping(state);
     let (c, of_damping) = if is_damped(state, contacts) {
-        largest_eigenvalue(state, contacts, Weights::DAMPING, RESIDUAL)
+        largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
     } else {
         (0.0, 0)
     };
@@ -94,7 +109,7 @@ pub fn limit(state: &mut State) -> Limit {
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
-    let (value, _) = largest_eigenvalue(state, contacts, both, ROUGH);
+    let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     let is_damped = is_damped(state, contacts);
     let of_particles = Bound {
         step_s: not_too_long(step_s, value),
@@ -180,7 +195,7 @@ fn damped_limit(
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..TRIES {
         let both = Weights::of_step(stiffer, step_s);
-        let (value, iterations) = largest_eigenvalue(state, contacts, both, RESIDUAL);
+        let (value, iterations) = largest_eigenvalue(state, contacts, both, Search::Fine);
         all_iterations += iterations;
         let not_too_long = not_too_long(step_s, value);
         safe_s = safe_s.max(not_too_long);
@@ -225,19 +240,18 @@ impl Weights {
 /// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
 pub(super) type Field = Vec<[f64; 6]>;
 
-/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed until the residual is this share of it.
+/// Largest eigenvalue of a sum of the operators over mass, and the iterations needed for it.
 /// An upper bound by the residual: never too small by more than that is too large.
 fn largest_eigenvalue(
     state: &mut State,
     contacts: &[LinearContact],
     weights: Weights,
-    enough: f64,
+    search: Search,
 ) -> (f64, usize) {
     let roots = inverse_mass_roots(state);
     // Allocated once: allocators find it hard to use the place of an aligned array again.
     let mut displaced = state.particles.poses.clone();
-    // One difference does where a thousandth does not matter.
-    let at_rest = (enough == ROUGH && weights.stiffness > 0.0).then(|| {
+    let at_rest = (search == Search::Rough && weights.stiffness > 0.0).then(|| {
         bonds_as_total(state, &displaced);
         state.particles.wrenches.clone()
     });
@@ -282,7 +296,7 @@ fn largest_eigenvalue(
             largest = largest_ritz(&diagonal, &beside, beta);
         }
         let (value, residual) = largest;
-        let settled = iteration >= ITERATIONS[0] && residual <= enough * value;
+        let settled = iteration >= ITERATIONS[0] && residual <= search.residual() * value;
         if settled || beta <= 1e-13 * value || beta == 0.0 {
             break;
         }

@@ -194,7 +194,7 @@ pub fn linear_wrenches(
 }
 
 /// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all that touch, 1/s2: how far the limit may have fallen since
-/// this was smaller. 0 where nothing touches. Of particles that are not stiffer than `matters` says, it may be left out.
+/// this was smaller. 0 where nothing touches. Contacts that are not stiffer than `matters` says may be left out.
 pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -239,23 +239,22 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
 pub struct Matters {
     /// Stiffness over mass that contacts have had, 1/s2.
     pub above_1_s2: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be.
-    pub extremes: [f64; 2],
+    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be; none: nobody knows.
+    pub extremes: Option<[f64; 2]>,
 }
 
 impl Matters {
     /// All do.
     pub const ALL: Self = Self {
         above_1_s2: 0.0,
-        extremes: [f64::INFINITY; 2],
+        extremes: None,
     };
 
     /// Overlap up to which no contact of a law matters, m: not even that of two of the largest, were they as light as the lightest.
     fn least_overlap_m(&self, law: &Law) -> f64 {
-        let [radius_m, inverse_kg] = self.extremes;
-        if !(radius_m.is_finite() && inverse_kg.is_finite()) {
+        let Some([radius_m, inverse_kg]) = self.extremes else {
             return 0.0;
-        }
+        };
         let stiffness_n_m = 0.5 * self.above_1_s2 / inverse_kg;
         match law {
             // It grows with the root of the overlap.

@@ -103,7 +103,9 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     if !options.collect && !options.list {
         do_what_is_left(options, &study, &all, &all_jobs, &folder, interrupt)?;
     }
-    let further = further_jobs(&study, all.len(), &folder.runs());
+    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
+    read(&study, &all_jobs, &folder, &mut outcomes);
+    let further = further_jobs(study.repeats, &outcomes);
     if options.list {
         all_jobs.extend(further);
         return list(
@@ -116,11 +118,7 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     if !options.collect {
         do_what_is_left(options, &study, &all, &further, &folder, interrupt)?;
     }
-    all_jobs.extend(further);
-    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
-    for job in &all_jobs {
-        outcomes[job.run].push(outcome(&study, *job, &folder.runs()));
-    }
+    read(&study, &further, &folder, &mut outcomes);
     let mut table = SweepTable::new(&study, &all, &outcomes, &values);
     if options.jobs > 1 {
         table.notes.push(format!(
@@ -152,6 +150,14 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         write_file(target, |out| out.write_all(text.as_bytes()))?;
     }
     say(options, &study, &all, &table, best, &folder)
+}
+
+/// Adds what jobs have left to the outcomes of their runs.
+fn read(study: &Study, jobs: &[Job], folder: &SweepFolder, outcomes: &mut [Vec<Outcome>]) {
+    let runs = folder.runs();
+    for job in jobs {
+        outcomes[job.run].push(outcome(study, *job, &runs));
+    }
 }
 
 fn do_what_is_left(

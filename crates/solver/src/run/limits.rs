@@ -40,8 +40,8 @@ const SMALLER: f64 = 1.05;
 #[derive(Debug)]
 pub(super) struct Limits<'a> {
     smallest_radius_m: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg; infinite where bodies may come or clumps become clusters.
-    extremes: [f64; 2],
+    /// Largest radius, m, and largest inverse mass, 1/kg; none where bodies may come or clumps become clusters.
+    extremes: Option<[f64; 2]>,
     /// None: the scene names a step, which is kept.
     safety: Option<f64>,
     end_s: f64,
@@ -146,7 +146,10 @@ impl<'a> Limits<'a> {
         }
         // Mostly the step still is small enough: what was found last says so at once, a bound near the step in a fraction of the time that the limit itself takes.
         let needed_s = state.time_step_s / self.safety.unwrap_or(1.0);
-        if may_be_less && needed_s > bound_s(state, progress) {
+        let rates = may_be_less.then(|| contact_rates(state));
+        if let Some(rates) = rates
+            && needed_s > bound_s(rates, progress)
+        {
             let mut bound = bound_near(state, needed_s);
             if bound.step_s < needed_s {
                 bound = limit(state).bound();
@@ -154,7 +157,7 @@ impl<'a> Limits<'a> {
             }
             progress.bound = bound;
             progress.bound_strain = progress.strain;
-            progress.bound_rates = contact_rates(state);
+            progress.bound_rates = rates;
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
                 self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
@@ -227,29 +230,28 @@ impl<'a> Limits<'a> {
 }
 
 /// See [`Limits::extremes`].
-fn extremes(state: &State) -> [f64; 2] {
+fn extremes(state: &State) -> Option<[f64; 2]> {
     if !state.clumps.templates.is_empty() {
-        return [f64::INFINITY; 2];
+        return None;
     }
     let p = &state.particles;
     let radii = p.poses.iter().map(Pose::radius_m);
     let inverse_masses = p.motions.iter().map(|motion| motion.inverse_mass);
-    [
+    Some([
         radii.fold(0.0, f64::max),
         inverse_masses.fold(0.0, f64::max),
-    ]
+    ])
 }
 
-/// A step that is stable by what was found last, s, with bonds that are longer since and contacts that are stiffer. Either with all contacts that there are on top of
+/// A step that is stable by what was found last, s, with bonds that are longer since and contacts of these [rates](contact_rates). Either with all contacts that there are on top of
 /// it, which is never too long; or as if all bonds and contacts had become as much stiffer as the stiffest particle's contacts are by their sum.
-fn bound_s(state: &State, progress: &Progress) -> f64 {
+fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
     // Stiffness across a bond grows with the square of its levers.
     let longer = (1.0 + progress.strain) / (1.0 + progress.bound_strain);
     let of_bonds = Bound {
         step_s: progress.bound.step_s / (longer * longer),
         ..progress.bound
     };
-    let rates = contact_rates(state);
     let with_all_s = of_bonds.with_more(rates);
     let stiffer = |n: usize| {
         if rates[n] <= progress.bound_rates[n] {

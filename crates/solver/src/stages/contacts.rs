@@ -148,7 +148,7 @@ pub(super) fn stored_energy_j(
     touch: &Touch,
     memory: &Memory,
 ) -> f64 {
-    let grip = law.grip(touch, touch.overlap_m);
+    let grip = law.grip(touch, touch.overlap_m, 0.0);
     let stiffness = match rolling {
         Rolling::Free => 0.0,
         Rolling::Constant(rolling) => rolling.linearised(&grip, touch)[0],

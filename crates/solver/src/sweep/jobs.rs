@@ -11,7 +11,7 @@ use std::time::Duration;
 use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
 
-use super::collect::{Outcome, outcome};
+use super::collect::Outcome;
 use super::expand::Run;
 
 /// Runs that are done more than once are repeated until so much time has been measured, s, or so often: short ones scatter most.
@@ -61,25 +61,23 @@ pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
     jobs
 }
 
-/// Further repeats of runs that are short, once all of their jobs have come to their end.
-pub fn further_jobs(study: &Study, runs: usize, folder: &Path) -> Vec<Job> {
-    if study.repeats == 1 {
+/// Further repeats of runs that are short, from the outcomes of all [`jobs`] of each run. None of a run of which one has not come to its end.
+pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
+    if repeats == 1 {
         return Vec::new();
     }
-    let wanted = |run: usize| {
-        let outcomes =
-            (1..=study.repeats).map(|repeat| outcome(study, Job { run, repeat }, folder));
-        let times_s = outcomes.map(|outcome| match outcome {
+    let wanted = |outcomes: &Vec<Outcome>| {
+        let times_s = outcomes.iter().map(|outcome| match outcome {
             Outcome::Done(done) => Some(done.time_s),
             _ => None,
         });
         let all_s: Option<f64> = times_s.sum();
-        let mean_s = all_s.unwrap_or(f64::INFINITY) / f64::from(study.repeats);
+        let mean_s = all_s.unwrap_or(f64::INFINITY) / f64::from(repeats);
         (MEASURED_S / mean_s).ceil().min(f64::from(MOST_REPEATS)) as u32
     };
-    let wanted: Vec<u32> = (0..runs).map(wanted).collect();
-    let mut jobs = jobs(runs, MOST_REPEATS);
-    jobs.retain(|job| job.repeat > study.repeats && job.repeat <= wanted[job.run]);
+    let wanted: Vec<u32> = outcomes.iter().map(wanted).collect();
+    let mut jobs = jobs(outcomes.len(), MOST_REPEATS);
+    jobs.retain(|job| job.repeat > repeats && job.repeat <= wanted[job.run]);
     jobs
 }
 

@@ -250,7 +250,9 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         _ => None,
     };
     let times_s: Vec<f64> = done.iter().map(|done| done.time_s).collect();
-    let time_s = median(&times_s);
+    let mut rising_s = times_s.clone();
+    rising_s.sort_by(f64::total_cmp);
+    let time_s = median(&rising_s);
     let first = done.first();
     Row {
         number: run.number,
@@ -258,7 +260,7 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         settings: run.labels(study),
         failed,
         time_s,
-        spread_s: time_s.map(|time| range_of_median(&times_s).max(LEAST_SPREAD * time)),
+        spread_s: time_s.map(|time| range_of_median(&rising_s).max(LEAST_SPREAD * time)),
         times_s,
         steps: first.map(|done| done.steps),
         time_step_s: first.map(|done| done.time_step_s),
@@ -276,25 +278,22 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
     }
 }
 
-fn median(times: &[f64]) -> Option<f64> {
-    let mut times = times.to_vec();
-    times.sort_by(f64::total_cmp);
-    let middle = times.len() / 2;
-    match times.len() {
+/// Of rising times.
+fn median(rising: &[f64]) -> Option<f64> {
+    let middle = rising.len() / 2;
+    match rising.len() {
         0 => None,
-        even if even % 2 == 0 => Some(f64::midpoint(times[middle - 1], times[middle])),
-        _ => Some(times[middle]),
+        even if even % 2 == 0 => Some(f64::midpoint(rising[middle - 1], rising[middle])),
+        _ => Some(rising[middle]),
     }
 }
 
 /// Width of the range in which the median of many more repeats lies with a probability of 95 %, whatever the distribution of the times: between the values
-/// whose ranks are half their number -+ the root of it. All of it up to five.
-fn range_of_median(times: &[f64]) -> f64 {
-    let mut times = times.to_vec();
-    times.sort_by(f64::total_cmp);
-    let count = times.len() as f64;
+/// whose ranks are half their number -+ the root of it. All of it up to five. Of rising times.
+fn range_of_median(rising: &[f64]) -> f64 {
+    let count = rising.len() as f64;
     let below = (0.5 * count - 0.98 * count.sqrt()).max(0.0) as usize;
-    match (times.get(below), times.iter().rev().nth(below)) {
+    match (rising.get(below), rising.iter().rev().nth(below)) {
         (Some(low), Some(high)) => high - low,
         _ => 0.0,
     }

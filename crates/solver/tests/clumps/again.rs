@@ -96,7 +96,7 @@ fn one_thread_and_more_give_the_same_bits() {
             mut bodies,
             ..
         } = busy(threads);
-        while state.time_s < 0.08 {
+        while state.time_s < 0.1 {
             go(&mut state, &mut bodies);
         }
         (state, bodies)

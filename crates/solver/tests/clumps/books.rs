@@ -99,22 +99,28 @@ fn counted(books: &Books) -> [usize; 3] {
 fn what_comes_and_goes_is_booked_and_errors_fall_with_the_square_of_the_step() {
     // They leave below the plate, in flight.
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
-    let all = [4e-6, 2e-6, 1e-6].map(|step_s| booked(&text, step_s, 0.25));
-    for books in &all {
-        let counts = counted(books);
-        eprintln!("{:?}: {counts:?}, {:?}", books.worst, books.last);
-        assert!(
-            counts[0] == 15 && counts[1] > 10 && counts[2] > 2,
-            "{counts:?}"
-        );
-        assert!(
-            books.worst[1] < 1e-11 && books.worst[2] < 1e-11,
-            "{:?}",
-            books.worst
-        );
-        assert!(books.last.contact_damping_j > 0.0 && books.last.friction_j > 0.0);
-    }
-    let [a, b, c] = all.map(|books| books.worst[0]);
+    // Bodies bounce otherwise with each step, which scatters the error of one run: means over three.
+    let errors = [4e-6, 2e-6, 1e-6].map(|step_s| {
+        let of_seed = |seed: u32| {
+            let text = text.replace("run.seed = 3", &format!("run.seed = {seed}"));
+            let books = booked(&text, step_s, 0.25);
+            let counts = counted(&books);
+            eprintln!("{:?}: {counts:?}, {:?}", books.worst, books.last);
+            assert!(
+                counts[0] == 15 && counts[1] > 10 && counts[2] > 2,
+                "{counts:?}"
+            );
+            assert!(
+                books.worst[1] < 1e-11 && books.worst[2] < 1e-11,
+                "{:?}",
+                books.worst
+            );
+            assert!(books.last.contact_damping_j > 0.0 && books.last.friction_j > 0.0);
+            books.worst[0]
+        };
+        [3, 4, 5].map(of_seed).iter().sum::<f64>() / 3.0
+    });
+    let [a, b, c] = errors;
     eprintln!("energy errors {a:.2e} {b:.2e} {c:.2e}");
     assert!(a > 3.0 * b && b > 3.0 * c && c < 1e-5, "{a:e} {b:e} {c:e}");
 }

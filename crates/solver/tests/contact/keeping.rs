@@ -172,7 +172,7 @@ fn check(
 
     // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and where sliding begins the damper's share is the root
     // of a difference that may be rounding: half the digits.
-    let grip = law.grip(&met, scene.history.overlap_m);
+    let grip = law.grip(&met, scene.history.overlap_m, DT);
     let speed = met.velocity_m_s.square().sqrt();
     let size = grip.elastic_n + grip.normal_damping_n_s_m * speed;
     let force_off = size * (1e-8 + 1e-16 / met.overlap_m.abs());

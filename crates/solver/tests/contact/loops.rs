@@ -75,7 +75,7 @@ fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
             work -= 0.5 * (last.moment_on_b + next.moment_on_b).dot(turned);
             lost += next.lost.sliding + next.lost.rolling;
 
-            let grip = law.grip(&touch, last.history.overlap_m);
+            let grip = law.grip(&touch, last.history.overlap_m, 1.0);
             let kept = grip.softer.min(1.0);
             let [before, now] = grip.tangential_n_m;
             bound += least(

@@ -153,7 +153,7 @@ fn the_stiffest_contact_is_found_among_those_that_matter() {
             for share in [0.0, 0.3, 0.9, 0.999, 1.001, 3.0] {
                 let matters = Matters {
                     above_1_s2: share * largest,
-                    extremes: [radius_m, inverse_kg],
+                    extremes: Some([radius_m, inverse_kg]),
                 };
                 let found = largest_contact_rate_1_s2(&state, matters);
                 if share < 1.0 {

@@ -58,7 +58,7 @@ const TSUJI: f64 = 1.825_741_858_350_553_8;
 
 impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
     #[inline(always)]
-    fn grip(&self, touch: &Touch<T>, overlap_before_m: T) -> Grip<T> {
+    fn grip(&self, touch: &Touch<T>, overlap_before_m: T, _dt: f64) -> Grip<T> {
         let overlap = touch.overlap_m.if_positive(touch.overlap_m);
         let contact_radius = (touch.radius_m * overlap).root();
         let contact_radius_before = (touch.radius_m * overlap_before_m).root();
