@@ -4,4 +4,5 @@ pub mod ledger;
 pub mod limit;
 pub mod linear;
 pub mod lowest_frequency;
+pub mod totals;
 pub mod watchdog;

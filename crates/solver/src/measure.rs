@@ -5,7 +5,8 @@ mod heap;
 use dem_io::scene::{At, Measure, Quantity};
 use serde::{Deserialize, Serialize};
 
-use crate::check::ledger::{Balance, synchronous_motions};
+use crate::check::ledger::Balance;
+use crate::check::totals::synchronous_motions;
 use crate::clusters::fragments;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{stresses, utilisation};

@@ -26,7 +26,8 @@ use dem_io::scene::Scene;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 
-use crate::check::ledger::{Balance, elastic_energy};
+use crate::check::ledger::Balance;
+use crate::check::totals::elastic_energy;
 use crate::machine::processor_time_s;
 use crate::measure::{bond_utilisation, gauges, read_gauges};
 use crate::output::frames::FrameOrder;

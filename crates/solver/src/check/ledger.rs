@@ -3,20 +3,17 @@
 //! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning, half at its end. So the ledger is as exact
 //! as the step: its error falls with the square of the time step.
 
-use crate::physics::bond::total::BondEnergy;
+use super::totals::{elastic_energy, kinetic_energy, momenta, momenta_of, synchronous_motions};
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
-use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums, power_w};
-use crate::stages::supports::{reactions_work_j, velocity_at_kick};
+use crate::stages::motion::{ordered_sum, ordered_sums, power_w};
+use crate::stages::supports::reactions_work_j;
 use crate::state::State;
-use crate::state::clumps::Clumps;
 use crate::state::contacts::ContactKind;
-use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Push, Wall};
-use nalgebra::Vector3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest law of the scene, J; 0 where nothing can touch.
@@ -474,148 +471,4 @@ fn walls_work_j(walls: &[Wall]) -> f64 {
 /// A ratio that is 0 where there is nothing to compare with.
 pub fn over(value: f64, scale: f64) -> f64 {
     if scale == 0.0 { 0.0 } else { value / scale }
-}
-
-/// Velocities and spins at the time of the poses, between a kick and the drift after it. One per particle.
-pub fn synchronous_motions(state: &State) -> Vec<Motion> {
-    let p = &state.particles;
-    let half_s = 0.5 * state.time_step_s;
-    let resistances = state.resistances();
-    let back = |i: usize| {
-        let mut motion = p.motions[i];
-        if p.sleeps(i) {
-            return motion;
-        }
-        let (per_mass, per_inertia) = (
-            half_s * motion.inverse_mass,
-            half_s * motion.inverse_inertia,
-        );
-        let [bonds, particles] = resistances;
-        for wrenches in [&p.wrenches, bonds, particles] {
-            if let Some(wrench) = wrenches.get(i) {
-                for k in 0..3 {
-                    motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];
-                    motion.spin_rad_s[k] -= per_inertia * wrench.torque_n_m[k];
-                }
-            }
-        }
-        for k in 0..3 {
-            motion.velocity_m_s[k] -= half_s * state.gravity_m_s2[k];
-        }
-        motion
-    };
-    let mut motions: Vec<Motion> = (0..p.free)
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(back)
-        .collect();
-    for clump in synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s) {
-        let template = state.clumps.template(&clump);
-        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
-        motions.extend(
-            spheres
-                .iter()
-                .map(|pose| clump.motion_at(template, &pose.place())),
-        );
-    }
-    let steps_s = [state.previous_time_step_s, state.time_step_s];
-    for support in &state.supports {
-        for held in &support.held {
-            let after = &p.motions[held.particle as usize];
-            let motion = &mut motions[held.particle as usize];
-            for k in 0..3 {
-                if support.holds[k].is_some() {
-                    motion.velocity_m_s[k] =
-                        velocity_at_kick(held.before[k], after.velocity_m_s[k], steps_s);
-                }
-                if support.holds[k + 3].is_some() {
-                    motion.spin_rad_s[k] =
-                        velocity_at_kick(held.before[k + 3], after.spin_rad_s[k], steps_s);
-                }
-            }
-        }
-    }
-    motions
-}
-
-/// Kinetic energy of the particles that move by themselves, so, J.
-pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
-    ordered_sum(particles.free, |i| particles.kinetic_j(i, &motion(i)))
-}
-
-/// Elastic energy of all bonds by mode.
-pub fn elastic_energy(state: &State) -> BondEnergy {
-    let bonds = &state.bonds;
-    let [normal, shear, torsion, bending] = ordered_sums(bonds.len(), |at| {
-        if bonds.is_broken(at) {
-            return [0.0; 4];
-        }
-        let energy = bonds.forces(at, &state.particles.poses).energy;
-        [energy.normal, energy.shear, energy.torsion, energy.bending]
-    });
-    BondEnergy {
-        normal,
-        shear,
-        torsion,
-        bending,
-    }
-}
-
-/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity, m/s, and own angular momentum; and their magnitudes.
-fn momenta_of(
-    mass_kg: f64,
-    place_m: [f64; 3],
-    velocity_m_s: [f64; 3],
-    own: [f64; 3],
-    about_m: [f64; 3],
-) -> [f64; 8] {
-    let momentum = Vector3::from(velocity_m_s) * mass_kg;
-    let arm = Vector3::from(place_m) - Vector3::from(about_m);
-    let angular = arm.cross(&momentum) + Vector3::from(own);
-    let ([px, py, pz], [lx, ly, lz]): ([f64; 3], [f64; 3]) = (momentum.into(), angular.into());
-    [px, py, pz, lx, ly, lz, momentum.norm(), angular.norm()]
-}
-
-/// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
-fn momenta(particles: &Particles, clumps: &Clumps, about_m: [f64; 3]) -> ([[f64; 3]; 2], [f64; 2]) {
-    let mut sums = ordered_sums(particles.free, |i| {
-        let (pose, motion) = (&particles.poses[i], &particles.motions[i]);
-        let mass = 1.0 / motion.inverse_mass;
-        let inertia = 1.0 / motion.inverse_inertia;
-        let momentum = motion.velocity_m_s.map(|v| mass * v);
-        let spin = motion.spin_rad_s.map(|w| inertia * w);
-        let mut part = [[0.0; 3]; 2];
-        add_resultant(&mut part, pose, momentum, spin, about_m);
-        let magnitude = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let [p, l] = part;
-        [
-            p[0],
-            p[1],
-            p[2],
-            l[0],
-            l[1],
-            l[2],
-            magnitude(p),
-            magnitude(l),
-        ]
-    });
-    for clump in &clumps.all {
-        let template = clumps.template(clump);
-        let mass = template.mass_kg;
-        let mut parts = momenta_of(
-            mass,
-            clump.place_m,
-            clump.velocity_m_s,
-            clump.angular_momentum,
-            about_m,
-        );
-        // Of its parts on either side of its centre as well, as a bonded body has it: else a clump that flies straight has none but rounding.
-        let gyration_m = (0.5 * template.moments_kg_m2.iter().sum::<f64>() / mass).sqrt();
-        parts[7] += gyration_m * parts[6];
-        for (sum, part) in sums.iter_mut().zip(parts) {
-            *sum += part;
-        }
-    }
-    let [px, py, pz, lx, ly, lz, momentum, angular_momentum] = sums;
-    ([[px, py, pz], [lx, ly, lz]], [momentum, angular_momentum])
 }

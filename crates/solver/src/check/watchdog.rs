@@ -2,7 +2,8 @@
 
 use dem_io::{Diagnostic, Result};
 
-use super::ledger::{Balance, elastic_energy, kinetic_energy};
+use super::ledger::Balance;
+use super::totals::{elastic_energy, kinetic_energy};
 use crate::physics::bond::pair::frequencies;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::stages::contacts::contact_energy_j;

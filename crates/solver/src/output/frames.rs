@@ -6,7 +6,7 @@ use dem_io::Result;
 use dem_io::results::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS};
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 
-use crate::check::ledger::synchronous_motions;
+use crate::check::totals::synchronous_motions;
 use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;

@@ -14,7 +14,7 @@
 //! its two ends times the motion between, less what is stored. Damping comes as forces: half of their power with the velocity before the kick, half with that after it
 //! ([`Damping::power_w`]).
 //!
-//! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that: see [`of_lagging_velocity`].
+//! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that.
 
 pub mod hertz_mindlin;
 pub mod linear;

@@ -3,7 +3,7 @@
 use dem_io::Result;
 
 use super::{Files, Progress};
-use crate::check::ledger::synchronous_motions;
+use crate::check::totals::synchronous_motions;
 use crate::clusters::fragments;
 use crate::output::fragments::rows;
 use crate::stages::clumps::synchronous;

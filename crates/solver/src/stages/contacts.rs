@@ -1,5 +1,13 @@
 //! Forces of contacts between particles.
 
+mod close;
+mod stored;
+
+pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m};
+
+pub(in crate::stages) use self::stored::stored_energy_j;
+
+use self::close::{close_m, look};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::manner::Manner;
@@ -7,24 +15,17 @@ use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use crate::physics::contact::touch::{Ball, Touch, torques, touch};
+use crate::physics::contact::touch::{Ball, torques, touch};
 use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
-use crate::stages::motion::{ordered_sum, ordered_sums};
 use crate::stages::neighbours::near_pairs;
 use crate::state::contacts::{ContactShare, Contacts, Law, Memory, Rolling};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
-/// Contacts between those that are looked at and those whose second particles are fetched into the cache.
-const AHEAD: usize = 32;
-/// The same of those that are computed.
+/// Contacts between those that are computed and those whose second particles are fetched into the cache.
 const SOON: usize = 16;
-/// Steps at the present speed until all pairs are looked at again, at most; and at least, else they are looked at in each step.
-const STEPS: [f64; 2] = [32.0, 4.0];
-/// Pairs that are further apart than this share of the skin are not computed.
-const CLOSE: f64 = 1.0 / 16.0;
 
 /// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes down what each contact remembers: after a step of `dt`, s, in
 /// which the particles moved as their motions say.
@@ -71,14 +72,6 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Pairs closer than this, m, are computed until a particle may have moved almost half of it: then none of the others can have met, however places are rounded.
-/// 0 where that would be soon: then all pairs are looked at in each step.
-fn close_m(contacts: &Contacts) -> f64 {
-    let [most_m, least_m] = STEPS.map(|steps| 2.0 * steps * contacts.moved_m);
-    let close_m = most_m.min(CLOSE * contacts.skin_m);
-    if close_m < least_m { 0.0 } else { close_m }
-}
-
 /// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for each particle; those of one number do not touch each other.
 pub fn list_contacts(
     contacts: &mut Contacts,
@@ -97,74 +90,6 @@ pub fn list_contacts(
     );
     contacts.divide(particles.len(), contacts.wanted_shares.max(1));
     contacts.room_m = 0.5 * skin_m;
-}
-
-/// Overlap of two particles, m; below 0 where they are apart.
-pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
-    let [a, b] = pair.map(|i| &poses[i as usize]);
-    a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
-}
-
-/// Elastic energy of all contacts, J.
-pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
-    ordered_sum(contacts.pairs.len(), |at| {
-        contact_energy_j(contacts, particles, at)
-    })
-}
-
-/// Elastic energy of contact `at`, J.
-pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -> f64 {
-    if contacts.memories[at] == Memory::default() {
-        return 0.0;
-    }
-    let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
-    match &kind.law {
-        Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-        Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-    }
-}
-
-/// Elastic energy of a contact as it was taken down, J.
-fn stored_j(
-    contacts: &Contacts,
-    particles: &Particles,
-    at: usize,
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-) -> f64 {
-    let ends = contacts.pairs[at].map(|end| end as usize);
-    let memory = &contacts.memories[at];
-    let [a, b] = ends.map(|i| particles.poses[i].place());
-    let balls = ends.map(|i| particles.ball_at_rest(i));
-    let mut touch = touch((b - a).into(), balls, 0.0);
-    touch.overlap_m = memory.overlap_m();
-    stored_energy_j(law, rolling, &touch, memory)
-}
-
-/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.
-pub(super) fn stored_energy_j(
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-    touch: &Touch,
-    memory: &Memory,
-) -> f64 {
-    let grip = law.grip(touch, touch.overlap_m, 0.0);
-    let stiffness = match rolling {
-        Rolling::Free => 0.0,
-        Rolling::Constant(rolling) => rolling.linearised(&grip, touch)[0],
-        Rolling::Spring(rolling) => rolling.linearised(&grip, touch)[0],
-    };
-    let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
-    grip.energy_j
-        + 0.5 * grip.tangential_n_m[1] * square(memory.slid)
-        + 0.5 * stiffness * square(memory.rolled)
-}
-
-/// Energy that friction and that damping took so far, J.
-pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
-    let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
-    let [gone_friction, gone_damping] = contacts.lost_by_gone_j;
-    [friction + gone_friction, damping + gone_damping]
 }
 
 /// What all shares look at.
@@ -260,89 +185,6 @@ fn manner<T: Lanes>(proof: T::Proof, manner: &Manner) -> Manner<T> {
         least_n: T::all(proof, manner.least_n),
         kept: [T::all(proof, manner.kept[0]), T::all(proof, manner.kept[1])],
     }
-}
-
-/// Lists the contacts of a share that are close.
-#[inline(always)]
-fn look<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
-    for [of_border, own] in &mut share.close {
-        of_border.clear();
-        own.clear();
-    }
-    find_border(share, scene);
-    find_own::<T>(proof, share, scene);
-}
-
-/// Lists the contacts of the border that are close.
-fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
-    let (contacts, poses) = (scene.contacts, scene.poses);
-    for (n, &at) in (0..).zip(&share.border) {
-        let pair = contacts.pairs[at as usize];
-        let [a, b] = pair.map(|i| &poses[i as usize]);
-        let reach = a.radius_m() + b.radius_m() + contacts.close_m;
-        if (b.place() - a.place()).norm_squared() < reach * reach {
-            share.close[contacts.kind(pair)][0].push(n);
-        }
-    }
-}
-
-/// Lists those of its own contacts that are close, or were at the look before: they may have an end to book.
-#[inline(always)]
-fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
-    let poses = scene.poses;
-    let own = share.own.clone();
-    let pairs = &scene.contacts.pairs[..own.end];
-    let close_m = T::all(proof, scene.contacts.close_m);
-    let (of_first_kind, of_others) = share.close.split_at_mut(1);
-    let list = &mut of_first_kind[0][1];
-    list.resize(own.len() + MOST, 0);
-    let close = &mut list[..];
-    let mut count = 0;
-    for (first, was_close) in own.clone().step_by(MOST).zip(&mut share.was_close) {
-        for &[_, soon] in pairs
-            .get(first + AHEAD..first + AHEAD + MOST)
-            .unwrap_or_default()
-        {
-            fetch_soon(&poses[soon as usize]);
-        }
-        let eight = &pairs[first..(first + MOST).min(own.end)];
-        let now = near::<T>(proof, eight, poses, close_m);
-        // Whether they are close cannot be foretold, so there is no branch on it.
-        let listed = usize::from(now | *was_close);
-        *was_close = now;
-        for lane in 0..MOST {
-            close[count] = (first + lane) as u32;
-            count += listed >> lane & 1;
-        }
-    }
-    list.truncate(count);
-    if !of_others.is_empty() {
-        list.retain(|&at| {
-            let kind = scene.contacts.kind(pairs[at as usize]);
-            if kind > 0 {
-                of_others[kind - 1][1].push(at);
-            }
-            kind == 0
-        });
-    }
-}
-
-/// For each of up to eight pairs a bit, from the lowest on: whether the two are closer than `close_m`.
-#[inline(always)]
-fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: T) -> u8 {
-    let mut bits = 0;
-    for first in (0..pairs.len()).step_by(T::COUNT) {
-        let row = |lane: usize, end: usize| {
-            let pair = pairs[(first + lane).min(pairs.len() - 1)];
-            poses[pair[end] as usize].position_m
-        };
-        let [ax, ay, az, radius_a] = T::columns(proof, |lane| row(lane, 0));
-        let [bx, by, bz, radius_b] = T::columns(proof, |lane| row(lane, 1));
-        let reach = radius_a + radius_b + close_m;
-        let apart = Triple(bx - ax, by - ay, bz - az);
-        bits |= (reach * reach).above(apart.square()) << first;
-    }
-    bits & (0xff >> (MOST - pairs.len()))
 }
 
 impl ShareWork<'_> {

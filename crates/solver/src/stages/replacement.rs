@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::population::{Changes, Renumbered, change};
 use super::restoring::restore;
-use crate::check::ledger::synchronous_motions;
+use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
 use crate::clusters::fragments::mass_and_centre;
 use crate::physics::random::uniform;

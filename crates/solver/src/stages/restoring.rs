@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::population::{Changes, Renumbered, change};
 use super::replacement::Happened;
-use crate::check::ledger::synchronous_motions;
+use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
 use crate::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::shape::fit::best_rotation;

@@ -9,7 +9,7 @@ use super::contacts::contact_energy_j;
 use super::neighbours::near_pairs;
 use super::population::Changes;
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
-use crate::check::ledger::synchronous_motions;
+use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
 use crate::disjoint::{find, join};
 use crate::state::State;

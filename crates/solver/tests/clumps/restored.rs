@@ -1,6 +1,6 @@
 //! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
 
-use dem_run::check::ledger::elastic_energy;
+use dem_run::check::totals::elastic_energy;
 use dem_run::stages::population::{Changes, change};
 use dem_run::stages::replacement::{Happened, replace};
 use dem_run::stages::restoring::restore;

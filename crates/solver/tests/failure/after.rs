@@ -1,6 +1,6 @@
 //! What a break says of itself, and that nothing comes after it.
 
-use dem_run::check::ledger::synchronous_motions;
+use dem_run::check::totals::synchronous_motions;
 use dem_run::physics::bond::failure::Cause;
 use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles, Wrench};

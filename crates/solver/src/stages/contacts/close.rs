@@ -1,0 +1,106 @@
+//! Which of the near pairs are close: only those are computed, until others may have come close.
+
+use super::Scene;
+use crate::physics::number::Triple;
+use crate::stages::blocks::fetch_soon;
+use crate::stages::lanes::{Lanes, MOST};
+use crate::state::contacts::{ContactShare, Contacts};
+use crate::state::particles::Pose;
+
+/// Contacts between those that are looked at and those whose second particles are fetched into the cache.
+const AHEAD: usize = 32;
+/// Steps at the present speed until all pairs are looked at again, at most; and at least, else they are looked at in each step.
+const STEPS: [f64; 2] = [32.0, 4.0];
+/// Pairs that are further apart than this share of the skin are not computed.
+const CLOSE: f64 = 1.0 / 16.0;
+
+/// Pairs closer than this, m, are computed until a particle may have moved almost half of it: then none of the others can have met, however places are rounded.
+/// 0 where that would be soon: then all pairs are looked at in each step.
+pub(super) fn close_m(contacts: &Contacts) -> f64 {
+    let [most_m, least_m] = STEPS.map(|steps| 2.0 * steps * contacts.moved_m);
+    let close_m = most_m.min(CLOSE * contacts.skin_m);
+    if close_m < least_m { 0.0 } else { close_m }
+}
+
+/// Lists the contacts of a share that are close.
+#[inline(always)]
+pub(super) fn look<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
+    for [of_border, own] in &mut share.close {
+        of_border.clear();
+        own.clear();
+    }
+    find_border(share, scene);
+    find_own::<T>(proof, share, scene);
+}
+
+/// Lists the contacts of the border that are close.
+fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
+    let (contacts, poses) = (scene.contacts, scene.poses);
+    for (n, &at) in (0..).zip(&share.border) {
+        let pair = contacts.pairs[at as usize];
+        let [a, b] = pair.map(|i| &poses[i as usize]);
+        let reach = a.radius_m() + b.radius_m() + contacts.close_m;
+        if (b.place() - a.place()).norm_squared() < reach * reach {
+            share.close[contacts.kind(pair)][0].push(n);
+        }
+    }
+}
+
+/// Lists those of its own contacts that are close, or were at the look before: they may have an end to book.
+#[inline(always)]
+fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
+    let poses = scene.poses;
+    let own = share.own.clone();
+    let pairs = &scene.contacts.pairs[..own.end];
+    let close_m = T::all(proof, scene.contacts.close_m);
+    let (of_first_kind, of_others) = share.close.split_at_mut(1);
+    let list = &mut of_first_kind[0][1];
+    list.resize(own.len() + MOST, 0);
+    let close = &mut list[..];
+    let mut count = 0;
+    for (first, was_close) in own.clone().step_by(MOST).zip(&mut share.was_close) {
+        for &[_, soon] in pairs
+            .get(first + AHEAD..first + AHEAD + MOST)
+            .unwrap_or_default()
+        {
+            fetch_soon(&poses[soon as usize]);
+        }
+        let eight = &pairs[first..(first + MOST).min(own.end)];
+        let now = near::<T>(proof, eight, poses, close_m);
+        // Whether they are close cannot be foretold, so there is no branch on it.
+        let listed = usize::from(now | *was_close);
+        *was_close = now;
+        for lane in 0..MOST {
+            close[count] = (first + lane) as u32;
+            count += listed >> lane & 1;
+        }
+    }
+    list.truncate(count);
+    if !of_others.is_empty() {
+        list.retain(|&at| {
+            let kind = scene.contacts.kind(pairs[at as usize]);
+            if kind > 0 {
+                of_others[kind - 1][1].push(at);
+            }
+            kind == 0
+        });
+    }
+}
+
+/// For each of up to eight pairs a bit, from the lowest on: whether the two are closer than `close_m`.
+#[inline(always)]
+fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: T) -> u8 {
+    let mut bits = 0;
+    for first in (0..pairs.len()).step_by(T::COUNT) {
+        let row = |lane: usize, end: usize| {
+            let pair = pairs[(first + lane).min(pairs.len() - 1)];
+            poses[pair[end] as usize].position_m
+        };
+        let [ax, ay, az, radius_a] = T::columns(proof, |lane| row(lane, 0));
+        let [bx, by, bz, radius_b] = T::columns(proof, |lane| row(lane, 1));
+        let reach = radius_a + radius_b + close_m;
+        let apart = Triple(bx - ax, by - ay, bz - az);
+        bits |= (reach * reach).above(apart.square()) << first;
+    }
+    bits & (0xff >> (MOST - pairs.len()))
+}

@@ -1,0 +1,76 @@
+//! What contacts store and what they have lost.
+
+use crate::physics::contact::NormalLaw;
+use crate::physics::contact::rolling::RollingFriction;
+use crate::physics::contact::touch::{Touch, touch};
+use crate::stages::motion::{ordered_sum, ordered_sums};
+use crate::state::contacts::{Contacts, Law, Memory, Rolling};
+use crate::state::particles::{Particles, Pose};
+
+/// Overlap of two particles, m; below 0 where they are apart.
+pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
+    let [a, b] = pair.map(|i| &poses[i as usize]);
+    a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
+}
+
+/// Elastic energy of all contacts, J.
+pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
+    ordered_sum(contacts.pairs.len(), |at| {
+        contact_energy_j(contacts, particles, at)
+    })
+}
+
+/// Elastic energy of contact `at`, J.
+pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -> f64 {
+    if contacts.memories[at] == Memory::default() {
+        return 0.0;
+    }
+    let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
+    match &kind.law {
+        Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+        Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
+    }
+}
+
+/// Elastic energy of a contact as it was taken down, J.
+fn stored_j(
+    contacts: &Contacts,
+    particles: &Particles,
+    at: usize,
+    law: &impl NormalLaw<f64>,
+    rolling: &Rolling,
+) -> f64 {
+    let ends = contacts.pairs[at].map(|end| end as usize);
+    let memory = &contacts.memories[at];
+    let [a, b] = ends.map(|i| particles.poses[i].place());
+    let balls = ends.map(|i| particles.ball_at_rest(i));
+    let mut touch = touch((b - a).into(), balls, 0.0);
+    touch.overlap_m = memory.overlap_m();
+    stored_energy_j(law, rolling, &touch, memory)
+}
+
+/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.
+pub(in crate::stages) fn stored_energy_j(
+    law: &impl NormalLaw<f64>,
+    rolling: &Rolling,
+    touch: &Touch,
+    memory: &Memory,
+) -> f64 {
+    let grip = law.grip(touch, touch.overlap_m, 0.0);
+    let stiffness = match rolling {
+        Rolling::Free => 0.0,
+        Rolling::Constant(rolling) => rolling.linearised(&grip, touch)[0],
+        Rolling::Spring(rolling) => rolling.linearised(&grip, touch)[0],
+    };
+    let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
+    grip.energy_j
+        + 0.5 * grip.tangential_n_m[1] * square(memory.slid)
+        + 0.5 * stiffness * square(memory.rolled)
+}
+
+/// Energy that friction and that damping took so far, J.
+pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
+    let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
+    let [gone_friction, gone_damping] = contacts.lost_by_gone_j;
+    [friction + gone_friction, damping + gone_damping]
+}
