@@ -19,7 +19,7 @@ use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// With more, spheres that grow to full size jam in large numbers.
-const LARGEST_SETTLE: f64 = 0.06;
+const LARGEST_SETTLE: f64 = crate::room::SHARES[1];
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
 #[derive(Debug, Parser)]
@@ -148,7 +148,7 @@ struct PackArguments {
         help_heading = "Spheres"
     )]
     seed_point: Option<String>,
-    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.06.
+    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.08.
     /// If not given, 0.02 to 0.044: less for sizes that differ much and for thin shapes
     #[arg(
         long,

@@ -16,6 +16,7 @@ pub mod make;
 pub mod pack;
 pub mod quality;
 mod rims;
+pub mod room;
 pub mod seed;
 pub mod settle;
 pub mod sizes;

@@ -5,8 +5,9 @@ use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance
 use crate::boundary::Boundary;
 use crate::density::{DensitySearch, pack_to_density};
 use crate::depth_map::DepthMap;
-use crate::pack::{PackHistory, PackSettings, Progress, pack, to_metres};
+use crate::pack::{PackHistory, PackSettings, Progress, WIDEST_FILLED, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
+use crate::sizes::Sizes;
 use dem_io::body::About;
 use dem_io::units::significant;
 use dem_io::{Body, Result, Surface};
@@ -151,8 +152,10 @@ pub fn make_body(
     quality
         .warnings
         .extend(density_search.as_ref().and_then(DensitySearch::warning));
-    let jammed = jam_warning(&packing.history, spheres.radii.len());
-    quality.warnings.extend(jammed);
+    let history = &packing.history;
+    let jammed = jam_warning(history, spheres.radii.len());
+    let open = void_warning(history, &settings.packing.sizes);
+    quality.warnings.extend(jammed.into_iter().chain(open));
     seconds.report += started.elapsed().as_secs_f64();
 
     let body = Body {
@@ -202,6 +205,17 @@ fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
             history.taken_out,
             significant(100.0 * share, 2),
             significant(0.8 * history.settle, 2)
+        )
+    })
+}
+
+/// What a person should know if voids are left although the sizes would not forbid to fill them.
+fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
+    let are_alike = sizes.max_m() <= WIDEST_FILLED * sizes.min_m();
+    (are_alike && history.voids_left > 0).then(|| {
+        format!(
+            "about {} voids would take the smallest sphere: to fill them all would change the sizes; take smaller particles, or less different ones",
+            history.voids_left
         )
     })
 }

@@ -4,8 +4,9 @@ use crate::boundary::Boundary;
 use crate::front::{Front, FrontSettings};
 use crate::grid::Ball;
 use crate::inside::is_inside;
+use crate::room::{Room, first_share};
 use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
-use crate::settle::{default_share, settle};
+use crate::settle::{WhenJammed, settle};
 use crate::sizes::Sizes;
 use crate::{Spheres, Vector3};
 use dem_io::units::{show_length, significant};
@@ -24,7 +25,7 @@ pub struct PackSettings {
     pub overlap: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// The front runs at radii smaller by this share; then they grow to full size. 0: the bare front. None: as [`default_share`] says.
+    /// The front runs at radii smaller by this share; then they grow to full size. 0: the bare front. None: by as much as leaves the [`Room`] wanted.
     pub settle: Option<f64>,
     /// Where the front begins, in metres; the deepest point if not given. Length 3.
     pub seed_point_m: Option<[f64; 3]>,
@@ -77,7 +78,7 @@ pub struct Packing {
 const SEED_SPACING: f64 = 8.0;
 
 /// The bare front fills all voids where the largest radius is at most so many times the smallest.
-const WIDEST_FILLED: f64 = 1.5 + 1e-6;
+pub const WIDEST_FILLED: f64 = 1.5 + 1e-6;
 
 /// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
 /// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
@@ -86,6 +87,12 @@ const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0,
 /// does, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
+
+/// Fronts at most until one leaves the room that settling wants; in small bodies it differs by chance.
+const MOST_FRONTS: usize = 4;
+/// By this factor a front runs at less smaller radii where the spheres of the one before have jammed, and how often that is done before some are taken out.
+const AFTER_JAM: f64 = 0.93;
+const MOST_JAMS: usize = 3;
 
 /// Spheres at most: some 30 GB.
 const MOST_SPHERES: f64 = 1e8;
@@ -125,112 +132,137 @@ pub fn pack(
         &settings.sizes,
         history.largest_inscribed_diameter_m,
     )?;
-    let share = settings.settle.unwrap_or_else(|| {
-        let sizes = &settings.sizes;
-        default_share(
-            sizes.spread(),
-            sizes.mean_m() / history.largest_inscribed_diameter_m,
-        )
-    });
     // Rounded for the same reason as the radii.
-    let share = (1e6 * share).round() * 1e-6;
-    history.settle = share;
+    let rounded_share = |share: f64| (1e6 * share).round() * 1e-6;
+    let mut share = rounded_share(
+        settings
+            .settle
+            .unwrap_or_else(|| first_share(&settings.sizes)),
+    );
+    let room = Room::of(surface, &settings.sizes, settings.overlap);
     let seed = seed_point(surface, boundary, settings, &deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
-    let shrink = 1.0 - share;
     let exact_range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
     let step = rounding_step(exact_range[1]);
     let rounded = |r: f64| (r / step).round() * step;
     let full = |u: f64| rounded(0.5 * settings.sizes.quantile_by_number(u) / unit);
-    let small = |u: f64| shrink * full(u);
     let range = exact_range.map(rounded);
-    let expected = 0.58 * surface.volume_m3()
-        / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
-            .max(f64::MIN_POSITIVE);
-    if expected > MOST_SPHERES {
-        return Err(Diagnostic::input(
-            surface.source.clone(),
-            format!(
-                "about {} spheres would fill it, at most {MOST_SPHERES:e} can be handled",
-                significant(expected, 2)
-            ),
-            "ask for larger diameters, or check the units of --diameter and --unit",
-        ));
-    }
-    // Wider sizes have fewer small spheres than voids: to place them all would change the sizes.
-    let fills_voids = share == 0.0 && range[1] <= WIDEST_FILLED * range[0];
-    let front_settings = |expected: f64, most_too_many: f64| FrontSettings {
-        radius: &small,
-        radius_range: range.map(|r| shrink * r),
-        overlap: settings.overlap,
-        wall_factor: (1.0 - 1e-12) / shrink,
-        most_cells: MORE_CELLS + expected as usize,
-        expected,
-        fills_voids,
-        most_too_many,
-        seed: settings.seed,
-    };
     let extent = Vector3::from(surface.extent());
-    let diameter = 2.0 * range[1] * shrink / (1.0 + settings.overlap);
-    let seeds = front_seeds(surface, boundary, settings, &seed, share > 0.0, diameter);
-    let mut front = Front::new(
-        front_settings(expected, MOST_TOO_MANY[0]),
-        boundary,
-        &extent,
-    );
-    let mut next = 1;
+    let (mut balls, mut fills_voids);
+    let (mut fronts, mut jams) = (0, 0);
     loop {
-        history.attempts += 1;
-        history.fronts = 0;
-        run_fronts(
-            &mut front,
+        let shrink = 1.0 - share;
+        let small = |u: f64| shrink * full(u);
+        fronts += 1;
+        let expected = 0.58 * surface.volume_m3()
+            / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
+                .max(f64::MIN_POSITIVE);
+        if expected > MOST_SPHERES {
+            return Err(Diagnostic::input(
+                surface.source.clone(),
+                format!(
+                    "about {} spheres would fill it, at most {MOST_SPHERES:e} can be handled",
+                    significant(expected, 2)
+                ),
+                "ask for larger diameters, or check the units of --diameter and --unit",
+            ));
+        }
+        // Wider sizes have fewer small spheres than voids: to place them all would change the sizes.
+        fills_voids = share == 0.0 && range[1] <= WIDEST_FILLED * range[0];
+        let front_settings = |expected: f64, most_too_many: f64| FrontSettings {
+            radius: &small,
+            radius_range: range.map(|r| shrink * r),
+            overlap: settings.overlap,
+            wall_factor: (1.0 - 1e-12) / shrink,
+            most_cells: MORE_CELLS + expected as usize,
+            expected,
+            fills_voids,
+            most_too_many,
+            seed: settings.seed,
+        };
+        let diameter = 2.0 * range[1] * shrink / (1.0 + settings.overlap);
+        let seeds = front_seeds(surface, boundary, settings, &seed, share > 0.0, diameter);
+        let mut front = Front::new(
+            front_settings(expected, MOST_TOO_MANY[0]),
             boundary,
-            &seeds,
-            &inner,
-            &mut history,
-            &|placed| progress("front", placed as f64 / expected),
-        )?;
-        let placed = front.balls.len() as f64;
-        let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
-        let is_true =
-            front.ledger.imbalance() < most_imbalance * placed.sqrt() && !front.has_left_voids();
-        if !fills_voids || is_true || next == MOST_TOO_MANY.len() {
-            break;
+            &extent,
+        );
+        let mut next = 1;
+        loop {
+            history.attempts += 1;
+            history.fronts = 0;
+            run_fronts(
+                &mut front,
+                boundary,
+                &seeds,
+                &inner,
+                &mut history,
+                &|placed| progress("front", placed as f64 / expected),
+            )?;
+            let placed = front.balls.len() as f64;
+            let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
+            let is_true = front.ledger.imbalance() < most_imbalance * placed.sqrt()
+                && !front.has_left_voids();
+            if !fills_voids || is_true || next == MOST_TOO_MANY.len() {
+                break;
+            }
+            // Where too few small spheres can be kept back for all voids, more attempts would not change that.
+            if history.attempts == 1 && front.has_left_voids() {
+                next = MOST_TOO_MANY.len() - 1;
+            }
+            let ledger = front.ledger.corrected();
+            let most_too_many = MOST_TOO_MANY[next];
+            next += 1;
+            front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
+            // Nothing is kept back where voids are left anyway.
+            if next < MOST_TOO_MANY.len() {
+                front.ledger = ledger;
+            }
         }
-        // Where too few small spheres can be kept back for all voids, more attempts would not change that.
-        if history.attempts == 1 && front.has_left_voids() {
-            next = MOST_TOO_MANY.len() - 1;
-        }
-        let ledger = front.ledger.corrected();
-        let most_too_many = MOST_TOO_MANY[next];
-        next += 1;
-        front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
-        // Nothing is kept back where voids are left anyway.
-        if next < MOST_TOO_MANY.len() {
-            front.ledger = ledger;
-        }
-    }
-    history.unplaced = front.waiting.len();
-    history.void_fillers = front.fillers;
-    history.loose_fillers = front.loose;
-    let mut balls = std::mem::take(&mut front.balls);
-    history.voids_left = front.voids_left();
-    sort_along_curve(&mut balls, range[1]);
-    history.front_seconds = started.elapsed().as_secs_f64();
-
-    if share > 0.0 {
-        let started = Instant::now();
+        history.unplaced = front.waiting.len();
+        history.void_fillers = front.fillers;
+        history.loose_fillers = front.loose;
+        balls = std::mem::take(&mut front.balls);
+        history.voids_left = front.voids_left();
         for ball in &mut balls {
             ball[3] /= shrink;
         }
-        let settled = settle(boundary, &mut balls, settings.overlap, &|done| {
-            progress("settling", done)
-        })?;
+        let better = room.better_share(share, volume(&balls)).map(rounded_share);
+        if let (None, 0, Some(better)) = (settings.settle, jams, better)
+            && fronts < MOST_FRONTS
+        {
+            share = better;
+            continue;
+        }
+        sort_along_curve(&mut balls, range[1]);
+        if share == 0.0 {
+            break;
+        }
+        let settling = Instant::now();
+        let when_jammed = if settings.settle.is_none() && jams < MOST_JAMS {
+            WhenJammed::Stop
+        } else {
+            WhenJammed::TakeOut
+        };
+        let settled = settle(
+            boundary,
+            &mut balls,
+            settings.overlap,
+            when_jammed,
+            &|done| progress("settling", done),
+        )?;
         history.settling_steps = settled.steps;
         history.taken_out = settled.taken_out;
-        history.settle_seconds = started.elapsed().as_secs_f64();
+        history.settle_seconds += settling.elapsed().as_secs_f64();
+        if !settled.is_stopped {
+            break;
+        }
+        jams += 1;
+        share = rounded_share(AFTER_JAM * share);
     }
+    history.settle = share;
+    history.front_seconds = started.elapsed().as_secs_f64() - history.settle_seconds;
 
     if !fills_voids {
         let started = Instant::now();
@@ -277,6 +309,12 @@ pub fn pack(
             .collect(),
     };
     Ok(Packing { spheres, history })
+}
+
+/// Volume of spheres, as if none overlapped another.
+fn volume(balls: &[Ball]) -> f64 {
+    let cubes: f64 = balls.iter().map(|ball| ball[3].powi(3)).sum();
+    4.0 / 3.0 * std::f64::consts::PI * cubes
 }
 
 /// A local point in metres.

@@ -52,12 +52,13 @@ const FAR: f64 = 1e6;
 /// Neighbours handled at once.
 const LANES: usize = 4;
 
-/// The share by which the radii of a front are smaller before settling, unless given: about a tenth below the share from which on spheres jam.
-/// That share was found to be less for sizes that differ much, which fill better from the start, and in thin shapes, where the wall takes the
-/// room to move. `spread` is the standard deviation of the sizes over their mean, `across` the mean size over the diameter of the largest ball
-/// inside the shape.
-pub fn default_share(spread: f64, across: f64) -> f64 {
-    (0.044 - 0.05 * spread - 0.05 * (across - 0.08).max(0.0)).max(0.02)
+/// What is to be done with spheres that are jammed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WhenJammed {
+    /// A few are taken out, until the rest has room.
+    TakeOut,
+    /// Settling ends: they are to be fewer from the start.
+    Stop,
 }
 
 /// How a settling run ended.
@@ -67,6 +68,8 @@ pub struct Settled {
     pub steps: usize,
     /// Spheres taken out because they were jammed.
     pub taken_out: usize,
+    /// Whether it was stopped because spheres were jammed: they still overlap.
+    pub is_stopped: bool,
 }
 
 /// Spheres with what the minimiser knows of them.
@@ -87,7 +90,7 @@ struct State<'a> {
     largest_move: f64,
 }
 
-/// Moves `balls` (centre, reduced radius at full size) until none overlaps another or the wall. Where they are jammed, a few are taken out:
+/// Moves `balls` (centre, reduced radius at full size) until none overlaps another or the wall. Where they are jammed, some are taken out, if that is wanted:
 /// of the pairs that overlap most the one with the higher index, which favours no size, and spheres that overlap the wall as much.
 ///
 /// `progress` is told the share of the work done.
@@ -98,11 +101,13 @@ pub fn settle(
     boundary: &Boundary,
     balls: &mut Vec<Ball>,
     overlap: f64,
+    when_jammed: WhenJammed,
     progress: &dyn Fn(f64) -> Result<()>,
 ) -> Result<Settled> {
     let mut settled = Settled {
         steps: 0,
         taken_out: 0,
+        is_stopped: false,
     };
     if balls.is_empty() {
         return Ok(settled);
@@ -129,6 +134,10 @@ pub fn settle(
             ));
         }
         if settled.steps >= patience {
+            if when_jammed == WhenJammed::Stop {
+                settled.is_stopped = true;
+                return Ok(settled);
+            }
             patience += PATIENCE[1];
             settled.taken_out += state.take_out_jammed(share);
             share = TAKEN_OUT[1].min(2.0 * share);

@@ -83,14 +83,19 @@ impl Sizes {
         self.number.mean
     }
 
-    /// Standard deviation over mean of the diameters, by number; to about 1e-3.
-    pub fn spread(&self) -> f64 {
+    /// Standard deviation over mean of the diameters, by number, and their skewness (0 for one size); to about 1e-3.
+    pub fn spread_and_skewness(&self) -> [f64; 2] {
         const PARTS: u32 = 1000;
-        let squares: f64 = (0..PARTS)
-            .map(|k| self.quantile_by_number((f64::from(k) + 0.5) / f64::from(PARTS)))
-            .map(|d| (d / self.mean_m() - 1.0).powi(2))
-            .sum();
-        (squares / f64::from(PARTS)).sqrt()
+        let off = |k: u32| {
+            let u = (f64::from(k) + 0.5) / f64::from(PARTS);
+            self.quantile_by_number(u) / self.mean_m() - 1.0
+        };
+        let moment = |n: i32| (0..PARTS).map(|k| off(k).powi(n)).sum::<f64>() / f64::from(PARTS);
+        let spread = moment(2).sqrt();
+        if spread < 1e-6 {
+            return [0.0; 2];
+        }
+        [spread, moment(3) / spread.powi(3)]
     }
 
     /// Mean volume of a particle, by number, m3.

@@ -65,10 +65,10 @@ fn numbers_out_of_range() {
             &["--overlap", "below 1"],
         );
     }
-    for value in ["0.5", "0.061", "-0.1", "nan"] {
+    for value in ["0.5", "0.081", "-0.1", "nan"] {
         assert_refused(
             &["-d", "2mm", "--settle", value],
-            &["--settle", &value.replace("nan", "NaN"), "at most 0.06"],
+            &["--settle", &value.replace("nan", "NaN"), "at most 0.08"],
         );
     }
     for value in ["0", "-1", "3", "nan"] {

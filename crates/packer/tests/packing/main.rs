@@ -9,6 +9,7 @@ mod front;
 mod halo;
 mod inside;
 mod pack;
+mod room;
 mod seed;
 mod settle;
 mod solids;

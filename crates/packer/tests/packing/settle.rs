@@ -7,7 +7,7 @@ use dem_pack::Vector3;
 use dem_pack::boundary::Boundary;
 use dem_pack::grid::Ball;
 use dem_pack::inside::is_inside;
-use dem_pack::settle::{Settled, settle};
+use dem_pack::settle::{Settled, WhenJammed, settle};
 use std::f64::consts::PI;
 
 /// Spheres at random places inside until their reduced volumes are this share of the solid, none nearer to another or to the
@@ -66,7 +66,10 @@ fn assert_clouds_settle(apart: f64) {
     for (name, facets, share, overlap, seed) in cases {
         let (facets, mut balls, boundary) = cloud(&facets, share, [0.8, 1.2], overlap, apart, seed);
         let before = sizes_of(&balls);
-        let settled = settle(&boundary, &mut balls, overlap, &|_| Ok(())).unwrap();
+        let settled = settle(&boundary, &mut balls, overlap, WhenJammed::TakeOut, &|_| {
+            Ok(())
+        })
+        .unwrap();
         assert_settled(name, &facets, &balls, overlap);
         assert!(settled.steps > 0, "{name}");
         let after = sizes_of(&balls);
@@ -98,7 +101,7 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     let (facets, mut balls, boundary) =
         cloud(&cuboid([10.0, 8.0, 7.0]), 0.68, [0.9, 1.3], 0.0, 0.67, 4);
     let before = balls.len();
-    let settled = settle(&boundary, &mut balls, 0.0, &|_| Ok(())).unwrap();
+    let settled = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_settled("jammed", &facets, &balls, 0.0);
     assert!(settled.taken_out > 0);
     assert_eq!(balls.len(), before - settled.taken_out);
@@ -117,7 +120,7 @@ fn spheres_that_only_the_wall_jams_are_taken_out() {
     let mut balls: Vec<Ball> = [(1.5, 1.1), (3.5, 0.9), (5.5, 1.1), (7.5, 0.9), (8.9, 0.5)]
         .map(|(x, radius)| [local(x), local(4.0), local(1.0), local(radius)])
         .to_vec();
-    let settled = settle(&boundary, &mut balls, 0.0, &|_| Ok(())).unwrap();
+    let settled = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_eq!(settled.taken_out, 2);
     let left: Vec<f64> = sizes_of(&balls)
         .iter()
@@ -144,10 +147,11 @@ fn what_does_not_overlap_stays_where_it_is() {
         .collect();
     let before = balls.clone();
     assert_eq!(
-        settle(&boundary, &mut balls, 0.0, &|_| Ok(())).unwrap(),
+        settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap(),
         Settled {
             steps: 0,
-            taken_out: 0
+            taken_out: 0,
+            is_stopped: false
         }
     );
     for (a, b) in balls.iter().zip(&before) {
@@ -160,7 +164,7 @@ fn what_does_not_overlap_stays_where_it_is() {
 fn two_spheres_part_along_the_line_of_their_centres() {
     let (_, boundary) = surface_of(&cuboid([10.0, 10.0, 10.0]));
     let mut balls = vec![[0.55, 0.6, 0.6, 0.1], [0.7, 0.6, 0.6, 0.1]];
-    settle(&boundary, &mut balls, 0.0, &|_| Ok(())).unwrap();
+    settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert!(balls[1][0] - balls[0][0] >= 0.2);
     assert!((balls[0][0] + balls[1][0] - 1.25).abs() < 1e-12);
     assert!(
@@ -175,14 +179,14 @@ fn no_spheres_and_one_sphere() {
     let (_, boundary) = surface_of(&cuboid([10.0, 10.0, 10.0]));
     let mut none = Vec::new();
     assert_eq!(
-        settle(&boundary, &mut none, 0.0, &|_| Ok(()))
+        settle(&boundary, &mut none, 0.0, WhenJammed::TakeOut, &|_| Ok(()))
             .unwrap()
             .steps,
         0
     );
     // Pushed away from the wall to where it fits.
     let mut one = vec![[0.05, 0.6, 0.6, 0.1]];
-    settle(&boundary, &mut one, 0.0, &|_| Ok(())).unwrap();
+    settle(&boundary, &mut one, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_eq!(one.len(), 1);
     assert!(one[0][0] >= 0.1);
 }
@@ -190,7 +194,7 @@ fn no_spheres_and_one_sphere() {
 #[test]
 fn what_progress_says_ends_it() {
     let (_, mut balls, boundary) = cloud(&cuboid([10.0, 8.0, 7.0]), 0.3, [0.8, 1.2], 0.0, 0.6, 9);
-    let stopped = settle(&boundary, &mut balls, 0.0, &|_| {
+    let stopped = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| {
         Err(dem_io::Diagnostic::failed("here", "stopped", ""))
     });
     assert_eq!(stopped.unwrap_err().problem, "stopped");
