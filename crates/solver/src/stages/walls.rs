@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::loads::factor_at;
-use crate::geometry::{Frame, Touch};
+use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::Damped;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::NoRolling;
@@ -77,6 +77,7 @@ pub fn wall_wrenches(
         let known = &*particles;
         let to_wall = wall.frame.all_to_wall();
         let bounds = wall.shape.bounds();
+        let is_solid = matches!(wall.shape, Shape::Box(_) | Shape::Cylinder(_));
         let of_chunk = |some: &[u32]| {
             let (mut found, mut touches) = (Vec::new(), Vec::new());
             let first = some.first().copied().unwrap_or(0);
@@ -98,7 +99,13 @@ pub fn wall_wrenches(
                     let at = |there: &Touch, old: Option<&WallTouch>| {
                         meet_at(wall, kind, known, particle, there, old, *least_overlap, dt)
                     };
+                    let first_found = found.len();
                     meet(&wall.frame, pose, &touches, before, &at, &mut found);
+                    if is_solid
+                        && let (Some(met), true) = (found.get_mut(first_found), !touches.is_empty())
+                    {
+                        met.crossed |= comes_out_behind(&met.touch, before);
+                    }
                 }
             }
             found
@@ -189,6 +196,14 @@ fn meet(
             found.push(at(&there, Some(old)));
         }
     }
+}
+
+/// Whether a particle touches a solid from the other side than a step before: it went through one that is thinner than itself.
+fn comes_out_behind(touch: &WallTouch, before: &[WallTouch]) -> bool {
+    let normal = Vector3::from(touch.normal);
+    before
+        .iter()
+        .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
 }
 
 /// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat part to the next, that of a feature which it

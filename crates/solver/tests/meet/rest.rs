@@ -149,6 +149,28 @@ fn a_particle_that_is_pushed_through_a_wall_is_caught() {
     assert_eq!(state.walls[0].crossed, Some(0));
 }
 
+/// What is thinner than the particle has two sides at once: the far one pushed it out behind, with its speed, and nobody noticed.
+#[test]
+fn a_particle_that_is_shot_through_a_thin_wall_is_caught() {
+    for wall in [
+        "box = { min = [-1, -1, -1e-3], max = [1, 1, 0] }",
+        "cylinder = { from = [-1, 0, -1e-3], to = [1, 0, -1e-3], radius = 1e-3 }",
+    ] {
+        let text = scene(wall).replace("restitution = 0.05", "restitution = 1");
+        let text = text.replace("0, 0, 0.005,", "1e-4, 2e-4, 0.006,");
+        let text = text.replace(
+            "bodies.ball = { ",
+            "bodies.ball = { velocity = [0, 0, -200], ",
+        );
+        let Plan { mut state, .. } = planned(&text);
+        while state.walls[0].crossed.is_none() && state.particles.poses[0].place().z > -0.1 {
+            step(&mut state);
+            assert!(state.time_s < 1e-2, "{wall}: it came back");
+        }
+        assert_eq!(state.walls[0].crossed, Some(0), "{wall}");
+    }
+}
+
 #[test]
 fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
     let head = "version = 1\nrun.end_time = 0.2\n\

@@ -13,10 +13,16 @@ pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
     a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
 }
 
-/// Elastic energy of all contacts, J.
+/// Elastic energy of all contacts, J. Summed by particles: near pairs that do not touch, which a resumed run may list others of, do not change its last bit.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
-    ordered_sum(contacts.pairs.len(), |at| {
-        contact_energy_j(contacts, particles, at)
+    ordered_sum(particles.len(), |i| {
+        let first = contacts.pairs.partition_point(|&[a, _]| (a as usize) < i);
+        let own = contacts.pairs[first..]
+            .iter()
+            .take_while(|[a, _]| *a as usize == i);
+        (first..first + own.count())
+            .map(|at| contact_energy_j(contacts, particles, at))
+            .sum()
     })
 }
 
