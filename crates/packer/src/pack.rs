@@ -79,13 +79,20 @@ const SEED_SPACING: f64 = 8.0;
 /// The bare front fills all voids where the largest radius is at most so many times the smallest.
 const WIDEST_FILLED: f64 = 1.5 + 1e-6;
 
-/// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
-/// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
-const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.5];
+/// How many small spheres too many there may be in a bare front for voids to be filled, in roots of the number of spheres: at first many times
+/// what chance does, to learn how many voids there are (10 in a ball of half a million spheres, less in all else that can be filled);
+/// in the last attempt a third of it, whatever voids that leaves.
+const MOST_TOO_MANY: [f64; 2] = [20.0, 0.5];
+/// Runs of a bare front at most.
+const MOST_ATTEMPTS: usize = 9;
 /// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance
 /// does, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
+/// The next attempt is the last one where the number is off by more than so many roots, what chance does, and by more than this part of what it
+/// was off by in the attempt before: what can be evened out falls to a third or less while it is that much.
+const HOPELESS_IMBALANCE: f64 = 1.36;
+const SLOWEST_FALL: f64 = 0.6;
 
 /// Spheres at most: some 30 GB.
 const MOST_SPHERES: f64 = 1e8;
@@ -179,7 +186,7 @@ pub fn pack(
         boundary,
         &extent,
     );
-    let mut next = 1;
+    let (mut is_last, mut last_imbalance) = (!fills_voids, f64::INFINITY);
     loop {
         history.attempts += 1;
         history.fronts = 0;
@@ -192,22 +199,21 @@ pub fn pack(
             &|placed| progress("front", placed as f64 / expected),
         )?;
         let placed = front.balls.len() as f64;
+        let imbalance = front.ledger.imbalance() / placed.sqrt();
         let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
-        let is_true =
-            front.ledger.imbalance() < most_imbalance * placed.sqrt() && !front.has_left_voids();
-        if !fills_voids || is_true || next == MOST_TOO_MANY.len() {
+        if is_last || (imbalance < most_imbalance && !front.has_left_voids()) {
             break;
         }
         // Where too few small spheres can be kept back for all voids, more attempts would not change that.
-        if history.attempts == 1 && front.has_left_voids() {
-            next = MOST_TOO_MANY.len() - 1;
-        }
+        let is_hopeless = history.attempts == 1 && front.has_left_voids()
+            || imbalance > HOPELESS_IMBALANCE.max(SLOWEST_FALL * last_imbalance);
+        is_last = is_hopeless || history.attempts + 1 == MOST_ATTEMPTS;
+        last_imbalance = imbalance;
         let ledger = front.ledger.corrected();
-        let most_too_many = MOST_TOO_MANY[next];
-        next += 1;
+        let most_too_many = MOST_TOO_MANY[usize::from(is_last)];
         front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
         // Nothing is kept back where voids are left anyway.
-        if next < MOST_TOO_MANY.len() {
+        if !is_last {
             front.ledger = ledger;
         }
     }
