@@ -90,6 +90,8 @@ type FrontBall = (Ball, u32);
 /// filled at once. Others wait until the front is `LAG` shells farther: draws that were made meanwhile may have filled them.
 const MOST_AT_ONCE: f64 = 0.27;
 const LAG: u32 = 3;
+/// Voids filled in a block, about: of some 70 spheres one in eight fills a void.
+const FILLERS_OF_BLOCK: f64 = 10.0;
 /// Voids are counted up to this number, and extrapolated from there.
 const MOST_COUNTED: usize = 10_000;
 
@@ -373,25 +375,44 @@ impl<'a> Front<'a> {
                     stream,
                 })
                 .collect();
-            let draws = tasks.iter().map(|task| task.queue.len()).sum();
-            let most_too_many = match within {
-                Some(_) => MOST_AT_ONCE,
-                None => self.settings.most_too_many,
-            };
-            let rules = Rules {
-                within,
-                left_out: &self.ledger.shares_left_out(draws),
-                fills: self.ledger.too_many() < most_too_many * self.settings.expected.sqrt(),
-            };
-            let turns: Vec<Turn> = tasks
-                .into_par_iter()
-                .map_init(Workspace::default, |workspace, task| {
-                    self.advance_block(workspace, task, &rules)
-                })
-                .collect();
-            for turn in turns {
-                self.take(turn, within.is_some(), shells);
+            let mut tasks = tasks.into_iter();
+            while tasks.len() > 0 {
+                let tasks: Vec<Task> = tasks.by_ref().take(self.blocks_at_once()).collect();
+                let draws = tasks.iter().map(|task| task.queue.len()).sum();
+                let most_too_many = match within {
+                    Some(_) => MOST_AT_ONCE,
+                    None => self.settings.most_too_many,
+                };
+                let rules = Rules {
+                    within,
+                    left_out: &self.ledger.shares_left_out(draws),
+                    fills: self.fillers_allowed(most_too_many) > 0.0,
+                };
+                let turns: Vec<Turn> = tasks
+                    .into_par_iter()
+                    .map_init(Workspace::default, |workspace, task| {
+                        self.advance_block(workspace, task, &rules)
+                    })
+                    .collect();
+                for turn in turns {
+                    self.take(turn, within.is_some(), shells);
+                }
             }
+        }
+    }
+
+    /// How many more voids may be filled if there may be so many roots of the number of spheres too many small ones.
+    fn fillers_allowed(&self, most_too_many: f64) -> f64 {
+        most_too_many * self.settings.expected.sqrt() - self.ledger.too_many()
+    }
+
+    /// How many blocks may take a turn until the next look at the ledger: no more than fill the voids that may be filled at all.
+    fn blocks_at_once(&self) -> usize {
+        let allowed = self.fillers_allowed(self.settings.most_too_many);
+        if self.settings.fills_voids && allowed > 0.0 {
+            (allowed / FILLERS_OF_BLOCK).ceil() as usize
+        } else {
+            usize::MAX
         }
     }
 

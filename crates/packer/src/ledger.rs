@@ -21,15 +21,19 @@ impl Ledger {
         }
     }
 
-    /// For another attempt that keeps back what each class has had too many of in the end.
+    /// For another attempt that keeps back what each class has had too many of in the end, and what is more than all of it from the next
+    /// larger ones: the number of spheres up to most sizes is true then.
     pub fn corrected(&self) -> Self {
         let classes = self.placed.len();
+        let mut owed = 0.0;
         let mut shares: Vec<f64> = self
             .shares
             .iter()
             .zip(&self.placed)
             .map(|(share, placed)| {
-                (share - (placed / self.total.max(1.0) - 1.0 / classes as f64)).max(0.0)
+                let left = share - (placed / self.total.max(1.0) - 1.0 / classes as f64) - owed;
+                owed = (-left).max(0.0);
+                left.max(0.0)
             })
             .collect();
         let sum: f64 = shares.iter().sum();

@@ -80,13 +80,20 @@ const SEED_SPACING: f64 = 8.0;
 /// The bare front fills all voids where the largest radius is at most so many times the smallest.
 pub const WIDEST_FILLED: f64 = 1.5 + 1e-6;
 
-/// For each attempt of a bare front, how many small spheres too many there may be for voids to be filled, in roots of the number of spheres:
-/// at first many times what chance does, to learn how many voids there are; at last a third of it, whatever voids that leaves.
-const MOST_TOO_MANY: [f64; 9] = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.5];
+/// How many small spheres too many there may be in a bare front for voids to be filled, in roots of the number of spheres: at first many times
+/// what chance does, to learn how many voids there are (10 in a ball of half a million spheres, less in all else that can be filled);
+/// in the last attempt a third of it, whatever voids that leaves.
+const MOST_TOO_MANY: [f64; 2] = [20.0, 0.5];
+/// Runs of a bare front at most.
+const MOST_ATTEMPTS: usize = 9;
 /// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance
 /// does, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
+/// The next attempt is the last one where the number is off by more than so many roots, what chance does, and by more than this part of what it
+/// was off by in the attempt before: what can be evened out falls to a third or less while it is that much.
+const HOPELESS_IMBALANCE: f64 = 1.36;
+const SLOWEST_FALL: f64 = 0.6;
 
 /// Fronts at most until one leaves the room that settling wants; in small bodies it differs by chance.
 const MOST_FRONTS: usize = 4;
@@ -183,43 +190,18 @@ pub fn pack(
         };
         let diameter = 2.0 * range[1] * shrink / (1.0 + settings.overlap);
         let seeds = front_seeds(surface, boundary, settings, &seed, share > 0.0, diameter);
-        let mut front = Front::new(
-            front_settings(expected, MOST_TOO_MANY[0]),
+        let mut front = true_front(
+            &front_settings,
+            expected,
             boundary,
             &extent,
-        );
-        let mut next = 1;
-        loop {
-            history.attempts += 1;
-            history.fronts = 0;
-            run_fronts(
-                &mut front,
-                boundary,
-                &seeds,
-                &inner,
-                &mut history,
-                &|placed| progress("front", placed as f64 / expected),
-            )?;
-            let placed = front.balls.len() as f64;
-            let most_imbalance = MOST_IMBALANCE[usize::from(history.attempts > STRICT_ATTEMPTS)];
-            let is_true = front.ledger.imbalance() < most_imbalance * placed.sqrt()
-                && !front.has_left_voids();
-            if !fills_voids || is_true || next == MOST_TOO_MANY.len() {
-                break;
-            }
-            // Where too few small spheres can be kept back for all voids, more attempts would not change that.
-            if history.attempts == 1 && front.has_left_voids() {
-                next = MOST_TOO_MANY.len() - 1;
-            }
-            let ledger = front.ledger.corrected();
-            let most_too_many = MOST_TOO_MANY[next];
-            next += 1;
-            front = Front::new(front_settings(placed, most_too_many), boundary, &extent);
-            // Nothing is kept back where voids are left anyway.
-            if next < MOST_TOO_MANY.len() {
-                front.ledger = ledger;
-            }
-        }
+            &mut history,
+            &|front, history| {
+                run_fronts(front, boundary, &seeds, &inner, history, &|placed| {
+                    progress("front", placed as f64 / expected)
+                })
+            },
+        )?;
         history.unplaced = front.waiting.len();
         history.void_fillers = front.fillers;
         history.loose_fillers = front.loose;
@@ -309,6 +291,45 @@ pub fn pack(
             .collect(),
     };
     Ok(Packing { spheres, history })
+}
+
+/// Runs a front (`run`) of about so many spheres, as its settings are for this number and for how many small spheres too many there may be. Where it fills voids,
+/// again until its sizes are true, with sizes kept back that were too many.
+fn true_front<'a>(
+    settings: &dyn Fn(f64, f64) -> FrontSettings<'a>,
+    expected: f64,
+    boundary: &'a Boundary,
+    extent: &Vector3,
+    history: &mut PackHistory,
+    run: &dyn Fn(&mut Front<'a>, &mut PackHistory) -> Result<()>,
+) -> Result<Front<'a>> {
+    let mut front = Front::new(settings(expected, MOST_TOO_MANY[0]), boundary, extent);
+    let mut is_last = !front.settings.fills_voids;
+    let (mut attempts, mut last_imbalance) = (0, f64::INFINITY);
+    loop {
+        attempts += 1;
+        history.attempts += 1;
+        history.fronts = 0;
+        run(&mut front, history)?;
+        let placed = front.balls.len() as f64;
+        let imbalance = front.ledger.imbalance() / placed.sqrt();
+        let most_imbalance = MOST_IMBALANCE[usize::from(attempts > STRICT_ATTEMPTS)];
+        if is_last || (imbalance < most_imbalance && !front.has_left_voids()) {
+            return Ok(front);
+        }
+        // Where too few small spheres can be kept back for all voids, more attempts would not change that.
+        let is_hopeless = attempts == 1 && front.has_left_voids()
+            || imbalance > HOPELESS_IMBALANCE.max(SLOWEST_FALL * last_imbalance);
+        is_last = is_hopeless || attempts + 1 == MOST_ATTEMPTS;
+        last_imbalance = imbalance;
+        let ledger = front.ledger.corrected();
+        let most_too_many = MOST_TOO_MANY[usize::from(is_last)];
+        front = Front::new(settings(placed, most_too_many), boundary, extent);
+        // Nothing is kept back where voids are left anyway.
+        if !is_last {
+            front.ledger = ledger;
+        }
+    }
 }
 
 /// Volume of spheres, as if none overlapped another.

@@ -8,6 +8,13 @@ use crate::ledger::class_of;
 use crate::seed::climb;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use std::ops::Range;
+
+/// For a void the next smaller quantile is this part of the last: half of it on average, but never the same part. Halves of halves would fill
+/// all voids with a few sizes only, and so many more of those than can be kept back: in a ball, where the front comes to the whole wall last.
+const SMALLER: Range<f64> = 1.0 / 3.0..2.0 / 3.0;
+/// Quantiles tried at most: the last is some five hundredth of the first.
+const FILLERS_TRIED: usize = 9;
 
 /// What a block begins its turn with.
 pub(super) struct Task {
@@ -72,7 +79,7 @@ impl Front<'_> {
         let mut random = ChaCha8Rng::seed_from_u64(self.settings.seed);
         random.set_stream(task.stream);
         let mut turn = Turn::default();
-        let mut draw = || loop {
+        let draw = |random: &mut ChaCha8Rng| loop {
             let u = random.random::<f64>();
             let share = rules.left_out[class_of(u, rules.left_out.len())];
             if share == 0.0 || random.random::<f64>() >= share {
@@ -102,7 +109,7 @@ impl Front<'_> {
                 }
                 let mut drawn = None;
                 if rules.within.is_some() {
-                    let u = *waiting.get_or_insert_with(&mut draw);
+                    let u = *waiting.get_or_insert_with(|| draw(&mut random));
                     if u < too_large {
                         drawn = self
                             .best_place(workspace, &initial, self.radius(u), seed)
@@ -116,8 +123,9 @@ impl Front<'_> {
                 let (centre, u) = if let Some(drawn) = drawn {
                     drawn
                 } else if let Some(void) = void.filter(|_| rules.fills) {
-                    let filler =
-                        self.filler(workspace, &initial, &placed, &void, &mut too_large, seed);
+                    let filler = self
+                        .filler(workspace, &initial, &mut too_large, seed, &mut random)
+                        .unwrap_or_else(|| self.roomiest(&void, &placed));
                     turn.fillers += 1;
                     turn.loose += usize::from(filler.is_loose);
                     (filler.centre, filler.quantile)
@@ -155,33 +163,30 @@ impl Front<'_> {
         turn
     }
 
-    /// A sphere for a void around `front` that takes the smallest one at `void`: the first that fits as quantiles are halved.
+    /// A sphere for a void around `front`: the first that fits as quantiles become smaller, if one of some does.
     /// `too_large` is a quantile that does not fit, and becomes the smallest one known.
     fn filler(
         &self,
         workspace: &mut Workspace,
         front: &Ball,
-        placed: &[Ball],
-        void: &Vector3,
         too_large: &mut f64,
         seed: &Vector3,
-    ) -> Filler {
-        /// Halvings of the quantile at most.
-        const HALVINGS: i32 = 9;
-        for _ in 0..HALVINGS {
-            let quantile = 0.5 * too_large.min(1.0);
+        random: &mut ChaCha8Rng,
+    ) -> Option<Filler> {
+        for _ in 0..FILLERS_TRIED {
+            let quantile = random.random_range(SMALLER) * too_large.min(1.0);
             match self.best_place(workspace, front, self.radius(quantile), seed) {
                 Some(centre) => {
-                    return Filler {
+                    return Some(Filler {
                         centre,
                         quantile,
                         is_loose: false,
-                    };
+                    });
                 }
                 None => *too_large = quantile,
             }
         }
-        self.roomiest(void, placed)
+        None
     }
 
     /// The largest sphere for the void around a place that takes the smallest one.

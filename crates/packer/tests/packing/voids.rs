@@ -5,7 +5,7 @@ use super::facets::{Facets, Point, cuboid, prism};
 use super::solids::{icosphere, local_facets, surface_of, torus};
 use dem_io::Surface;
 use dem_pack::boundary::Boundary;
-use dem_pack::pack::{PackSettings, Packing, pack};
+use dem_pack::pack::{PackHistory, PackSettings, Packing, pack};
 use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
 
 /// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
@@ -127,7 +127,13 @@ fn bare_front(surface: &Surface, diameter: &str, overlap: f64, seed: u64) -> (Si
     (sizes, packing)
 }
 
-fn assert_full_and_true(name: &str, surface: &Surface, diameter: &str, overlap: f64, seed: u64) {
+fn assert_full_and_true(
+    name: &str,
+    surface: &Surface,
+    diameter: &str,
+    overlap: f64,
+    seed: u64,
+) -> PackHistory {
     let (sizes, packing) = bare_front(surface, diameter, overlap, seed);
     let facets = local_facets(surface);
     let radius = 0.5 * sizes.min_m() / surface.unit_m;
@@ -141,6 +147,11 @@ fn assert_full_and_true(name: &str, surface: &Surface, diameter: &str, overlap: 
         packing.history
     );
     assert_eq!(packing.history.voids_left, 0, "{name}");
+    assert_sizes_are_true(name, surface, &packing, &sizes);
+    packing.history
+}
+
+fn assert_sizes_are_true(name: &str, surface: &Surface, packing: &Packing, sizes: &Sizes) {
     let diameters: Vec<f64> = packing
         .spheres
         .radii
@@ -148,8 +159,8 @@ fn assert_full_and_true(name: &str, surface: &Surface, diameter: &str, overlap: 
         .map(|r| 2.0 * r * surface.unit_m)
         .collect();
     for fit in [
-        ks_distance_by_number(&diameters, &sizes),
-        ks_distance_by_mass(&diameters, &sizes),
+        ks_distance_by_number(&diameters, sizes),
+        ks_distance_by_mass(&diameters, sizes),
     ] {
         assert!(fit.passes(), "{name}: sizes are off, {fit:?}");
     }
@@ -215,6 +226,27 @@ fn no_void_is_left_that_takes_the_smallest_sphere() {
         let name = format!("{name}, {diameter}");
         assert_full_and_true(&name, &surface, diameter, overlap, k as u64);
     }
+}
+
+/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make up for small spheres put into voids.
+#[test]
+fn a_ball_is_full_and_true_after_a_few_attempts() {
+    let (surface, _) = surface_of(&icosphere(3, &|_| 10.0));
+    for seed in [1, 2] {
+        let history =
+            assert_full_and_true("ball of many spheres", &surface, "1mm..1.5mm", 0.25, seed);
+        assert!(history.attempts <= 5, "{history:?}");
+    }
+}
+
+#[test]
+fn where_voids_cannot_all_be_filled_sizes_are_true_and_attempts_few() {
+    let (surface, _) = surface_of(&icosphere(3, &|_| 10.0));
+    let (sizes, packing) = bare_front(&surface, "normal:1.25mm,0.05mm,1mm..1.5mm", 0.25, 1);
+    let history = &packing.history;
+    assert!(history.voids_left > 0, "{history:?}");
+    assert!(history.attempts <= 4, "{history:?}");
+    assert_sizes_are_true("few small ones", &surface, &packing, &sizes);
 }
 
 #[test]
