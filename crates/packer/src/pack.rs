@@ -98,6 +98,32 @@ const VOID_SEARCH_GROUP: usize = 2000;
 /// Told the stage and the share of it that is done (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
 
+/// What all packings of a shape have in common.
+#[derive(Debug, Clone)]
+pub struct Room {
+    /// Points spread over the inside.
+    inner: Vec<Inscribed>,
+    deepest: Inscribed,
+}
+
+impl Room {
+    /// The room inside the surface.
+    ///
+    /// # Errors
+    /// No point inside.
+    pub fn find(surface: &Surface, boundary: &Boundary) -> Result<Self> {
+        let inner = inner_points(boundary, surface);
+        let deepest = deepest_point(boundary, surface, &inner).ok_or_else(|| {
+            Diagnostic::input(
+                surface.source.clone(),
+                "no point inside the surface was found",
+                "check that it is closed and not flat",
+            )
+        })?;
+        Ok(Self { inner, deepest })
+    }
+}
+
 /// Fills the surface.
 ///
 /// # Errors
@@ -108,17 +134,33 @@ pub fn pack(
     settings: &PackSettings,
     progress: Progress,
 ) -> Result<Packing> {
+    let started = Instant::now();
+    let room = Room::find(surface, boundary)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let packing = pack_if(surface, boundary, &room, settings, &|_| true, progress)?;
+    let mut packing =
+        packing.ok_or_else(|| Diagnostic::failed(surface.source.clone(), "given up", ""))?;
+    packing.history.front_seconds += seconds;
+    Ok(packing)
+}
+
+/// Fills the surface, unless the front shows that the packing is not wanted: `is_wanted` is told the sum of the spheres' volumes
+/// over the volume of the shape before settling and filling, which take most of the time and change it little. None if it was not.
+///
+/// # Errors
+/// As [`pack`].
+pub fn pack_if(
+    surface: &Surface,
+    boundary: &Boundary,
+    room: &Room,
+    settings: &PackSettings,
+    is_wanted: &dyn Fn(f64) -> bool,
+    progress: Progress,
+) -> Result<Option<Packing>> {
     let mut history = PackHistory::default();
     let started = Instant::now();
     let unit = surface.unit_m;
-    let inner = inner_points(boundary, surface);
-    let deepest = deepest_point(boundary, surface, &inner).ok_or_else(|| {
-        Diagnostic::input(
-            surface.source.clone(),
-            "no point inside the surface was found",
-            "check that it is closed and not flat",
-        )
-    })?;
+    let Room { inner, deepest } = room;
     history.largest_inscribed_diameter_m = 2.0 * deepest.radius * unit;
     check_sizes_fit(
         surface,
@@ -135,7 +177,7 @@ pub fn pack(
     // Rounded for the same reason as the radii.
     let share = (1e6 * share).round() * 1e-6;
     history.settle = share;
-    let seed = seed_point(surface, boundary, settings, &deepest)?;
+    let seed = seed_point(surface, boundary, settings, deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
     let shrink = 1.0 - share;
@@ -187,7 +229,7 @@ pub fn pack(
             &mut front,
             boundary,
             &seeds,
-            &inner,
+            inner,
             &mut history,
             &|placed| progress("front", placed as f64 / expected),
         )?;
@@ -218,6 +260,11 @@ pub fn pack(
     history.voids_left = front.voids_left();
     sort_along_curve(&mut balls, range[1]);
     history.front_seconds = started.elapsed().as_secs_f64();
+    let enlarge = 1.0 + settings.overlap;
+    let at_full_size = balls.iter().map(|b| b[3] / shrink * enlarge);
+    if !is_wanted(filled_share(surface, at_full_size)) {
+        return Ok(None);
+    }
 
     if share > 0.0 {
         let started = Instant::now();
@@ -268,7 +315,6 @@ pub fn pack(
             "ask for smaller diameters",
         ));
     }
-    let enlarge = 1.0 + settings.overlap;
     let spheres = Spheres {
         positions: balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
         radii: balls
@@ -276,7 +322,15 @@ pub fn pack(
             .map(|b| (b[3] * enlarge).clamp(exact_range[0], exact_range[1]))
             .collect(),
     };
-    Ok(Packing { spheres, history })
+    Ok(Some(Packing { spheres, history }))
+}
+
+/// Sum of the volumes of spheres of these radii (local units) / volume of the shape.
+pub fn filled_share(surface: &Surface, radii: impl Iterator<Item = f64>) -> f64 {
+    let spheres: f64 = radii
+        .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
+        .sum();
+    spheres * surface.unit_m.powi(3) / surface.volume_m3()
 }
 
 /// A local point in metres.
