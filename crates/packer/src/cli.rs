@@ -8,6 +8,7 @@ use crate::density::LARGEST_OVERLAP;
 use crate::make::{MakeSettings, make_body};
 use crate::pack::PackSettings;
 use crate::sizes::{By, Sizes};
+use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
 use dem_io::safe_write::{need_folder_of, write_standard_output};
@@ -138,7 +139,13 @@ struct PackArguments {
     )]
     solid_density: Option<String>,
     /// Random numbers: the same seed gives the same body
-    #[arg(long, default_value_t = 1, help_heading = "Spheres")]
+    #[arg(
+        long,
+        default_value_t = 1,
+        value_parser = parse_seed,
+        allow_negative_numbers = true,
+        help_heading = "Spheres"
+    )]
     seed: u64,
     /// Where the first front begins: X,Y,Z; the deepest point if not given
     #[arg(
@@ -218,6 +225,34 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         }),
         None => pack_command(&arguments.pack),
     }
+}
+
+impl Arguments {
+    /// The arguments of this process. Help and version are printed, and the process ends.
+    ///
+    /// # Errors
+    /// Arguments that are not understood, on one line.
+    pub fn parsed() -> Result<Self> {
+        Self::try_parse().map_err(|error| {
+            if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
+                error.exit();
+            }
+            Diagnostic::input("", on_one_line(&error.to_string()), "see dem-pack --help")
+        })
+    }
+}
+
+/// What clap says, without its `error:`, the usage and the hint to the help, which stand in paragraphs of their own.
+fn on_one_line(said: &str) -> String {
+    let paragraphs = said.trim_start_matches("error:").split("\n\n");
+    let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));
+    let lines = kept.map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));
+    lines.collect::<Vec<_>>().join("; ")
+}
+
+fn parse_seed(text: &str) -> std::result::Result<u64, String> {
+    let limits = format!("a seed is a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(|_| limits)
 }
 
 fn pack_command(arguments: &PackArguments) -> Result<()> {

@@ -1,21 +1,25 @@
 //! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search over packings.
 
 use crate::boundary::Boundary;
-use crate::pack::{PackSettings, Packing, Progress, pack};
+use crate::pack::{Inside, PackSettings, Packing, Progress, filled_share, pack_if};
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result, Surface};
 use serde::Serialize;
+use std::cell::Cell;
+use std::time::Instant;
 
 /// The search ends when the density is as near as this, relative.
 pub const NEAR_ENOUGH: f64 = 1e-3;
 /// Densities are near the wanted one up to this, relative: more than chance makes.
 const NEAR: f64 = 0.01;
-/// Packings tried at most.
+/// Packings begun at most.
 const MOST_PACKINGS: usize = 30;
 /// Overlaps nearer to each other than this are not tried twice: they change the density by less than chance does.
 const FINEST_STEP: f64 = 1e-5;
 /// Overlaps are below this: a sphere must not swallow its neighbour's centre.
 pub const LARGEST_OVERLAP: f64 = 1.0;
+/// The largest overlap that is tried: so near to the limit that the density is nearly the largest there is.
+const LARGEST_TRIED: f64 = 0.999;
 
 /// What was looked for and how close it came.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,8 +32,10 @@ pub struct DensitySearch {
     pub relative_error: f64,
     /// The overlap that gives it.
     pub overlap: f64,
-    /// How many packings were made.
+    /// How many packings were begun.
     pub packings: usize,
+    /// How many of them were made to the end: those whose front was of nearly the density wanted.
+    pub finished: usize,
 }
 
 impl DensitySearch {
@@ -47,19 +53,66 @@ impl DensitySearch {
     }
 }
 
-/// A packing that was tried: its overlap and the share of the shape that its particles' volumes add up to.
+/// A packing that was tried: its overlap and the share of the shape that its particles' volumes add up to, expected if it
+/// was not made to the end.
 #[derive(Debug, Clone, Copy)]
 struct Try {
     overlap: f64,
     filled: f64,
 }
 
+/// The tries so far, and what settling and filling do to the share that the front fills.
+#[derive(Debug, Default)]
+struct Tries {
+    tries: Vec<Try>,
+    /// Share of the shape that the front of each of them filled.
+    fronts: Vec<f64>,
+    /// Final share over that of the front, for those that were made to the end, with their numbers.
+    gains: Vec<(usize, f64)>,
+}
+
+impl Tries {
+    /// Final share over that of the front, as expected.
+    fn gain(&self) -> f64 {
+        if self.gains.is_empty() {
+            return 1.0;
+        }
+        self.gains.iter().map(|(_, gain)| gain).sum::<f64>() / self.gains.len() as f64
+    }
+
+    /// Adds one. All that were not made to the end are judged anew if it was.
+    fn add(&mut self, overlap: f64, front: f64, filled: Option<f64>) {
+        if let Some(filled) = filled {
+            self.gains.push((self.fronts.len(), filled / front));
+        }
+        self.fronts.push(front);
+        let gain = self.gain();
+        self.tries.push(Try {
+            overlap,
+            filled: 0.0,
+        });
+        for (tried, front) in self.tries.iter_mut().zip(&self.fronts) {
+            tried.filled = front * gain;
+        }
+        for (at, gain) in &self.gains {
+            self.tries[*at].filled = self.fronts[*at] * gain;
+        }
+    }
+}
+
+/// How far off a front may be to be settled and filled, relative, when the nearest finished packing is off by this: the first
+/// shows what settling and filling do to the density, each later one must promise to be twice as near, if not near enough.
+fn largest_promising(nearest: Option<f64>) -> f64 {
+    nearest.map_or(NEAR, |off| (0.5 * off).max(NEAR_ENOUGH))
+}
+
 /// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`; sets it in `settings`. Two packings
 /// of nearly the same overlap differ by chance, so that the search goes on around the root of their
-/// mean until one is near enough, and keeps the nearest of all. The seconds in the history of the packing are those of all tries.
+/// mean until one is near enough, and keeps the nearest of all. The front tells the density nearly: most tries end with it.
+/// The seconds in the history of the packing are those of all tries.
 ///
 /// # Errors
-/// As [`pack`]; a density that no overlap from 0 to below 1 gives.
+/// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
 pub fn pack_to_density(
     surface: &Surface,
     boundary: &Boundary,
@@ -69,40 +122,69 @@ pub fn pack_to_density(
     progress: Progress,
 ) -> Result<(Packing, DensitySearch)> {
     let target = wanted_kg_m3 / particle_kg_m3;
+    let off = |filled: f64| (filled / target - 1.0).abs();
     settings.overlap = overlap_for(target, USUAL_SHARE).clamp(0.0, 0.9);
-    let mut tries: Vec<Try> = Vec::new();
+    let started = Instant::now();
+    let inside = Inside::find(surface, boundary)?;
+    let mut seconds = [started.elapsed().as_secs_f64(), 0.0, 0.0];
+    let mut so_far = Tries::default();
     let mut best: Option<(Try, Packing)> = None;
-    let mut seconds = [0.0; 3];
-    while tries.len() < MOST_PACKINGS {
-        let packing = pack(surface, boundary, settings, progress)?;
-        let history = &packing.history;
-        seconds[0] += history.front_seconds;
-        seconds[1] += history.settle_seconds;
-        seconds[2] += history.fill_seconds;
-        let tried = Try {
-            overlap: settings.overlap,
-            filled: filled_share(surface, &packing),
+    while so_far.tries.len() < MOST_PACKINGS {
+        let started = Instant::now();
+        let overlap = settings.overlap;
+        let is_limit = overlap == 0.0 || overlap == LARGEST_TRIED;
+        let is_last = so_far.tries.len() + 1 == MOST_PACKINGS;
+        let promising = largest_promising(best.as_ref().map(|(b, _)| off(b.filled)));
+        let gain = so_far.gain();
+        let front = Cell::new(0.0);
+        let is_wanted = |filled: f64| {
+            front.set(filled);
+            is_limit || (is_last && best.is_none()) || off(filled * gain) <= promising
         };
-        tries.push(tried);
-        let off = |t: &Try| (t.filled / target - 1.0).abs();
-        if best.as_ref().is_none_or(|(b, _)| off(&tried) < off(b)) {
-            best = Some((tried, packing));
+        let packing = pack_if(surface, boundary, &inside, settings, &is_wanted, progress)?;
+        let filled = packing
+            .as_ref()
+            .map(|packing| filled_share(surface, packing.spheres.radii.iter().copied()));
+        so_far.add(overlap, front.get(), filled);
+        match packing.zip(filled) {
+            None => seconds[0] += started.elapsed().as_secs_f64(),
+            Some((packing, filled)) => {
+                let history = &packing.history;
+                seconds[0] += history.front_seconds;
+                seconds[1] += history.settle_seconds;
+                seconds[2] += history.fill_seconds;
+                if best
+                    .as_ref()
+                    .is_none_or(|(b, _)| off(filled) < off(b.filled))
+                {
+                    best = Some((Try { overlap, filled }, packing));
+                }
+                if off(filled) <= NEAR_ENOUGH {
+                    break;
+                }
+            }
         }
-        if off(&tried) <= NEAR_ENOUGH {
-            break;
+        let next = next_overlap(&so_far.tries, target);
+        let is_beyond =
+            (next < 0.0 && overlap == 0.0) || (next >= LARGEST_TRIED && overlap == LARGEST_TRIED);
+        if let Some(filled) = filled.filter(|_| is_beyond) {
+            if off(filled) <= NEAR {
+                break;
+            }
+            return Err(unreachable(
+                wanted_kg_m3,
+                particle_kg_m3,
+                Try { overlap, filled },
+            ));
         }
-        let next = next_overlap(&tries, target);
-        if next < 0.0 && tried.overlap == 0.0 && off(&tried) <= NEAR {
-            break;
-        }
-        if next >= LARGEST_OVERLAP || (next < 0.0 && tried.overlap == 0.0) {
-            let reduced = tried.filled / (1.0 + tried.overlap).powi(3);
-            return Err(unreachable(wanted_kg_m3, particle_kg_m3, reduced));
-        }
-        settings.overlap = next.max(0.0);
+        settings.overlap = next.clamp(0.0, LARGEST_TRIED);
     }
     let Some((found, mut packing)) = best else {
-        return Err(unreachable(wanted_kg_m3, particle_kg_m3, USUAL_SHARE));
+        return Err(Diagnostic::failed(
+            "--solid-density",
+            "nothing was packed",
+            "",
+        ));
     };
     settings.overlap = found.overlap;
     let history = &mut packing.history;
@@ -118,7 +200,8 @@ pub fn pack_to_density(
             found_kg_m3: found.filled * particle_kg_m3,
             relative_error: found.filled / target - 1.0,
             overlap: found.overlap,
-            packings: tries.len(),
+            packings: so_far.tries.len(),
+            finished: so_far.gains.len(),
         },
     ))
 }
@@ -147,27 +230,22 @@ fn next_overlap(tries: &[Try], target: f64) -> f64 {
 /// Share of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 + overlap)^3 as large.
 const USUAL_SHARE: f64 = 0.59;
 
-/// Sum of the particles' volumes / volume of the shape.
-pub fn filled_share(surface: &Surface, packing: &Packing) -> f64 {
-    let spheres: f64 = packing
-        .spheres
-        .radii
-        .iter()
-        .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
-        .sum();
-    spheres * surface.unit_m.powi(3) / surface.volume_m3()
-}
-
 fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }
 
-fn unreachable(wanted: f64, particle: f64, reduced: f64) -> Diagnostic {
-    let (least, most) = (particle * reduced, particle * reduced * 8.0);
+/// What was asked for lies beyond the packing of the least or the largest overlap.
+fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
+    let has = particle * limit.filled;
+    let most_or_least = if limit.overlap == 0.0 {
+        format!("the least is {has:.0} kg/m3, without overlap")
+    } else {
+        format!("the most is {has:.0} kg/m3, at overlap {}", limit.overlap)
+    };
     Diagnostic::input(
         "--solid-density",
         format!(
-            "{wanted} kg/m3 cannot be reached with particles of {particle} kg/m3: without overlap the body has {least:.0} kg/m3, at overlap 1 {most:.0}"
+            "{wanted} kg/m3 cannot be reached with particles of {particle} kg/m3: {most_or_least}"
         ),
         "change --solid-density or --particle-density",
     )
@@ -206,6 +284,20 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn fronts_are_judged_by_what_settling_and_filling_did_before() {
+        let mut so_far = Tries::default();
+        so_far.add(0.1, 0.80, None);
+        assert_eq!(so_far.tries[0].filled, 0.80);
+        so_far.add(0.2, 0.90, Some(0.90 * 1.01));
+        so_far.add(0.3, 1.00, Some(1.03));
+        let filled: Vec<f64> = so_far.tries.iter().map(|t| t.filled).collect();
+        for (got, wanted) in filled.iter().zip([0.80 * 1.02, 0.90 * 1.01, 1.03]) {
+            assert!((got - wanted).abs() < 1e-12, "{filled:?}");
+        }
+        assert_eq!(so_far.tries.len(), 3);
     }
 
     #[test]

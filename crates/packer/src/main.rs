@@ -1,6 +1,5 @@
 //! dem-pack: see [`dem_pack::cli`].
 
-use clap::Parser;
 use dem_pack::cli::{Arguments, run};
 use std::process::ExitCode;
 
@@ -11,7 +10,7 @@ fn main() -> ExitCode {
     };
     // Without the handler an interrupted run could leave a temporary file behind, no more.
     let _ = ctrlc::set_handler(at_interrupt);
-    match run(&Arguments::parse()) {
+    match Arguments::parsed().and_then(|arguments| run(&arguments)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             dem_io::safe_write::write_standard_error(&error);

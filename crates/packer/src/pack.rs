@@ -112,6 +112,32 @@ const VOID_SEARCH_GROUP: usize = 2000;
 /// Told the stage and the share of it that is done (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
 
+/// The inside of a shape, which all its packings have in common.
+#[derive(Debug, Clone)]
+pub struct Inside {
+    /// Points spread over it.
+    points: Vec<Inscribed>,
+    deepest: Inscribed,
+}
+
+impl Inside {
+    /// Of a surface.
+    ///
+    /// # Errors
+    /// No point inside.
+    pub fn find(surface: &Surface, boundary: &Boundary) -> Result<Self> {
+        let points = inner_points(boundary, surface);
+        let deepest = deepest_point(boundary, surface, &points).ok_or_else(|| {
+            Diagnostic::input(
+                surface.source.clone(),
+                "no point inside the surface was found",
+                "check that it is closed and not flat",
+            )
+        })?;
+        Ok(Self { points, deepest })
+    }
+}
+
 /// Fills the surface.
 ///
 /// # Errors
@@ -122,17 +148,33 @@ pub fn pack(
     settings: &PackSettings,
     progress: Progress,
 ) -> Result<Packing> {
+    let started = Instant::now();
+    let inside = Inside::find(surface, boundary)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let packing = pack_if(surface, boundary, &inside, settings, &|_| true, progress)?;
+    let mut packing =
+        packing.ok_or_else(|| Diagnostic::failed(surface.source.clone(), "given up", ""))?;
+    packing.history.front_seconds += seconds;
+    Ok(packing)
+}
+
+/// Fills the surface, unless the front shows that the packing is not wanted: `is_wanted` is told the sum of the spheres' volumes
+/// over the volume of the shape before settling and filling, which take most of the time and change it little. None if it was not.
+///
+/// # Errors
+/// As [`pack`].
+pub fn pack_if(
+    surface: &Surface,
+    boundary: &Boundary,
+    inside: &Inside,
+    settings: &PackSettings,
+    is_wanted: &dyn Fn(f64) -> bool,
+    progress: Progress,
+) -> Result<Option<Packing>> {
     let mut history = PackHistory::default();
     let started = Instant::now();
     let unit = surface.unit_m;
-    let inner = inner_points(boundary, surface);
-    let deepest = deepest_point(boundary, surface, &inner).ok_or_else(|| {
-        Diagnostic::input(
-            surface.source.clone(),
-            "no point inside the surface was found",
-            "check that it is closed and not flat",
-        )
-    })?;
+    let deepest = &inside.deepest;
     history.largest_inscribed_diameter_m = 2.0 * deepest.radius * unit;
     check_sizes_fit(
         surface,
@@ -147,7 +189,7 @@ pub fn pack(
             .unwrap_or_else(|| first_share(&settings.sizes)),
     );
     let room = Room::of(surface, &settings.sizes, settings.overlap);
-    let seed = seed_point(surface, boundary, settings, &deepest)?;
+    let seed = seed_point(surface, boundary, settings, deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
     let exact_range = [settings.sizes.min_m(), settings.sizes.max_m()].map(|d| 0.5 * d / unit);
@@ -156,6 +198,7 @@ pub fn pack(
     let full = |u: f64| rounded(0.5 * settings.sizes.quantile_by_number(u) / unit);
     let range = exact_range.map(rounded);
     let extent = Vector3::from(surface.extent());
+    let enlarge = 1.0 + settings.overlap;
     let (mut balls, mut fills_voids);
     let (mut fronts, mut jams) = (0, 0);
     loop {
@@ -197,9 +240,14 @@ pub fn pack(
             &extent,
             &mut history,
             &|front, history| {
-                run_fronts(front, boundary, &seeds, &inner, history, &|placed| {
-                    progress("front", placed as f64 / expected)
-                })
+                run_fronts(
+                    front,
+                    boundary,
+                    &seeds,
+                    &inside.points,
+                    history,
+                    &|placed| progress("front", placed as f64 / expected),
+                )
             },
         )?;
         history.unplaced = front.waiting.len();
@@ -218,6 +266,10 @@ pub fn pack(
             continue;
         }
         sort_along_curve(&mut balls, range[1]);
+        let radii = balls.iter().map(|b| b[3] * enlarge);
+        if jams == 0 && !is_wanted(filled_share(surface, radii)) {
+            return Ok(None);
+        }
         if share == 0.0 {
             break;
         }
@@ -282,7 +334,6 @@ pub fn pack(
             "ask for smaller diameters",
         ));
     }
-    let enlarge = 1.0 + settings.overlap;
     let spheres = Spheres {
         positions: balls.iter().map(|b| [b[0], b[1], b[2]]).collect(),
         radii: balls
@@ -290,7 +341,15 @@ pub fn pack(
             .map(|b| (b[3] * enlarge).clamp(exact_range[0], exact_range[1]))
             .collect(),
     };
-    Ok(Packing { spheres, history })
+    Ok(Some(Packing { spheres, history }))
+}
+
+/// Sum of the volumes of spheres of these radii (local units) / volume of the shape.
+pub fn filled_share(surface: &Surface, radii: impl Iterator<Item = f64>) -> f64 {
+    let spheres: f64 = radii
+        .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
+        .sum();
+    spheres * surface.unit_m.powi(3) / surface.volume_m3()
 }
 
 /// Runs a front (`run`) of about so many spheres, as its settings are for this number and for how many small spheres too many there may be. Where it fills voids,

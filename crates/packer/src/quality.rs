@@ -205,7 +205,7 @@ pub fn assess(packing: &Packing) -> Result<Report> {
         interior_fabric: fabric::of(spheres, packing.bonds, |i| {
             depths[i as usize] > interior_depth
         }),
-        thinnest: thickness::thinnest(&depths, packing.bonds, mean_diameter, unit),
+        thinnest: thickness::thinnest(packing, &depths, mean_diameter),
         warnings: Vec::new(),
     };
     let advised = if count > 1 && bonds_per_particle < ENOUGH_BONDS {

@@ -236,3 +236,22 @@ fn damaged_standard_input() {
         assert!(said.starts_with("error: standard input: "), "{said}");
     }
 }
+
+#[test]
+fn arguments_that_are_not_understood_are_named_on_one_line() {
+    assert_refused(
+        &["-d", "2mm", "--overlap=x"],
+        &["'x'", "--overlap", "--help"],
+    );
+    assert_refused(&[], &["--diameter", "--help"]);
+    assert_refused(
+        &["-d", "2mm", "--overlp", "0.1"],
+        &["--overlp", "'--overlap'"],
+    );
+    for seed in ["-1", "1.5", "x", "18446744073709551616"] {
+        assert_refused(
+            &["-d", "2mm", "--seed", seed],
+            &[seed, "a whole number from 0 to 18446744073709551615"],
+        );
+    }
+}

@@ -1,6 +1,6 @@
 //! A solid density that is asked for is found, and is the one of the file.
 
-use super::{Bench, refusal, shape};
+use super::{Bench, bits, refusal, shape};
 use std::f64::consts::PI;
 
 #[test]
@@ -80,6 +80,7 @@ fn the_density_is_printed() {
         "wanted 1650 kg/m3, found 16",
         " %) at overlap 0.",
         "packings made: ",
+        ", fronts: ",
     ] {
         assert!(line.contains(part), "{line}");
     }
@@ -122,6 +123,46 @@ fn densities_out_of_reach_are_refused() {
         );
         assert!(bench.files().is_empty());
     }
+}
+
+#[test]
+fn the_limits_are_those_of_packings_that_were_made() {
+    let sizes = ["-d", "1.5mm..2mm", "--particle-density", "2000"];
+    for (overlap, solid) in [("0", "10"), ("0.999", "100000")] {
+        let made = Bench::new().pack(
+            &shape("02"),
+            &[&sizes[..], &["--overlap", overlap]].concat(),
+        );
+        let limit = made.number("/quality/solid_density_kg_m3");
+        let asked = [&sizes[..], &["--solid-density", solid, "-o", "body.vtp"]].concat();
+        let said = refusal(&Bench::new().run(&shape("02"), &asked), &solid);
+        assert!(
+            said.contains(&format!(" is {limit:.0} kg/m3")),
+            "{limit}: {said}"
+        );
+    }
+}
+
+#[test]
+fn few_packings_are_finished_and_the_overlap_found_gives_the_same_body() {
+    let sizes = ["-d", "1.5mm..2mm", "--particle-density", "2050"];
+    let found = Bench::new().pack(
+        &shape("02"),
+        &[&sizes[..], &["--solid-density", "1650"]].concat(),
+    );
+    let [begun, finished] =
+        ["packings", "finished"].map(|key| found.count(&format!("/density_search/{key}")));
+    // Chance decides how many fronts it takes; of these few are worth the rest.
+    assert!(
+        finished <= begun.min(6) && begun <= 30,
+        "{finished} of {begun}"
+    );
+    let overlap = found.body.about.overlap.unwrap().to_string();
+    let again = Bench::new().pack(
+        &shape("02"),
+        &[&sizes[..], &["--overlap", &overlap]].concat(),
+    );
+    assert!(bits(&found.body) == bits(&again.body), "{overlap}");
 }
 
 #[test]

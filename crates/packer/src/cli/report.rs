@@ -53,11 +53,12 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
     let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
     if let Some(search) = &made.density_search {
         text += &format!(
-            "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}\n",
+            "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",
             significant(search.wanted_kg_m3, 5),
             significant(search.found_kg_m3, 5),
             100.0 * search.relative_error,
             significant(search.overlap, 4),
+            search.finished,
             search.packings
         );
     }

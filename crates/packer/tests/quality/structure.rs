@@ -186,3 +186,44 @@ fn thin_parts_are_found() {
     let neck = report.thinnest.unwrap();
     assert!((neck.particles_across - 3.0).abs() < 0.1, "{neck:?}");
 }
+
+#[test]
+fn thickness_is_true_where_no_particle_lies_in_the_middle() {
+    let lattice = |extent: [f64; 3], distance: &(dyn Fn([f64; 3]) -> f64 + Sync)| {
+        let mut spheres = cubic(extent.map(|e| e as usize), 0.4);
+        let mut random = Random(5);
+        for p in &mut spheres.positions {
+            *p = p.map(|x| x + 0.2 * (random.next() - 0.5));
+        }
+        spheres.positions.retain(|p| distance(*p) >= 0.4);
+        spheres.radii.truncate(spheres.positions.len());
+        let mut case = Case::new(spheres, extent);
+        case.bonding_radius = 1.6;
+        case.report_in(distance).thinnest.unwrap()
+    };
+    // Mean diameters are 0.8; a diagonal of the lattice is 0.43 of that.
+    let most_off = 3.0_f64.sqrt() / 4.0;
+    let around = |p: [f64; 3]| [p[0] - 10.0, p[1] - 10.0, p[2] - 3.0];
+    let torus = |p: [f64; 3]| {
+        let [x, y, z] = around(p);
+        3.0 - (x.hypot(y) - 7.0).hypot(z)
+    };
+    let ball = |p: [f64; 3]| 3.5 - p.map(|x| (x - 3.6).powi(2)).iter().sum::<f64>().sqrt();
+    let bar = |p: [f64; 3]| {
+        (p[0].min(30.0 - p[0]))
+            .min(p[1].min(6.0 - p[1]))
+            .min(p[2].min(6.0 - p[2]))
+    };
+    for (name, thickness, found) in [
+        ("torus", 6.0, lattice([20.0, 20.0, 6.0], &torus)),
+        ("ball", 7.0, lattice([7.0; 3], &ball)),
+        ("bar", 6.0, lattice([30.0, 6.0, 6.0], &bar)),
+    ] {
+        let across = thickness / 0.8;
+        assert!(
+            found.particles_across <= across * (1.0 + 1e-9)
+                && found.particles_across >= across - most_off - 0.06,
+            "{name}: {found:?}, not {across}"
+        );
+    }
+}
