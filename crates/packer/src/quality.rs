@@ -235,7 +235,7 @@ fn warnings(report: &Report, advised_bonding_radius: Option<f64>, parts: usize) 
     if let Some(thinnest) = report
         .thinnest
         .as_ref()
-        .filter(|t| t.particles_across < ENOUGH_ACROSS)
+        .filter(|t| t.particles_across.round() < ENOUGH_ACROSS)
     {
         warnings.push(format!(
             "only about {} particles across the thinnest part ({}): fewer than {ENOUGH_ACROSS} show the particles more than the \

@@ -5,7 +5,7 @@
 //! alone, its deepest particle is its thickness. The thinnest part is the smallest of all these, twice the depth. Centres
 //! of particles seldom lie in the very middle, so that this reads low, by up to two diameters. The same is therefore done
 //! with the points of a lattice that lie deeper than the smallest particle needs, each joined to its six neighbours, and the
-//! larger of the two counts. Every way through the solid passes within half a diagonal of its cells of lattice points, so
+//! larger of the two counts, where there are few across. Every way through the solid passes within half a diagonal of its cells of lattice points, so
 //! that the result is too small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
 //! in larger bodies. It does not see a fin that grows out of a thick part.
 
@@ -19,6 +19,8 @@ use serde::{Deserialize, Serialize};
 pub(super) const CAP_IN_MEAN_DIAMETERS: f64 = 10.0;
 /// Steps of depth up to the cap.
 const LEVELS: usize = 400;
+/// Where so many mean diameters fit across by the particles, the lattice is left out: two more or less do not matter.
+const MANY_ACROSS: f64 = 15.0;
 /// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less across.
 const FINEST_EDGE: f64 = 0.25;
 /// Points of the lattice inside the solid, about, and in the whole box, for regions that fill little of it.
@@ -43,7 +45,12 @@ pub struct Thinnest {
 pub(super) fn thinnest(packing: &Packing, depths: &[f64], mean_diameter: f64) -> Option<Thinnest> {
     let cap = CAP_IN_MEAN_DIAMETERS * mean_diameter;
     let by_particles = neck(depths, packing.bonds, cap, FEWEST_PARTICLES)?;
-    let (points, pairs) = lattice(packing, mean_diameter, cap);
+    let are_many = by_particles > 0.5 * MANY_ACROSS * mean_diameter;
+    let (points, pairs) = if are_many {
+        (Vec::new(), Vec::new())
+    } else {
+        lattice(packing, mean_diameter, cap)
+    };
     // As much of the solid as that many particles take.
     let fewest = FEWEST_PARTICLES * points.len() / depths.len();
     let by_points = neck(&points, &pairs, cap, fewest).unwrap_or(0.0);
