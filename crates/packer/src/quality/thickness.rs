@@ -24,8 +24,8 @@ const MANY_ACROSS: f64 = 15.0;
 /// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less across.
 const FINEST_EDGE: f64 = 0.25;
 /// Points of the lattice inside the solid, about, and in the whole box, for regions that fill little of it.
-const MOST_POINTS: f64 = 3e5;
-const MOST_POINTS_IN_BOX: f64 = 2e6;
+const MOST_POINTS: f64 = 1.5e5;
+const MOST_POINTS_IN_BOX: f64 = 1e6;
 /// A set of fewer particles, or of a smaller share of them, is a crumb.
 const FEWEST_PARTICLES: usize = 20;
 const SMALLEST_PART: f64 = 0.01;
