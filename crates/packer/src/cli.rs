@@ -351,7 +351,7 @@ impl PackArguments {
                 format!(
                     "{settle} is not at least 0 and at most {LARGEST_SETTLE}: spheres that grow by more jam",
                 ),
-                "0.02 to 0.04 is usual, 0 is the bare front",
+                "0.03 to 0.06 is usual, 0 is the bare front",
             ));
         }
         check_range(
