@@ -19,7 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// With more, spheres that grow to full size jam in large numbers.
+/// As large as a share is chosen.
 const LARGEST_SETTLE: f64 = crate::room::SHARES[1];
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
@@ -156,7 +156,7 @@ struct PackArguments {
     )]
     seed_point: Option<String>,
     /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.08.
-    /// If not given, 0.02 to 0.044: less for sizes that differ much and for thin shapes
+    /// If not given, as much as leaves the spheres just short of jamming, 0.02 to 0.08
     #[arg(
         long,
         allow_negative_numbers = true,

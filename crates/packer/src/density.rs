@@ -61,43 +61,29 @@ struct Try {
     filled: f64,
 }
 
-/// The tries so far, and what settling and filling do to the share that the front fills.
-#[derive(Debug, Default)]
-struct Tries {
-    tries: Vec<Try>,
-    /// Share of the shape that the front of each of them filled.
-    fronts: Vec<f64>,
-    /// Final share over that of the front, for those that were made to the end, with their numbers.
-    gains: Vec<(usize, f64)>,
+/// A front of a packing: its overlap, the share of the shape that it filled, and the final share if the packing was made to the end.
+#[derive(Debug, Clone, Copy)]
+struct Begun {
+    overlap: f64,
+    front: f64,
+    filled: Option<f64>,
 }
 
-impl Tries {
-    /// Final share over that of the front, as expected.
-    fn gain(&self) -> f64 {
-        if self.gains.is_empty() {
-            return 1.0;
-        }
-        self.gains.iter().map(|(_, gain)| gain).sum::<f64>() / self.gains.len() as f64
-    }
+/// Final share over that of the front, as expected: the mean of the packings that were made to the end.
+fn gain(begun: &[Begun]) -> f64 {
+    let gains = begun.iter().filter_map(|b| Some(b.filled? / b.front));
+    let (sum, count) = gains.fold((0.0, 0.0), |(sum, count), gain| (sum + gain, count + 1.0));
+    if count == 0.0 { 1.0 } else { sum / count }
+}
 
-    /// Adds one. All that were not made to the end are judged anew if it was.
-    fn add(&mut self, overlap: f64, front: f64, filled: Option<f64>) {
-        if let Some(filled) = filled {
-            self.gains.push((self.fronts.len(), filled / front));
-        }
-        self.fronts.push(front);
-        let gain = self.gain();
-        self.tries.push(Try {
-            overlap,
-            filled: 0.0,
-        });
-        for (tried, front) in self.tries.iter_mut().zip(&self.fronts) {
-            tried.filled = front * gain;
-        }
-        for (at, gain) in &self.gains {
-            self.tries[*at].filled = self.fronts[*at] * gain;
-        }
-    }
+/// The packings begun, each with the share that it fills or is expected to.
+fn judged(begun: &[Begun]) -> Vec<Try> {
+    let gain = gain(begun);
+    let judge = |b: &Begun| Try {
+        overlap: b.overlap,
+        filled: b.filled.unwrap_or(b.front * gain),
+    };
+    begun.iter().map(judge).collect()
 }
 
 /// How far off a front may be to be settled and filled, relative, when the nearest finished packing is off by this: the first
@@ -127,15 +113,15 @@ pub fn pack_to_density(
     let started = Instant::now();
     let inside = Inside::find(surface, boundary)?;
     let mut seconds = [started.elapsed().as_secs_f64(), 0.0, 0.0];
-    let mut so_far = Tries::default();
+    let mut begun: Vec<Begun> = Vec::new();
     let mut best: Option<(Try, Packing)> = None;
-    while so_far.tries.len() < MOST_PACKINGS {
+    while begun.len() < MOST_PACKINGS {
         let started = Instant::now();
         let overlap = settings.overlap;
         let is_limit = overlap == 0.0 || overlap == LARGEST_TRIED;
-        let is_last = so_far.tries.len() + 1 == MOST_PACKINGS;
+        let is_last = begun.len() + 1 == MOST_PACKINGS;
         let promising = largest_promising(best.as_ref().map(|(b, _)| off(b.filled)));
-        let gain = so_far.gain();
+        let gain = gain(&begun);
         let front = Cell::new(0.0);
         let is_wanted = |filled: f64| {
             front.set(filled);
@@ -145,7 +131,11 @@ pub fn pack_to_density(
         let filled = packing
             .as_ref()
             .map(|packing| filled_share(surface, packing.spheres.radii.iter().copied()));
-        so_far.add(overlap, front.get(), filled);
+        begun.push(Begun {
+            overlap,
+            front: front.get(),
+            filled,
+        });
         match packing.zip(filled) {
             None => seconds[0] += started.elapsed().as_secs_f64(),
             Some((packing, filled)) => {
@@ -164,7 +154,7 @@ pub fn pack_to_density(
                 }
             }
         }
-        let next = next_overlap(&so_far.tries, target);
+        let next = next_overlap(&judged(&begun), target);
         let is_beyond =
             (next < 0.0 && overlap == 0.0) || (next >= LARGEST_TRIED && overlap == LARGEST_TRIED);
         if let Some(filled) = filled.filter(|_| is_beyond) {
@@ -200,8 +190,8 @@ pub fn pack_to_density(
             found_kg_m3: found.filled * particle_kg_m3,
             relative_error: found.filled / target - 1.0,
             overlap: found.overlap,
-            packings: so_far.tries.len(),
-            finished: so_far.gains.len(),
+            packings: begun.len(),
+            finished: begun.iter().filter(|b| b.filled.is_some()).count(),
         },
     ))
 }
@@ -288,16 +278,20 @@ mod tests {
 
     #[test]
     fn fronts_are_judged_by_what_settling_and_filling_did_before() {
-        let mut so_far = Tries::default();
-        so_far.add(0.1, 0.80, None);
-        assert_eq!(so_far.tries[0].filled, 0.80);
-        so_far.add(0.2, 0.90, Some(0.90 * 1.01));
-        so_far.add(0.3, 1.00, Some(1.03));
-        let filled: Vec<f64> = so_far.tries.iter().map(|t| t.filled).collect();
+        let one = |overlap, front, filled| Begun {
+            overlap,
+            front,
+            filled,
+        };
+        let mut begun = vec![one(0.1, 0.80, None)];
+        assert_eq!(judged(&begun)[0].filled, 0.80);
+        begun.push(one(0.2, 0.90, Some(0.90 * 1.01)));
+        begun.push(one(0.3, 1.00, Some(1.03)));
+        let filled: Vec<f64> = judged(&begun).iter().map(|t| t.filled).collect();
         for (got, wanted) in filled.iter().zip([0.80 * 1.02, 0.90 * 1.01, 1.03]) {
             assert!((got - wanted).abs() < 1e-12, "{filled:?}");
         }
-        assert_eq!(so_far.tries.len(), 3);
+        assert_eq!(filled.len(), 3);
     }
 
     #[test]

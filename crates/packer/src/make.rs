@@ -5,7 +5,7 @@ use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance
 use crate::boundary::Boundary;
 use crate::density::{DensitySearch, pack_to_density};
 use crate::depth_map::DepthMap;
-use crate::pack::{PackHistory, PackSettings, Progress, WIDEST_FILLED, pack, to_metres};
+use crate::pack::{PackHistory, PackSettings, Progress, can_fill_voids, pack, to_metres};
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::sizes::Sizes;
 use dem_io::body::About;
@@ -211,8 +211,7 @@ fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
 
 /// What a person should know if voids are left although the sizes would not forbid to fill them.
 fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
-    let are_alike = sizes.max_m() <= WIDEST_FILLED * sizes.min_m();
-    (are_alike && history.voids_left > 0).then(|| {
+    (can_fill_voids(sizes) && history.voids_left > 0).then(|| {
         format!(
             "about {} voids would take the smallest sphere: to fill them all would change the sizes; take smaller particles, or less different ones",
             history.voids_left

@@ -1,19 +1,22 @@
 //! From a surface and sizes to spheres: front, settling, filling of what is left.
 
+mod fronts;
+mod voids;
+
+use self::fronts::{front_seeds, run_fronts, true_front};
+use self::voids::fill_voids;
 use crate::boundary::Boundary;
 use crate::front::{Front, FrontSettings};
 use crate::grid::Ball;
 use crate::inside::is_inside;
 use crate::room::{Room, first_share};
-use crate::seed::{Inscribed, climb, deepest_point, first_spheres, inner_points, spread_points};
+use crate::seed::{Inscribed, deepest_point, inner_points};
 use crate::settle::{WhenJammed, settle};
 use crate::sizes::Sizes;
 use crate::{Spheres, Vector3};
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result, Surface};
-use rayon::prelude::*;
 use serde::Serialize;
-use std::ops::Range;
 use std::time::Instant;
 
 /// How a packing is to be made.
@@ -46,7 +49,8 @@ pub struct PackHistory {
     pub settling_steps: usize,
     /// Spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// How often the front was run: again with other sizes kept back where filling the voids had distorted the distribution.
+    /// How often the front was run: again with other sizes kept back where filling the voids had distorted the distribution, or at another share where it had left
+    /// too much room for settling or too little.
     pub attempts: usize,
     /// Spheres put into voids, of sizes that fit there: by the bare front as it goes, after settling at the end.
     pub void_fillers: usize,
@@ -73,27 +77,8 @@ pub struct Packing {
     pub history: PackHistory,
 }
 
-/// Before settling a front begins in every cube of so many largest diameters: near enough that directions of growth average out,
-/// far enough that few fronts meet, since where they meet there is less.
-const SEED_SPACING: f64 = 8.0;
-
-/// The bare front fills all voids where the largest radius is at most so many times the smallest.
-pub const WIDEST_FILLED: f64 = 1.5 + 1e-6;
-
-/// How many small spheres too many there may be in a bare front for voids to be filled, in roots of the number of spheres: at first many times
-/// what chance does, to learn how many voids there are (10 in a ball of half a million spheres, less in all else that can be filled);
-/// in the last attempt a third of it, whatever voids that leaves.
-const MOST_TOO_MANY: [f64; 2] = [20.0, 0.5];
-/// Runs of a bare front at most.
-const MOST_ATTEMPTS: usize = 9;
-/// A front is kept if the number of spheres up to any size is off by less than this many roots of the number of spheres: half of what chance
-/// does, after some attempts two thirds.
-const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
-const STRICT_ATTEMPTS: usize = 4;
-/// The next attempt is the last one where the number is off by more than so many roots, what chance does, and by more than this part of what it
-/// was off by in the attempt before: what can be evened out falls to a third or less while it is that much.
-const HOPELESS_IMBALANCE: f64 = 1.36;
-const SLOWEST_FALL: f64 = 0.6;
+/// The largest size over the smallest up to which the bare front fills all voids.
+const WIDEST_FILLED: f64 = 1.5 + 1e-6;
 
 /// Fronts at most until one leaves the room that settling wants; in small bodies it differs by chance.
 const MOST_FRONTS: usize = 4;
@@ -105,9 +90,6 @@ const MOST_JAMS: usize = 3;
 const MOST_SPHERES: f64 = 1e8;
 /// Cells of the front's grid beyond one per sphere.
 const MORE_CELLS: usize = 1_000_000;
-
-/// Spheres around which voids are searched at a time.
-const VOID_SEARCH_GROUP: usize = 2000;
 
 /// Told the stage and the share of it that is done (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;
@@ -136,6 +118,11 @@ impl Inside {
         })?;
         Ok(Self { points, deepest })
     }
+}
+
+/// Whether sizes are so alike that all voids can be filled. Wider ones have fewer small spheres than voids: to place them all would change the sizes.
+pub fn can_fill_voids(sizes: &Sizes) -> bool {
+    sizes.max_m() <= WIDEST_FILLED * sizes.min_m()
 }
 
 /// Fills the surface.
@@ -188,7 +175,8 @@ pub fn pack_if(
             .settle
             .unwrap_or_else(|| first_share(&settings.sizes)),
     );
-    let room = Room::of(surface, &settings.sizes, settings.overlap);
+    let chooses = settings.settle.is_none();
+    let room = chooses.then(|| Room::of(surface, &settings.sizes, settings.overlap));
     let seed = seed_point(surface, boundary, settings, deepest)?;
     history.seed_point_m = to_metres(surface, &seed);
 
@@ -206,8 +194,7 @@ pub fn pack_if(
         let small = |u: f64| shrink * full(u);
         fronts += 1;
         let expected = 0.58 * surface.volume_m3()
-            / (settings.sizes.mean_volume_m3() * (shrink / (1.0 + settings.overlap)).powi(3))
-                .max(f64::MIN_POSITIVE);
+            / (settings.sizes.mean_volume_m3() * (shrink / enlarge).powi(3)).max(f64::MIN_POSITIVE);
         if expected > MOST_SPHERES {
             return Err(Diagnostic::input(
                 surface.source.clone(),
@@ -218,8 +205,7 @@ pub fn pack_if(
                 "ask for larger diameters, or check the units of --diameter and --unit",
             ));
         }
-        // Wider sizes have fewer small spheres than voids: to place them all would change the sizes.
-        fills_voids = share == 0.0 && range[1] <= WIDEST_FILLED * range[0];
+        fills_voids = share == 0.0 && can_fill_voids(&settings.sizes);
         let front_settings = |expected: f64, most_too_many: f64| FrontSettings {
             radius: &small,
             radius_range: range.map(|r| shrink * r),
@@ -231,7 +217,7 @@ pub fn pack_if(
             most_too_many,
             seed: settings.seed,
         };
-        let diameter = 2.0 * range[1] * shrink / (1.0 + settings.overlap);
+        let diameter = 2.0 * range[1] * shrink / enlarge;
         let seeds = front_seeds(surface, boundary, settings, &seed, share > 0.0, diameter);
         let mut front = true_front(
             &front_settings,
@@ -258,23 +244,26 @@ pub fn pack_if(
         for ball in &mut balls {
             ball[3] /= shrink;
         }
-        let better = room.better_share(share, volume(&balls)).map(rounded_share);
-        if let (None, 0, Some(better)) = (settings.settle, jams, better)
-            && fronts < MOST_FRONTS
-        {
-            share = better;
-            continue;
+        if jams == 0 {
+            let filled = volume(balls.iter().map(|b| b[3]));
+            if let Some(room) = &room
+                && let Some(better) = room.better_share(share, filled)
+                && fronts < MOST_FRONTS
+            {
+                share = rounded_share(better);
+                continue;
+            }
+            let radii = balls.iter().map(|b| b[3] * enlarge);
+            if !is_wanted(filled_share(surface, radii)) {
+                return Ok(None);
+            }
         }
         sort_along_curve(&mut balls, range[1]);
-        let radii = balls.iter().map(|b| b[3] * enlarge);
-        if jams == 0 && !is_wanted(filled_share(surface, radii)) {
-            return Ok(None);
-        }
         if share == 0.0 {
             break;
         }
         let settling = Instant::now();
-        let when_jammed = if settings.settle.is_none() && jams < MOST_JAMS {
+        let when_jammed = if chooses && jams < MOST_JAMS {
             WhenJammed::Stop
         } else {
             WhenJammed::TakeOut
@@ -346,55 +335,14 @@ pub fn pack_if(
 
 /// Sum of the volumes of spheres of these radii (local units) / volume of the shape.
 pub fn filled_share(surface: &Surface, radii: impl Iterator<Item = f64>) -> f64 {
-    let spheres: f64 = radii
+    volume(radii) * surface.unit_m.powi(3) / surface.volume_m3()
+}
+
+/// Sum of the volumes of spheres of these radii.
+fn volume(radii: impl Iterator<Item = f64>) -> f64 {
+    radii
         .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
-        .sum();
-    spheres * surface.unit_m.powi(3) / surface.volume_m3()
-}
-
-/// Runs a front (`run`) of about so many spheres, as its settings are for this number and for how many small spheres too many there may be. Where it fills voids,
-/// again until its sizes are true, with sizes kept back that were too many.
-fn true_front<'a>(
-    settings: &dyn Fn(f64, f64) -> FrontSettings<'a>,
-    expected: f64,
-    boundary: &'a Boundary,
-    extent: &Vector3,
-    history: &mut PackHistory,
-    run: &dyn Fn(&mut Front<'a>, &mut PackHistory) -> Result<()>,
-) -> Result<Front<'a>> {
-    let mut front = Front::new(settings(expected, MOST_TOO_MANY[0]), boundary, extent);
-    let mut is_last = !front.settings.fills_voids;
-    let (mut attempts, mut last_imbalance) = (0, f64::INFINITY);
-    loop {
-        attempts += 1;
-        history.attempts += 1;
-        history.fronts = 0;
-        run(&mut front, history)?;
-        let placed = front.balls.len() as f64;
-        let imbalance = front.ledger.imbalance() / placed.sqrt();
-        let most_imbalance = MOST_IMBALANCE[usize::from(attempts > STRICT_ATTEMPTS)];
-        if is_last || (imbalance < most_imbalance && !front.has_left_voids()) {
-            return Ok(front);
-        }
-        // Where too few small spheres can be kept back for all voids, more attempts would not change that.
-        let is_hopeless = attempts == 1 && front.has_left_voids()
-            || imbalance > HOPELESS_IMBALANCE.max(SLOWEST_FALL * last_imbalance);
-        is_last = is_hopeless || attempts + 1 == MOST_ATTEMPTS;
-        last_imbalance = imbalance;
-        let ledger = front.ledger.corrected();
-        let most_too_many = MOST_TOO_MANY[usize::from(is_last)];
-        front = Front::new(settings(placed, most_too_many), boundary, extent);
-        // Nothing is kept back where voids are left anyway.
-        if !is_last {
-            front.ledger = ledger;
-        }
-    }
-}
-
-/// Volume of spheres, as if none overlapped another.
-fn volume(balls: &[Ball]) -> f64 {
-    let cubes: f64 = balls.iter().map(|ball| ball[3].powi(3)).sum();
-    4.0 / 3.0 * std::f64::consts::PI * cubes
+        .sum()
 }
 
 /// A local point in metres.
@@ -453,129 +401,6 @@ fn seed_point(
         ),
         format!("the deepest point inside is ({inside})"),
     ))
-}
-
-/// The seed and, before settling, others spread over the shape.
-fn front_seeds(
-    surface: &Surface,
-    boundary: &Boundary,
-    settings: &PackSettings,
-    seed: &Vector3,
-    settles: bool,
-    diameter: f64,
-) -> Vec<Vector3> {
-    let mut seeds = vec![*seed];
-    if settles {
-        let others = spread_points(&surface.extent(), SEED_SPACING * diameter, settings.seed);
-        seeds.par_extend(
-            others
-                .into_par_iter()
-                .filter(|p| (p - seed).norm() > 2.0 * diameter && is_inside(boundary, p)),
-        );
-    }
-    seeds
-}
-
-/// Starts fronts at the seeds, and again wherever room is left that no front has reached.
-fn run_fronts(
-    front: &mut Front,
-    boundary: &Boundary,
-    seeds: &[Vector3],
-    inner: &[Inscribed],
-    history: &mut PackHistory,
-    progress: &dyn Fn(usize) -> Result<()>,
-) -> Result<()> {
-    let mut queue = Vec::new();
-    for seed in seeds {
-        let first = place_first_spheres(front, boundary, seed);
-        history.fronts += usize::from(!first.is_empty());
-        queue.extend(first);
-    }
-    front.advance(&queue, progress)?;
-    // What no front has reached: other shells, and rooms behind a neck narrower than a sphere.
-    for place in inner {
-        let smallest = front.smallest_next();
-        let reduced = front.reduced(smallest);
-        if place.radius < 0.5 * smallest || front.gap(&place.centre, reduced) < 0.9 * reduced {
-            continue;
-        }
-        // The steps are never longer than the distance to the wall, so that the climb stays on its side of it.
-        let reach = 4.0 * front.settings.radius_range[1];
-        let clearance = |p: &Vector3| {
-            let to_spheres = front.reach_to_spheres(p, reach);
-            let wall = boundary.nearest(p, to_spheres * front.settings.wall_factor);
-            wall.map_or(to_spheres, |near| {
-                near.distance / front.settings.wall_factor
-            })
-        };
-        let room = climb(&place.centre, 0.5 * smallest, 1e-6 * smallest, &clearance);
-        if room.radius >= smallest {
-            let first: Vec<u32> = place_first_spheres(front, boundary, &room.centre).collect();
-            history.fronts += usize::from(!first.is_empty());
-            front.advance(&first, progress)?;
-        }
-    }
-    Ok(())
-}
-
-/// Places as many of the first three spheres around `seed` as find room. Returns their indices.
-fn place_first_spheres(front: &mut Front, boundary: &Boundary, seed: &Vector3) -> Range<u32> {
-    let draws = front.next_draws();
-    let radii = draws.map(|u| front.radius(u));
-    let reduced = radii.map(|r| front.reduced(r));
-    let placed = first_spheres(seed, radii, reduced, &|centre, radius| {
-        front.fits(centre, radius) && is_inside(boundary, centre)
-    });
-    front.waiting.extend_from_slice(&draws[placed.len()..]);
-    front.begin(seed);
-    let first = front.balls.len() as u32;
-    for (centre, radius) in &placed {
-        front.place(centre, *radius);
-    }
-    first..front.balls.len() as u32
-}
-
-/// Puts spheres into the voids that take at least the smallest one, each of a size drawn among those that fit there,
-/// as long as their number does not distort the distribution of sizes by more than a tenth of its statistical noise. Whether it would have, so that voids may be left.
-fn fill_voids(front: &mut Front, history: &mut PackHistory) -> bool {
-    let one_size = front.settings.radius_range[0] == front.settings.radius_range[1];
-    let count = front.balls.len();
-    let most = if one_size {
-        usize::MAX
-    } else {
-        (0.1 * 1.36 * (count as f64).sqrt()).ceil() as usize
-    };
-    // Neighbours in memory are neighbours in space: the search goes round in strides, so that what it finds first is spread evenly.
-    let groups = count.div_ceil(VOID_SEARCH_GROUP);
-    for group in 0..groups {
-        let around: Vec<u32> = (group..count).step_by(groups).map(|i| i as u32).collect();
-        fill_voids_around(front, around, most, history);
-        if history.void_fillers == most {
-            return true;
-        }
-    }
-    false
-}
-
-/// Searches around the spheres `around` and then around those that were added, until there are `most` of them.
-fn fill_voids_around(
-    front: &mut Front,
-    mut around: Vec<u32>,
-    most: usize,
-    history: &mut PackHistory,
-) {
-    let smallest = front.settings.radius_range[0];
-    while !around.is_empty() {
-        let first = front.balls.len() as u32;
-        for place in front.voids(&around) {
-            if history.void_fillers < most && front.fits(&place, smallest) {
-                let (centre, radius) = front.fill(&place);
-                front.place(&centre, radius);
-                history.void_fillers += 1;
-            }
-        }
-        around = (first..front.balls.len() as u32).collect();
-    }
 }
 
 /// Sorts spheres by the Morton code of cells of edge 4 `radius`, so that neighbours in space are neighbours in memory.

@@ -90,7 +90,8 @@ impl Sizes {
             let u = (f64::from(k) + 0.5) / f64::from(PARTS);
             self.quantile_by_number(u) / self.mean_m() - 1.0
         };
-        let moment = |n: i32| (0..PARTS).map(|k| off(k).powi(n)).sum::<f64>() / f64::from(PARTS);
+        let offs: Vec<f64> = (0..PARTS).map(off).collect();
+        let moment = |n: i32| offs.iter().map(|off| off.powi(n)).sum::<f64>() / f64::from(PARTS);
         let spread = moment(2).sqrt();
         if spread < 1e-6 {
             return [0.0; 2];
