@@ -4,6 +4,7 @@
 //! [`table`] medians, [`front`]s, [`order`]s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest that is exact enough.
 
 pub mod collect;
+pub mod curves;
 pub mod expand;
 pub mod folder;
 pub mod front;

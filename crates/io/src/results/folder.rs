@@ -21,6 +21,7 @@ const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
 const TEST_PAGE: &str = "test.html";
+const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
 const LOCK: &str = ".lock";
 
@@ -175,6 +176,16 @@ impl ResultsFolder {
         })
     }
 
+    /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_test_curve(&self, csv: &str) -> Result<()> {
+        write_file(&self.path.join(TEST_CURVE), |out| {
+            out.write_all(csv.as_bytes())
+        })
+    }
+
     /// Makes the folder of the frames, unless it is there.
     ///
     /// # Errors
@@ -233,7 +244,7 @@ impl ResultsFolder {
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        const OTHERS: [&str; 9] = [
+        const OTHERS: [&str; 10] = [
             INDEX,
             SERIES,
             EVENTS,
@@ -241,6 +252,7 @@ impl ResultsFolder {
             FRAGMENT_TREE,
             SUMMARY,
             TEST_PAGE,
+            TEST_CURVE,
             FILM_STRIP,
             FILM,
         ];

@@ -129,6 +129,8 @@ pub enum MeasureOf {
     Figure(String),
     /// `masses`: how many pieces there are, and how far the distribution of their masses is from that of the finest run.
     Masses(Pieces),
+    /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is from that of the finest run.
+    Curve,
     /// `ledger`: "energy", "momentum" or "angular-momentum": its largest relative error, which needs no reference.
     Ledger(&'static str),
 }
@@ -162,6 +164,9 @@ const LEDGERS: [(&str, &str); 3] = [
 ];
 
 const PIECES: [(&str, Pieces); 2] = [("left", Pieces::Left), ("at-end", Pieces::AtEnd)];
+
+/// The curves of a laboratory test.
+const CURVES: [(&str, ()); 1] = [("force-displacement", ())];
 
 const TIMES: [(&str, RunTime); 2] = [("wall", RunTime::Wall), ("processor", RunTime::Processor)];
 
@@ -319,8 +324,15 @@ fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
 }
 
 fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure> {
-    let table = field.table(&["measure", "figure", "masses", "ledger", "reference"])?;
-    let kinds = ["measure", "figure", "masses", "ledger"];
+    let table = field.table(&[
+        "measure",
+        "figure",
+        "masses",
+        "curve",
+        "ledger",
+        "reference",
+    ])?;
+    let kinds = ["measure", "figure", "masses", "curve", "ledger"];
     let given: Vec<_> = table.given(&kinds).collect();
     if let [(one, _), (_, other), ..] = given.as_slice() {
         let problem = format!("{} stands beside {one}", other.path);
@@ -331,6 +343,10 @@ fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure>
         Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
         Some(("figure", field)) => MeasureOf::Figure(field.text()?.to_owned()),
         Some(("masses", field)) => MeasureOf::Masses(field.choice(&PIECES)?),
+        Some(("curve", field)) => {
+            field.choice(&CURVES)?;
+            MeasureOf::Curve
+        }
         Some((_, field)) => MeasureOf::Ledger(field.choice(&LEDGERS)?),
     };
     let reference = match table.get("reference") {
@@ -341,7 +357,9 @@ fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure>
         Some(field) => reference(&field, axes)?,
         None => Reference::ClosedForm,
     };
-    if let (MeasureOf::Masses(_), false) = (&of, matches!(reference, Reference::Finest(_))) {
+    if let (MeasureOf::Masses(_) | MeasureOf::Curve, false) =
+        (&of, matches!(reference, Reference::Finest(_)))
+    {
         let problem = format!("{} has no run to be compared with", field.path);
         return Err(field.refuse(problem, "add reference = { finest = \"AXIS\" }"));
     }

@@ -15,6 +15,7 @@ use serde_json::json;
 
 use crate::interrupt::Interrupt;
 use crate::sweep::collect::{Outcome, outcome};
+use crate::sweep::curves;
 use crate::sweep::expand::{Run, runs};
 use crate::sweep::folder::{Earlier, SweepFolder};
 use crate::sweep::jobs::{Job, arguments, further_jobs, jobs, scene_arguments, shell_line, work};
@@ -239,6 +240,12 @@ fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
         let plot = svg(table, at, true);
         let path = file(&format!("{}.svg", measure.name));
         write_file(&path, |out| out.write_all(plot.as_bytes()))?;
+        if let Some(plot) = curves::plot(table, at) {
+            let path = file(&format!("{}-curves.svg", measure.name));
+            write_file(&path, |out| {
+                out.write_all(dem_io::results::svg(&plot).as_bytes())
+            })?;
+        }
     }
     Ok(())
 }

@@ -8,8 +8,10 @@ use super::setup::{Setup, Specimen};
 use super::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 use crate::physics::bond::failure::Cause;
 
-/// Shares of the largest force between which the stiffness is the slope of the force.
-const SLOPE: [f64; 2] = [0.1, 0.4];
+/// Shares of the largest load between which the stiffness is the slope of the load: below it pins settle into the surface, above it bonds break.
+const SLOPE: [f64; 2] = [0.2, 0.6];
+/// Time over which loads are averaged, in periods of the lowest frequency.
+const WINDOW: f64 = 0.05;
 /// Fewest rows for a slope.
 const FEWEST_ROWS: usize = 3;
 
@@ -45,7 +47,7 @@ impl Figure {
 pub struct FirstBroken {
     /// When, s.
     pub time_s: f64,
-    /// Force at that time, N.
+    /// Load at that time, N.
     pub force_n: f64,
     /// Travel of what loads at that time, m.
     pub travel_m: f64,
@@ -77,7 +79,7 @@ pub struct Crack {
 pub struct TestResult {
     /// Its kind, as in the scene.
     pub kind: String,
-    /// Whether the body broke: the force fell below half of its largest.
+    /// Whether the body broke: the load fell below half of its largest.
     pub broken: bool,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
@@ -132,25 +134,30 @@ pub struct Evidence<'a> {
     pub bonds: Option<&'a BondKind>,
     /// Hz.
     pub lowest_frequency_hz: f64,
-    /// The force fell below half of its largest.
+    /// The load fell below half of its largest.
     pub broken: bool,
 }
 
-/// Force over a way in the elastic part of a test.
+/// Load over a way in the elastic part of a test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slope {
     /// N/m.
     pub stiffness_n_m: f64,
-    /// Way at which the fitted line has no force: play until everything touches, m.
+    /// Way at which the fitted line has no load: play until everything touches, m.
     pub start_m: f64,
 }
 
-/// Largest force, and the slope of the force over a `way` before it, between 10 % and 40 % of it. By least squares. None: too few rows.
+/// The rows of a test by which it is evaluated: means over a twentieth of the lowest period, which leave out what swings faster.
+pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
+    record.smoothed(WINDOW / lowest_frequency_hz)
+}
+
+/// The slope of the load over a `way`, between 20 % and 60 % of the largest load. By least squares. None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let peak = peak(rows)?;
     let up_to = |share: f64| {
         rows.iter()
-            .position(|row| row.force_n >= share * peak.force_n)
+            .position(|row| row.load_n() >= share * peak.load_n())
     };
     let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
     if elastic.len() < FEWEST_ROWS {
@@ -158,19 +165,19 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     }
     let count = elastic.len() as f64;
     let mean = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>() / count;
-    let (way_m, force_n) = (mean(&|row| way(row)), mean(&|row| row.force_n));
+    let (way_m, load_n) = (mean(&|row| way(row)), mean(&|row| row.load_n()));
     let sum = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>();
-    let both = sum(&|row| (way(row) - way_m) * (row.force_n - force_n));
+    let both = sum(&|row| (way(row) - way_m) * (row.load_n() - load_n));
     let stiffness_n_m = both / sum(&|row| (way(row) - way_m).powi(2));
     stiffness_n_m.is_finite().then(|| Slope {
         stiffness_n_m,
-        start_m: way_m - force_n / stiffness_n_m,
+        start_m: way_m - load_n / stiffness_n_m,
     })
 }
 
-/// The row with the largest force.
+/// The row with the largest load.
 pub fn peak(rows: &[Row]) -> Option<&Row> {
-    rows.iter().max_by(|a, b| a.force_n.total_cmp(&b.force_n))
+    rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
 /// Evaluates a test. Figures that cannot be told from its record are left out.
@@ -182,7 +189,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
         ..
     } = *evidence;
     let (mut figures, mut dimensions) = (Vec::new(), Vec::new());
-    let rows = &record.rows;
+    let rows = &rows_of(record, evidence.lowest_frequency_hz);
     let by_travel = slope(rows, |row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
@@ -198,7 +205,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
     };
     let (modulus, strength) = (test.young_modulus_pa, test.strength_pa);
     let nu = test.poisson_ratio;
-    let largest = peak(rows).map(|row| row.force_n);
+    let largest = peak(rows).map(Row::load_n);
     let failure = largest.filter(|_| evidence.broken);
     match setup.specimen {
         Specimen::Beam(beam) => {
@@ -289,7 +296,7 @@ const STIFFNESS: &str = "stiffness";
 const EQ_18: &str = "modulus without shear";
 /// Modulus of the body by its own deflection or elongation, shear counted.
 pub const MODULUS: &str = "modulus of the body";
-/// Largest force before the body broke.
+/// Largest load before the body broke.
 pub const FAILURE_FORCE: &str = "failure force";
 /// Stress at that force by the formula of the test.
 pub const STRENGTH: &str = "strength";
@@ -345,7 +352,7 @@ fn first_broken(evidence: &Evidence<'_>) -> Option<FirstBroken> {
     let nearest = rows.get(before.saturating_sub(1))?;
     Some(FirstBroken {
         time_s: first.time_s,
-        force_n: nearest.force_n,
+        force_n: nearest.load_n(),
         travel_m: nearest.travel_m,
         place_m: *evidence.places_m.first()?,
         cause: first.cause,

@@ -8,7 +8,7 @@ use dem_io::scene::Test;
 use dem_io::units::significant;
 
 use super::crack::{CrackPicture, crack_svg};
-use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, slope};
+use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, rows_of, slope};
 use super::record::{Record, Row};
 
 /// What the files of a test are made of.
@@ -26,7 +26,7 @@ pub struct TestFiles<'a> {
     pub picture: CrackPicture<'a>,
 }
 
-/// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `test.html`.
+/// Writes `plots/force-displacement.svg`, `plots/crack.svg`, `force-displacement.csv` and `test.html`.
 ///
 /// # Errors
 /// Those of the files.
@@ -35,16 +35,44 @@ pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
     let crack = crack_svg(&files.picture);
     folder.write_plot("force-displacement", &curve)?;
     folder.write_picture("crack", &crack)?;
+    folder.write_test_curve(&curve_csv(files.record, files.result.lowest_frequency_hz))?;
     folder.write_test_page(&page(files, &svg(&curve), &crack))
 }
 
-/// Force over displacement, with the theory's line where the scene names a modulus.
+/// The first line of `force-displacement.csv`.
+const COLUMNS: &str = "time_s,travel_m,displacement_m,force_n,reaction_n,deflection_m,broken_bonds";
+
+/// What was noted, a row for each interval. Every number reads back as the same bits.
+fn curve_csv(record: &Record, lowest_frequency_hz: f64) -> String {
+    let mut out = format!("{COLUMNS}\n");
+    let smoothed = rows_of(record, lowest_frequency_hz);
+    let play_m = slope(&smoothed, |row| row.travel_m).map_or(0.0, |slope| slope.start_m);
+    for row in &record.rows {
+        let broken = record
+            .broken
+            .partition_point(|broken| broken.time_s <= row.time_s);
+        let numbers = [
+            row.time_s,
+            row.travel_m,
+            row.travel_m - play_m,
+            row.force_n,
+            row.reaction_n,
+            row.deflection_m,
+        ];
+        out += &numbers.map(|number| format!("{number:e},")).concat();
+        // Writing to a text cannot fail.
+        let _ = writeln!(out, "{broken}");
+    }
+    out
+}
+
+/// Load over displacement, with the theory's line where the scene names a modulus.
 pub fn curve(record: &Record, result: &TestResult) -> Plot {
-    let rows = &record.rows;
+    let rows = &rows_of(record, result.lowest_frequency_hz);
     let by_travel = slope(rows, |row| row.travel_m);
     let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
-        rows.iter().map(|row| [way(row), row.force_n]).collect()
+        rows.iter().map(|row| [way(row), row.load_n()]).collect()
     };
     let mut lines = vec![Line {
         name: "travel of what loads".to_owned(),
@@ -60,7 +88,7 @@ pub fn curve(record: &Record, result: &TestResult) -> Plot {
         let whole = rows.iter().filter(|row| row.time_s <= until);
         lines.push(Line {
             name: "deflection of the body".to_owned(),
-            points: whole.map(|row| [way(row), row.force_n]).collect(),
+            points: whole.map(|row| [way(row), row.load_n()]).collect(),
             dashed: false,
         });
     }
@@ -70,7 +98,7 @@ pub fn curve(record: &Record, result: &TestResult) -> Plot {
     if let (Some(stiffness), Some(peak)) = (theory, peak(rows)) {
         lines.push(Line {
             name: "theory".to_owned(),
-            points: vec![[0.0, 0.0], [peak.force_n / stiffness, peak.force_n]],
+            points: vec![[0.0, 0.0], [peak.load_n() / stiffness, peak.load_n()]],
             dashed: true,
         });
     }

@@ -22,8 +22,18 @@ pub struct Row {
     pub travel_m: f64,
     /// Force of all that loads, along the direction of the test, N.
     pub force_n: f64,
+    /// Force of all other walls and supports against the direction of the test, less what gravity adds to it, N.
+    pub reaction_n: f64,
     /// Deflection or elongation of the body between the places where it is measured, m.
     pub deflection_m: f64,
+}
+
+impl Row {
+    /// What the body carries, N: the mean of the force of what loads and of what holds against it. The two differ by the body's inertia, which the mean
+    /// leaves out as far as its centre of mass lies halfway between them.
+    pub fn load_n(&self) -> f64 {
+        f64::midpoint(self.force_n, self.reaction_n)
+    }
 }
 
 /// A bond that broke.
@@ -46,17 +56,28 @@ pub struct Record {
     pub broken: Vec<BrokenBond>,
     /// Sums over the interval that has not ended, and the steps in it.
     open: (Row, u64),
-    /// Largest force of a row, N.
+    /// Largest load of a row, N.
     largest_n: f64,
+}
+
+/// Walls and supports of a state.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Holders {
+    /// Which walls.
+    pub walls: Vec<usize>,
+    /// Which supports.
+    pub supports: Vec<usize>,
 }
 
 /// What loads: walls or gripped sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
-    /// Walls of the state.
-    pub walls: Vec<usize>,
-    /// Supports of the state.
-    pub supports: Vec<usize>,
+    /// What loads.
+    pub moving: Holders,
+    /// What holds against it. Nothing: the reaction is taken to be the force.
+    pub resting: Holders,
+    /// What gravity adds to the reaction, N.
+    weight_n: f64,
     /// Steps in an interval.
     pub every: u64,
     /// Where walls and gripped particles stood at the start, along the direction, on average, m.
@@ -67,17 +88,12 @@ pub struct Loading {
 
 impl Loading {
     /// Of a test that takes `end_s`, in a state before the first step.
-    pub fn of(
-        walls: Vec<usize>,
-        supports: Vec<usize>,
-        setup: &Setup,
-        state: &State,
-        end_s: f64,
-    ) -> Self {
+    pub fn of(moving: Holders, resting: Holders, setup: &Setup, state: &State, end_s: f64) -> Self {
         let every = end_s / INTERVALS / state.time_step_s;
         let mut loading = Self {
-            walls,
-            supports,
+            moving,
+            resting,
+            weight_n: weight_n(setup, state),
             every: (every as u64).max(FEWEST_STEPS),
             start_m: 0.0,
             apart_m: 0.0,
@@ -89,14 +105,10 @@ impl Loading {
 
     /// Where what loads stands along the direction, on average, m.
     fn place_m(&self, setup: &Setup, state: &State) -> f64 {
-        let walls = self
-            .walls
-            .iter()
-            .map(|&at| state.walls[at].frame.position_m);
-        let held = self
-            .supports
-            .iter()
-            .flat_map(|&at| &state.supports[at].held);
+        let walls = self.moving.walls.iter();
+        let walls = walls.map(|&at| state.walls[at].frame.position_m);
+        let supports = self.moving.supports.iter();
+        let held = supports.flat_map(|&at| &state.supports[at].held);
         let gripped = held.map(|held| {
             let [x, y, z, _] = state.particles.poses[held.particle as usize].position_m;
             [x, y, z]
@@ -108,23 +120,28 @@ impl Loading {
             });
         sum / f64::max(count, 1.0)
     }
+}
 
-    /// Force of what loads on the body along the direction, N.
+impl Holders {
+    /// Their force on the body along the direction of a test, N.
     fn force_n(&self, setup: &Setup, state: &State) -> f64 {
-        let of_walls = self
-            .walls
-            .iter()
-            .map(|&at| dot(state.walls[at].push.force_n, setup.direction));
-        let held = self
-            .supports
-            .iter()
-            .flat_map(|&at| &state.supports[at].held);
+        let walls = self.walls.iter();
+        let of_walls = walls.map(|&at| dot(state.walls[at].push.force_n, setup.direction));
+        let supports = self.supports.iter();
+        let held = supports.flat_map(|&at| &state.supports[at].held);
         let of_supports = held.map(|held| {
             let [x, y, z, ..] = held.reactions[0];
             dot([x, y, z], setup.direction)
         });
         of_walls.chain(of_supports).sum()
     }
+}
+
+/// Weight of all particles along the direction of a test, N.
+fn weight_n(setup: &Setup, state: &State) -> f64 {
+    let motions = state.particles.motions.iter();
+    let masses = motions.map(|motion| 1.0 / motion.inverse_mass);
+    masses.sum::<f64>() * dot(state.gravity_m_s2, setup.direction)
 }
 
 fn apart_m(setup: &Setup, state: &State) -> f64 {
@@ -155,7 +172,13 @@ impl Record {
         let (sum, steps) = &mut self.open;
         sum.time_s += state.time_s;
         sum.travel_m += loading.place_m(setup, state) - loading.start_m;
-        sum.force_n += loading.force_n(setup, state);
+        let force_n = loading.moving.force_n(setup, state);
+        sum.force_n += force_n;
+        sum.reaction_n += if loading.resting == Holders::default() {
+            force_n
+        } else {
+            -loading.resting.force_n(setup, state) - loading.weight_n
+        };
         sum.deflection_m += apart_m(setup, state) - loading.apart_m;
         *steps += 1;
         if *steps < loading.every {
@@ -166,11 +189,38 @@ impl Record {
             time_s: share * sum.time_s,
             travel_m: share * sum.travel_m,
             force_n: share * sum.force_n,
+            reaction_n: share * sum.reaction_n,
             deflection_m: share * sum.deflection_m,
         };
         self.open = Default::default();
         self.rows.push(row);
-        self.largest_n = self.largest_n.max(row.force_n);
-        !self.broken.is_empty() && row.force_n < BROKEN * self.largest_n
+        self.largest_n = self.largest_n.max(row.load_n());
+        !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n
+    }
+
+    /// Means of the rows over `over_s`, around each.
+    pub fn smoothed(&self, over_s: f64) -> Vec<Row> {
+        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else {
+            return Vec::new();
+        };
+        let apart_s = (last.time_s - first.time_s) / (self.rows.len() - 1).max(1) as f64;
+        let aside = (0.5 * (over_s / apart_s - 1.0)).round().max(0.0) as usize;
+        let around = |at: usize| {
+            let aside = aside.min(at).min(self.rows.len() - 1 - at);
+            mean(&self.rows[at - aside..=at + aside])
+        };
+        (0..self.rows.len()).map(around).collect()
+    }
+}
+
+fn mean(rows: &[Row]) -> Row {
+    let share = 1.0 / rows.len() as f64;
+    let of = |value: fn(&Row) -> f64| share * rows.iter().map(value).sum::<f64>();
+    Row {
+        time_s: of(|row| row.time_s),
+        travel_m: of(|row| row.travel_m),
+        force_n: of(|row| row.force_n),
+        reaction_n: of(|row| row.reaction_n),
+        deflection_m: of(|row| row.deflection_m),
     }
 }

@@ -8,7 +8,7 @@ use super::arrange::support_of;
 use super::crack::{CrackPicture, Sphere};
 use super::evaluate::{Evidence, TestResult, evaluate};
 use super::page::{TestFiles, write_test};
-use super::record::{Loading, Record};
+use super::record::{Holders, Loading, Record};
 use super::setup::{Setup, setup};
 use crate::plan::Plan;
 use crate::state::State;
@@ -50,18 +50,27 @@ impl<'a> Watch<'a> {
         let state = &plan.state;
         let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
         let setup = setup(scene, test, state, particles, settings.volume_m3)?;
-        let walls = scene.walls.keys().enumerate();
-        let walls = walls.filter(|(_, name)| test.moves.contains(name));
         let grips: Vec<String> = test.moves.iter().map(|name| support_of(name)).collect();
+        let walls = scene.walls.keys().enumerate();
         let supports = scene.supports.keys().enumerate();
-        let supports = supports.filter(|(_, name)| grips.contains(name));
-        let loading = Loading::of(
-            walls.map(|(at, _)| at).collect(),
-            supports.map(|(at, _)| at).collect(),
-            &setup,
-            state,
-            scene.run.end_time_s,
-        );
+        let (mut moving, mut resting) = (Holders::default(), Holders::default());
+        for (at, name) in walls {
+            let holders = if test.moves.contains(name) {
+                &mut moving
+            } else {
+                &mut resting
+            };
+            holders.walls.push(at);
+        }
+        for (at, name) in supports {
+            let holders = if grips.contains(name) {
+                &mut moving
+            } else {
+                &mut resting
+            };
+            holders.supports.push(at);
+        }
+        let loading = Loading::of(moving, resting, &setup, state, scene.run.end_time_s);
         let spheres = (0..).zip(&state.particles.poses);
         let spheres = spheres
             .map(|(i, pose)| (pose.position_m, particles.binary_search(&i).is_ok()))

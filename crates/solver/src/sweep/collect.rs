@@ -6,6 +6,7 @@ use std::path::Path;
 use dem_io::scene::study::{MeasureOf, Reference, RunTime, Study};
 use serde_json::Value;
 
+use super::curves::{curve, largest_n};
 use super::jobs::Job;
 use super::masses::masses_kg;
 
@@ -35,6 +36,8 @@ pub struct Reading {
     pub closed_form: Option<f64>,
     /// Of masses of pieces: each, kg. Otherwise empty.
     pub masses_kg: Vec<f64>,
+    /// Of a curve: its points (displacement in m, force in N). Otherwise empty.
+    pub curve: Vec<[f64; 2]>,
 }
 
 /// What came of a process.
@@ -101,20 +104,32 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
 
 /// What is no number in JSON is null there.
 fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
-    let plain = |value: f64, masses_kg: Vec<f64>| Reading {
+    let plain = |value: f64| Reading {
         value,
         unit: String::new(),
         closed_form: None,
-        masses_kg,
+        masses_kg: Vec::new(),
+        curve: Vec::new(),
     };
     let (list, name, reference) = match of {
         MeasureOf::Ledger(key) => {
             let value = summary[*key].as_f64().unwrap_or(f64::NAN);
-            return Ok(plain(value, Vec::new()));
+            return Ok(plain(value));
         }
         MeasureOf::Masses(pieces) => {
             let masses_kg = masses_kg(*pieces, results)?;
-            return Ok(plain(masses_kg.len() as f64, masses_kg));
+            return Ok(Reading {
+                masses_kg: masses_kg.clone(),
+                ..plain(masses_kg.len() as f64)
+            });
+        }
+        MeasureOf::Curve => {
+            let curve = curve(results)?;
+            return Ok(Reading {
+                unit: "N".to_owned(),
+                curve: curve.clone(),
+                ..plain(largest_n(&curve))
+            });
         }
         MeasureOf::Measure(name) => (&summary["measures"], name, "reference"),
         MeasureOf::Figure(name) => (&summary["test"]["figures"], name, "theory"),
@@ -125,9 +140,8 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         .next()
         .ok_or_else(|| format!("nothing in its summary is called '{name}'"))?;
     Ok(Reading {
-        value: entry["value"].as_f64().unwrap_or(f64::NAN),
         unit: entry["unit"].as_str().unwrap_or_default().to_owned(),
         closed_form: entry[reference].as_f64(),
-        masses_kg: Vec::new(),
+        ..plain(entry["value"].as_f64().unwrap_or(f64::NAN))
     })
 }

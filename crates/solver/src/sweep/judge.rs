@@ -6,6 +6,7 @@ use dem_io::scene::study::{MeasureOf, Reference, Study};
 use dem_io::units::significant;
 
 use super::collect::Done;
+use super::curves;
 use super::expand::{Run, group};
 use super::masses::{by_chance, distance};
 use super::reference::{Extrapolated, richardson};
@@ -67,13 +68,27 @@ pub fn judge(
                         continue;
                     }
                     set_error(judged, reference, None);
-                    if let (MeasureOf::Masses(_), [Some(own), Some(other)]) =
-                        (&of.of, [done[at], done[finest]])
-                    {
-                        let [own, other] = [own, other].map(|d| &d.readings[measure].masses_kg);
-                        judged.error = Some(distance(own, other, |_| 1.0));
-                        judged.uncertainty = Some(by_chance(own.len(), other.len()));
+                    let [Some(own), Some(other)] = [done[at], done[finest]] else {
+                        continue;
+                    };
+                    let [own, other] = [own, other].map(|done| &done.readings[measure]);
+                    match of.of {
+                        MeasureOf::Masses(_) => {
+                            let [own, other] = [own, other].map(|reading| &reading.masses_kg);
+                            judged.error = Some(distance(own, other, |_| 1.0));
+                            judged.uncertainty = Some(by_chance(own.len(), other.len()));
+                        }
+                        MeasureOf::Curve => {
+                            judged.error = Some(curves::distance(&own.curve, &other.curve));
+                        }
+                        _ => {}
                     }
+                }
+                let [own_s, finest_s] = [rows[at].time_s, rows[finest].time_s];
+                if let (Some(judged), [Some(own_s), Some(finest_s)]) =
+                    (rows[at].results.get_mut(measure), [own_s, finest_s])
+                {
+                    judged.times_as_fast = Some(finest_s / own_s);
                 }
             }
             continue;
@@ -143,6 +158,10 @@ pub fn in_words(study: &Study, measure: usize) -> String {
         (_, Reference::Value(text)) => text.clone(),
         (MeasureOf::Masses(_), Reference::Finest(at)) => format!(
             "the masses of the finest run along {} (distance of Kolmogorov and Smirnov, by number; below its uncertainty it is chance)",
+            study.axes[*at].name
+        ),
+        (MeasureOf::Curve, Reference::Finest(at)) => format!(
+            "the curve of the finest run along {} (area between the curves over the area under that one)",
             study.axes[*at].name
         ),
         (_, Reference::Finest(at)) => format!("the finest run along {}", study.axes[*at].name),

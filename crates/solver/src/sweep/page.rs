@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use dem_io::units::significant;
 
+use super::curves;
 use super::plot::{escaped, svg};
 use super::table::{Judged, Row, SweepTable};
 use super::text::front_of;
@@ -51,6 +52,9 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
         writeln!(out, "<h2>{}</h2>", escaped(&measure.name.replace('_', " ")))?;
         writeln!(out, "<p>Against {}.</p>", escaped(&measure.reference))?;
         writeln!(out, "{}", svg(table, at, false))?;
+        if let Some(plot) = curves::plot(table, at) {
+            writeln!(out, "{}", dem_io::results::svg(&plot))?;
+        }
         write_front(out, table, at)?;
     }
     write_orders(out, table)?;
@@ -96,12 +100,20 @@ fn write_front(out: &mut String, table: &SweepTable, measure: usize) -> std::fmt
         "<p>On the Pareto front, the fastest first:</p>\n<div class=\"wide\"><table>"
     )?;
     let mut names = vec![("run", true), ("time (s)", true), ("error", true)];
+    let is_timed = |row: &&Row| row.results[measure].times_as_fast.is_some();
+    let with_ratio = front.iter().any(is_timed);
+    if with_ratio {
+        names.push(("times as fast as the finest", true));
+    }
     names.extend(table.axes.iter().map(|axis| (axis.name.as_str(), false)));
     heads(out, &names)?;
     for row in front {
         write!(out, "<tr><td class=\"n\">{}</td>", row.number)?;
         number(out, row.time_s, 3)?;
         number(out, row.results[measure].sure_error(), 2)?;
+        if with_ratio {
+            number(out, row.results[measure].times_as_fast, 3)?;
+        }
         settings(out, row)?;
         writeln!(out, "</tr>")?;
     }

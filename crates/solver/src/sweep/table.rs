@@ -107,6 +107,11 @@ pub struct Judged {
     pub is_reference: bool,
     /// Whether it is on the [front].
     pub is_on_front: bool,
+    /// Time of the run that it is compared with over its own.
+    pub times_as_fast: Option<f64>,
+    /// Of a curve: its points (displacement in m, force in N). Otherwise empty.
+    #[serde(skip)]
+    pub curve: Vec<[f64; 2]>,
 }
 
 impl Row {
@@ -168,6 +173,9 @@ impl SweepTable {
         if machines.len() > 1 {
             let text = "the runs are of several machines, so that their times are not compared";
             notes.push(text.to_owned());
+            for judged in rows.iter_mut().flat_map(|row| &mut row.results) {
+                judged.times_as_fast = None;
+            }
         } else {
             for measure in 0..study.measures.len() {
                 mark_front(&mut rows, measure);
@@ -272,6 +280,8 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
                 uncertainty: None,
                 is_reference: false,
                 is_on_front: false,
+                times_as_fast: None,
+                curve: reading.curve.clone(),
             });
             judged.collect()
         }),

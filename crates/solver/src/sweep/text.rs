@@ -17,7 +17,14 @@ pub fn csv(table: &SweepTable) -> String {
         columns.push(name.to_owned());
     }
     for measure in &table.measures {
-        for part in ["value", "reference", "error", "uncertainty", "front"] {
+        for part in [
+            "value",
+            "reference",
+            "error",
+            "uncertainty",
+            "front",
+            "times_as_fast",
+        ] {
             columns.push(format!("{}_{part}", measure.name));
         }
     }
@@ -39,8 +46,9 @@ pub fn csv(table: &SweepTable) -> String {
                     cells.push(number(judged.error));
                     cells.push(number(judged.uncertainty));
                     cells.push(u8::from(judged.is_on_front).to_string());
+                    cells.push(number(judged.times_as_fast));
                 }
-                None => cells.extend(std::iter::repeat_n(String::new(), 5)),
+                None => cells.extend(std::iter::repeat_n(String::new(), 6)),
             }
         }
         cells.push(row.failed.clone().unwrap_or_default());
@@ -116,8 +124,11 @@ impl fmt::Display for SweepTable {
                 .into_iter()
                 .map(|row| {
                     let judged = &row.results[at];
+                    let faster = judged.times_as_fast.map_or(String::new(), |times| {
+                        format!(", {} times as fast as the finest", significant(times, 3))
+                    });
                     format!(
-                        "  {:>9} s  error {:<9} {}",
+                        "  {:>9} s  error {:<9} {}{faster}",
                         significant(row.time_s.unwrap_or(f64::NAN), 3),
                         significant(judged.sure_error().unwrap_or(f64::NAN), 2),
                         self.named(row)

@@ -1,5 +1,7 @@
 //! What is made of a record that is known.
 
+use std::f64::consts::PI;
+
 use dem_io::scene::{BondKind, Test, TestKind};
 use dem_run::laboratory::evaluate::{Evidence, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
@@ -70,6 +72,7 @@ pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
             time_s: share,
             travel_m: PLAY + deflection_m + SOFT * share * largest,
             force_n,
+            reaction_n: force_n,
             deflection_m,
         }
     });
@@ -88,6 +91,16 @@ pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
 pub(crate) const PLACES: [[f64; 3]; 2] = [[0.1, 0.01, 0.002], [0.15, 0.02, 0.01]];
 
 pub(crate) fn evaluated(test: &Test, setup: &Setup, record: &Record, broken: bool) -> TestResult {
+    evaluated_at(40.0, test, setup, record, broken)
+}
+
+fn evaluated_at(
+    lowest_frequency_hz: f64,
+    test: &Test,
+    setup: &Setup,
+    record: &Record,
+    broken: bool,
+) -> TestResult {
     let bonds = dem_io::scene_from_text(SCENE, "scene.toml", &[])
         .unwrap()
         .bonds;
@@ -98,7 +111,7 @@ pub(crate) fn evaluated(test: &Test, setup: &Setup, record: &Record, broken: boo
         record,
         places_m: &PLACES,
         bonds: Some(bonds),
-        lowest_frequency_hz: 40.0,
+        lowest_frequency_hz,
         broken,
     })
 }
@@ -176,6 +189,59 @@ fn a_beam_by_its_force_and_way() {
     assert!(crack.is_within);
     assert_near(Some(crack.share_within), 0.5);
     assert!(result.doubts().is_empty());
+}
+
+/// A body that is accelerated pushes less on what holds it than what loads it pushes on the body.
+#[test]
+fn inertia_of_the_body_is_no_load() {
+    let test = test(TestKind::FourPointBending);
+    let setup = setup(Specimen::Beam(BEAM));
+    let slow = record(2e4, 50.0);
+    let mut shaken = slow.clone();
+    for row in &mut shaken.rows {
+        let inertia_n = 3.0 * (200.0 * row.time_s).sin() + 5.0 * row.time_s;
+        row.force_n += inertia_n;
+        row.reaction_n -= inertia_n;
+    }
+    let [slow, shaken] = [slow, shaken].map(|record| evaluated(&test, &setup, &record, true));
+    for name in ["stiffness", "modulus of the body", "failure force"] {
+        assert_near(shaken.figure(name), slow.figure(name).unwrap());
+    }
+}
+
+/// What swings faster than a twentieth of the lowest period is averaged out.
+#[test]
+fn fast_oscillations_are_left_out() {
+    let test = test(TestKind::FourPointBending);
+    let setup = setup(Specimen::Beam(BEAM));
+    let mut record = record(2e4, 50.0);
+    // Rows are 1 ms apart, the lowest period is 100 ms: means are over five rows, which is the period of this.
+    for (at, row) in record.rows.iter_mut().enumerate() {
+        let swing_n = 4.0 * (0.4 * PI * at as f64).sin();
+        row.force_n += swing_n;
+        row.reaction_n += swing_n;
+    }
+    let result = evaluated_at(10.0, &test, &setup, &record, true);
+    assert_near(result.figure("stiffness of the body"), 2e4);
+    // The mean over five rows that end with the fall.
+    assert_near(result.figure("failure force"), 50.0 * 0.998);
+    let raw = evaluated(&test, &setup, &record, true);
+    assert!(raw.figure("failure force").unwrap() > 53.0);
+}
+
+/// Rows of different lengths of an interval at the ends, and fewer rows than a mean takes.
+#[test]
+fn means_of_few_rows() {
+    let record = record(2e4, 50.0);
+    let whole = record.smoothed(0.0051);
+    assert_eq!(whole.len(), record.rows.len());
+    assert_eq!(whole[0], record.rows[0]);
+    assert_near(Some(whole[1].force_n), record.rows[1].force_n);
+    assert_near(Some(whole[500].travel_m), record.rows[500].travel_m);
+    let mut few = record.clone();
+    few.rows.truncate(2);
+    assert_eq!(few.smoothed(1.0), few.rows);
+    assert_eq!(Record::default().smoothed(1.0), []);
 }
 
 #[test]

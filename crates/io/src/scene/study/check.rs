@@ -142,6 +142,13 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
                 );
                 return refuse(problem, "write masses = \"at-end\"".to_owned());
             }
+            MeasureOf::Curve if scene.test.is_none() => {
+                let problem = format!(
+                    "measures.{name}.curve is that of a test, but the scene {} has no [test]",
+                    scene.source
+                );
+                return refuse(problem, "name a measure of the scene".to_owned());
+            }
             MeasureOf::Figure(of) if scene.test.is_none() => {
                 let problem = format!(
                     "measures.{name}.figure is '{of}', but the scene {} has no [test]",

@@ -1,0 +1,142 @@
+//! Force over displacement of laboratory tests, and how far two such curves are apart.
+
+use std::fs;
+use std::path::Path;
+
+use dem_io::results::{Axis, Line, Plot};
+
+use super::table::SweepTable;
+
+/// Most curves in one plot: as many as there are colours.
+const MOST_CURVES: usize = 7;
+
+/// The curve of the test whose results stand in this folder: points (displacement in m, force in N), rising in the first.
+///
+/// # Errors
+/// Why there is none, in words.
+pub fn curve(results: &Path) -> Result<Vec<[f64; 2]>, String> {
+    const FILE: &str = "force-displacement.csv";
+    let text =
+        fs::read_to_string(results.join(FILE)).map_err(|_| format!("it has left no {FILE}"))?;
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let place = |wanted: &str| names.iter().position(|name| *name == wanted);
+    let (Some(x), Some(y)) = (place("displacement_m"), place("force_n")) else {
+        return Err(format!(
+            "its {FILE} has no columns displacement_m and force_n"
+        ));
+    };
+    let point = |line: &str| -> Option<[f64; 2]> {
+        let cells: Vec<&str> = line.split(',').collect();
+        Some([cells.get(x)?.parse().ok()?, cells.get(y)?.parse().ok()?])
+    };
+    let points: Option<Vec<[f64; 2]>> = lines.map(point).collect();
+    points
+        .filter(|points| points.len() > 1)
+        .ok_or_else(|| format!("its {FILE} has no curve"))
+}
+
+/// Largest force, N.
+pub fn largest_n(curve: &[[f64; 2]]) -> f64 {
+    curve.iter().map(|[_, force]| *force).fold(0.0, f64::max)
+}
+
+/// The area between two curves over the area under the second, from no displacement to where the later of the two has its largest force.
+/// Lines join the points; beyond its last point a curve keeps its last force.
+pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
+    let at_peak = |points: &[[f64; 2]]| {
+        let peak = points.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
+        peak.map_or(0.0, |[x, _]| *x)
+    };
+    let end = at_peak(curve).max(at_peak(reference));
+    let inner = curve.iter().chain(reference).map(|[x, _]| *x);
+    let mut places: Vec<f64> = inner.filter(|x| *x > 0.0 && *x < end).collect();
+    places.extend([0.0, end]);
+    places.sort_by(f64::total_cmp);
+    let (mut between, mut under) = (0.0, 0.0);
+    for ends in places.windows(2) {
+        let width_m = ends[1] - ends[0];
+        let [own, other] =
+            [curve, reference].map(|points| [force_at(points, ends[0]), force_at(points, ends[1])]);
+        between += width_m * mean_size(own[0] - other[0], own[1] - other[1]);
+        under += 0.5 * width_m * (other[0] + other[1]);
+    }
+    between / under
+}
+
+/// Mean of |y| where y goes evenly from `from` to `to`.
+fn mean_size(from: f64, to: f64) -> f64 {
+    if from * to < 0.0 {
+        0.5 * (from * from + to * to) / (from.abs() + to.abs())
+    } else {
+        0.5 * (from + to).abs()
+    }
+}
+
+/// Between points the line through them.
+fn force_at(curve: &[[f64; 2]], x: f64) -> f64 {
+    let after = curve.partition_point(|point| point[0] <= x);
+    match (
+        after.checked_sub(1).map(|at| curve[at]),
+        curve.get(after).copied(),
+    ) {
+        (Some([x0, y0]), Some([x1, y1])) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (Some([_, y]), None) | (None, Some([_, y])) => y,
+        (None, None) => 0.0,
+    }
+}
+
+/// The curves of a measure of all runs, of seven at most. None: it is of something else.
+pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
+    let runs = table.runs.iter();
+    let with_curve = runs.filter(|row| {
+        row.results
+            .get(measure)
+            .is_some_and(|j| !j.curve.is_empty())
+    });
+    let lines: Vec<Line> = with_curve
+        .take(MOST_CURVES)
+        .map(|row| Line {
+            name: row.settings.join(", "),
+            points: row.results[measure].curve.clone(),
+            dashed: !row.results[measure].is_reference,
+        })
+        .collect();
+    (!lines.is_empty()).then(|| Plot {
+        title: table.measures[measure].name.replace('_', " "),
+        x: Axis {
+            label: "displacement (m)".to_owned(),
+            ..Axis::default()
+        },
+        y: Axis {
+            label: "force (N)".to_owned(),
+            ..Axis::default()
+        },
+        lines,
+        reference: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_are_a_known_way_apart() {
+        let line = [[0.0, 0.0], [1.0, 2.0], [2.0, 4.0]];
+        assert_eq!(distance(&line, &line), 0.0);
+        // The same line with other points, and before the load touched.
+        let same = [[-1.0, -2.0], [0.5, 1.0], [2.0, 4.0]];
+        assert!(distance(&same, &line) < 1e-15);
+        let stiffer = [[0.0, 0.0], [2.0, 4.4]];
+        assert!((distance(&stiffer, &line) - 0.1).abs() < 1e-15);
+        // It breaks at half the displacement: the other half of the area, three quarters of it, is between them, but for the fall.
+        let weaker = [[0.0, 0.0], [1.0, 2.0], [1.0 + 1e-9, 0.0], [1.1, 0.0]];
+        assert!((distance(&weaker, &line) - 0.75).abs() < 1e-8);
+        // And the other way round: the area under the weaker one is 1, that between them 3.
+        assert!((distance(&line, &weaker) - 3.0).abs() < 1e-8);
+        // Two lines that cross at half the way: two triangles of a quarter each, under the second one of a half.
+        let [up, down] = [[[0.0, 0.0], [1.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
+        assert!((distance(&up, &down) - 1.0).abs() < 1e-15);
+    }
+}
