@@ -49,6 +49,7 @@ pub use read::{read_scene, scene_from_text, text_of};
 pub use region::Region;
 pub use relaxation::Relaxation;
 pub use replacement::{Back, Replacement};
+pub use run::SAFETY;
 pub use search::Search;
 pub use sleep::Sleep;
 pub use test::{Test, TestKind};

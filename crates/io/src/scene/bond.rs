@@ -145,7 +145,7 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         "rate_of",
         "weibull_modulus",
     ])?;
-    let strength = |key| table.read(key, |field: Field<'_>| field.positive(&STRESS));
+    let strength = |key| table.read(key, |field: Field<'_>| field.not_negative(&STRESS));
     let failure = BondFailure {
         tension_pa: strength("tension")?,
         shear_pa: strength("shear")?,

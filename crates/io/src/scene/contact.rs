@@ -39,7 +39,7 @@ pub struct Contact {
     pub restitution: f64,
     /// `friction`: largest tangential force over the normal one; 0 unless given.
     pub friction: f64,
-    /// `rolling`
+    /// `rolling`: none where `friction` is 0.
     pub rolling: Rolling,
 }
 
@@ -115,14 +115,15 @@ fn read(
         "more than 0 and at most 1",
         "1 loses nothing; a usual value is 0.5",
     )?;
+    let friction = table
+        .read("friction", |field| field.not_negative(&NUMBER))?
+        .unwrap_or_default();
     Ok(Contact {
         materials: pair,
         law,
         restitution,
-        friction: table
-            .read("friction", |field| field.not_negative(&NUMBER))?
-            .unwrap_or_default(),
-        rolling: rolling(&table)?,
+        friction,
+        rolling: rolling(&table, friction)?,
     })
 }
 
@@ -180,7 +181,7 @@ fn need_moduli(
     Err(table.refuse(problem, remedy))
 }
 
-fn rolling(table: &Table<'_>) -> Result<Rolling> {
+fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let laws = [("constant-torque", false), ("spring-dashpot", true)];
     let is_sprung = table.read("rolling", |field| field.choice(&laws))?;
     let damping = table.read("rolling_damping", |field| {
@@ -207,6 +208,23 @@ fn rolling(table: &Table<'_>) -> Result<Rolling> {
         "more than 0",
         "a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists",
     )?;
+    if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
+        let problem = format!(
+            "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
+            field.path,
+            field.shown(),
+            table.path,
+            if table.get("friction").is_some() {
+                "0"
+            } else {
+                "not given, which means 0"
+            }
+        );
+        return Err(field.refuse(
+            problem,
+            "give friction above 0, or remove rolling and rolling_friction",
+        ));
+    }
     Ok(if is_sprung == Some(true) {
         Rolling::SpringDashpot {
             friction,

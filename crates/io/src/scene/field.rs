@@ -90,7 +90,9 @@ impl<'a> Field<'a> {
     /// A value of zero or more.
     pub(super) fn not_negative(&self, dimension: &Dimension) -> Result<f64> {
         let limit = with_unit("at least 0", dimension);
-        self.limited(dimension, |value| value >= 0.0, &limit, &example(dimension))
+        let value = self.limited(dimension, |value| value >= 0.0, &limit, &example(dimension))?;
+        // -0 is 0.
+        Ok(value.abs())
     }
 
     /// A plain number above `low` and below `high`.

@@ -32,8 +32,8 @@ pub(super) const START_OVERLAPS: [(&str, StartOverlap); 2] = [
     ("relax", StartOverlap::Relax),
 ];
 
-/// `safety` unless given.
-const SAFETY: f64 = 0.9;
+/// `run.safety` unless given.
+pub const SAFETY: f64 = 0.9;
 
 pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     let is_test = root.get("test").is_some();

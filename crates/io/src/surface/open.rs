@@ -1,7 +1,8 @@
 //! Facets -> welded triangles of a surface that need not enclose anything: a plate, a chute, a hopper without a lid.
 
 use super::frame::Frame;
-use super::mesh::{Edges, Mesh};
+use super::mesh::{Edges, Mesh, smallest_first};
+use super::sets::Sets;
 use super::vector::{bounds, distance, length, normal};
 use super::{t_junctions, weld};
 use crate::hash::fnv1a;
@@ -32,6 +33,8 @@ pub struct OpenSurface {
     pub degenerate_facets: usize,
     /// Facets that stood there already (either way round), dropped.
     pub duplicate_facets: usize,
+    /// Triangles that are wound against the others that they hang together with: those of each part that are the fewer. 0: each part is wound one way.
+    pub turned_facets: usize,
     /// One sentence for each thing that is odd about the file but harmless.
     pub warnings: Vec<String>,
 }
@@ -79,6 +82,10 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
             "export the shape again",
         ));
     }
+    let turned_facets = turned(&mesh, |_| true)
+        .iter()
+        .filter(|turned| **turned)
+        .count();
     mesh.order_vertices();
     Ok(OpenSurface {
         source: String::new(),
@@ -94,13 +101,15 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
         t_junctions,
         degenerate_facets: dropped[0],
         duplicate_facets: dropped[1],
+        turned_facets,
         warnings: file.warnings,
     })
 }
 
 /// Drops triangles without area and all but one of equal ones, and sorts the rest. How many of each.
 ///
-/// Not the rule for solids, which drops both of a pair that stands there both ways round: here such a pair is a plate.
+/// Not the rule for solids, which drops both of a pair that stands there both ways round: here such a pair is a plate. It is wound as most of equal ones are,
+/// and as its neighbours are where there are as many of either way.
 fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     let all = mesh.triangles.len();
     let mut kept: Vec<([u32; 3], [u32; 3])> = (0..all as u32)
@@ -109,14 +118,54 @@ fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
             let triangle = mesh.triangles[t as usize];
             let mut sorted = triangle;
             sorted.sort_unstable();
-            (sorted, super::mesh::smallest_first(triangle))
+            (sorted, smallest_first(triangle))
         })
         .collect();
     let with_area = kept.len();
     kept.sort_unstable();
-    kept.dedup_by_key(|(sorted, _)| *sorted);
-    mesh.triangles = kept.into_iter().map(|(_, triangle)| triangle).collect();
+    mesh.triangles.clear();
+    let mut both_ways = Vec::new();
+    for equal in kept.chunk_by(|a, b| a.0 == b.0) {
+        let [first, last] = [equal[0].1, equal[equal.len() - 1].1];
+        let of_first = equal.partition_point(|(_, triangle)| *triangle == first);
+        both_ways.push(2 * of_first == equal.len());
+        let is_last = 2 * of_first < equal.len();
+        mesh.triangles.push(if is_last { last } else { first });
+    }
+    if both_ways.contains(&true) {
+        let turned = turned(mesh, |t| !both_ways[t as usize]);
+        for (t, triangle) in mesh.triangles.iter_mut().enumerate() {
+            if both_ways[t] && turned[t] {
+                triangle.swap(1, 2);
+            }
+        }
+    }
     [all - with_area, with_area - mesh.triangles.len()]
+}
+
+/// Which triangles are wound against most of those that they hang together with over edges of two; `counts` says which of these count.
+fn turned(mesh: &Mesh, counts: impl Fn(u32) -> bool) -> Vec<bool> {
+    let mut sets = Sets::new(mesh.triangles.len());
+    for group in Edges::of(mesh).groups() {
+        if let [a, b] = *group {
+            let against = mesh.half_edge(a) == mesh.half_edge(b);
+            // A strip with one side fits together no way: the first edges have their say.
+            sets.join(a / 3, b / 3, against);
+        }
+    }
+    let all = 0..mesh.triangles.len() as u32;
+    let found: Vec<(u32, bool)> = all.clone().map(|t| sets.find(t)).collect();
+    // By root: those that are wound as it is, less those that are not.
+    let mut majority = vec![0_i64; found.len()];
+    for (t, (root, turned)) in all.zip(&found) {
+        if counts(t) {
+            majority[*root as usize] += if *turned { -1 } else { 1 };
+        }
+    }
+    found
+        .iter()
+        .map(|(root, turned)| *turned != (majority[*root as usize] < 0))
+        .collect()
 }
 
 fn has_area(mesh: &Mesh, triangle: u32, diagonal: f64) -> bool {

@@ -140,8 +140,14 @@ fn contacts() {
     assert_eq!(
         good("every-key.toml").contacts,
         [
-            contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2)),
-            contact(["cake", "cake"], hertz, 1.0, sprung(0.1, 0.5)),
+            Contact {
+                friction: 0.1,
+                ..contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2))
+            },
+            Contact {
+                friction: 0.6,
+                ..contact(["cake", "cake"], hertz, 1.0, sprung(0.1, 0.5))
+            },
             Contact {
                 friction: 0.4,
                 ..contact(["cake", "steel"], hertz, 0.3, torque(0.05))
@@ -154,7 +160,10 @@ fn contacts() {
         [
             contact(["a", "a"], hertz, 0.7, Rolling::None),
             contact(["a", "a-a"], hertz, 0.5, Rolling::None),
-            contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3)),
+            Contact {
+                friction: 0.3,
+                ..contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3))
+            },
             contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::None),
         ]
     );
@@ -579,7 +588,7 @@ fn values_in_words() {
         "contacts.belt-rubber-cake.rolling constant-torque",
         "contacts.cake-cake.law hertz-mindlin",
         "contacts.cake-cake.restitution 1",
-        "contacts.cake-cake.friction 0",
+        "contacts.cake-cake.friction 0.6",
         "contacts.cake-cake.rolling spring-dashpot",
         "contacts.cake-cake.rolling_friction 0.1",
         "contacts.cake-cake.rolling_damping 0.5",

@@ -9,6 +9,7 @@
 //! and nearer than 1e-9 of the reach it is passed over if beyond the vertex the surface comes nearer.
 
 mod features;
+mod inside;
 mod tree;
 mod triangle;
 
@@ -61,6 +62,8 @@ pub struct Content {
     pub open_edges: usize,
     /// Edges of more than two triangles.
     pub crowded_edges: usize,
+    /// Edges along which not as many triangles run one way as the other. None: the surface is closed and wound one way, so that it has an inside.
+    pub unpaired_edges: usize,
     /// Flat parts.
     pub flat_parts: u32,
     /// Straight edges between or around flat parts.
@@ -113,6 +116,7 @@ impl Mesh {
                 degenerate: triangles.len() - sorted.len(),
                 open_edges: features.open_edges,
                 crowded_edges: features.crowded_edges,
+                unpaired_edges: features.unpaired_edges,
                 flat_parts: features.flat_parts,
                 straight_edges: features.straight_edges,
                 corners: features.corners,
@@ -134,7 +138,7 @@ impl Mesh {
         self.tree.bounds()
     }
 
-    /// Length of the diagonal of its box, m. One that is a thousand times larger than the bodies may have been read in the wrong unit.
+    /// Length of the diagonal of its box, m.
     pub fn diagonal_m(&self) -> f64 {
         self.diagonal_m
     }

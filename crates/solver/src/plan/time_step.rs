@@ -1,6 +1,6 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use beside it.
 
-use dem_io::scene::{Factor, Scene, WallMotion};
+use dem_io::scene::{Factor, SAFETY, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 
 use nalgebra::Vector3;
@@ -17,8 +17,8 @@ use crate::state::contacts::{Contacts, Law};
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
-/// Share of its own limit with which an impact is followed, at most: a sphere that bounces keeps its energy to some 3e-3 of it then, and
-/// to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a contact does not.
+/// Share of its own limit with which an impact is followed, at most, at the usual safety; as much more or less at another: a sphere that bounces keeps its
+/// energy to some 3e-3 of it then, and to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a contact does not.
 const SHARE_OF_IMPACT: f64 = 0.25;
 /// The same where a linear law is among the contacts: its force begins with a corner. Restitution is within 1 % then, and within 4 % at twice the step.
 const SHARE_OF_LINEAR_IMPACT: f64 = 0.125;
@@ -95,7 +95,7 @@ impl Outlook {
             [0.0; 2]
         };
         let step_s = (run.safety * foreseen_s)
-            .min(share_of_impact(state) * safe_step(k.max(pressed_k), c.max(pressed_c)))
+            .min(share_of_impact(state, run.safety) * safe_step(k.max(pressed_k), c.max(pressed_c)))
             .min(run.end_time_s / 100.0)
             .min(across);
         Self {
@@ -376,20 +376,22 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
     }
 }
 
-/// Largest step with which an impact at this speed, m/s, is followed well enough, s; infinite where nothing can touch.
-pub fn impact_step_s(state: &State, speed_m_s: f64) -> f64 {
+/// Largest step with which an impact at this speed, m/s, is followed as well as `safety` asks, s; infinite where nothing can touch.
+pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
-    share_of_impact(state) * safe_step(k, c)
+    share_of_impact(state, safety) * safe_step(k, c)
 }
 
-fn share_of_impact(state: &State) -> f64 {
+fn share_of_impact(state: &State, safety: f64) -> f64 {
     let of_particles = state.contacts.iter().flat_map(|contacts| &contacts.kinds);
     let mut kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.kinds));
-    if kinds.any(|kind| matches!(kind.law, Law::Linear(_))) {
+    let usual = if kinds.any(|kind| matches!(kind.law, Law::Linear(_))) {
         SHARE_OF_LINEAR_IMPACT
     } else {
         SHARE_OF_IMPACT
-    }
+    };
+    // A factor of exactly 1 at the usual safety.
+    safety / SAFETY * usual
 }
 
 /// How far the deepest corner of a box lies along `down`, m.

@@ -1,27 +1,30 @@
 //! Walls of a scene, put where they start.
 
-use std::path::Path;
+mod surface;
 
 use dem_io::scene::{Scene, StartOverlap, Wall as SceneWall, WallShape};
-use dem_io::surface::{OpenSurface, read_open_surface};
-use dem_io::units::show_length;
+use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
+use nalgebra::Vector3;
 
 use super::bodies::{PlacedBody, called};
 use super::contacts::{Kinds, ROUNDING};
-use crate::geometry::{Bounds, Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
+use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
 use crate::state::State;
 use crate::state::contacts::Memory;
 use crate::state::walls::{Wall, WallTouch};
 
-/// A wall whose size over that of all bodies together is outside this makes one ask for its unit.
-const OTHER_UNIT: [f64; 2] = [1.0 / 50.0, 300.0];
+pub(super) use self::surface::surface_of;
+use self::surface::{Sizes, oddities, question_size};
+
+/// Share of a belt's speed that may be off its plane: what rounding of written numbers costs.
+const OFF_PLANE: f64 = 1e-6;
 
 /// The walls of a scene, in the order of their names. What is odd about them but harmless goes to `notes`.
 ///
 /// # Errors
-/// A file that is no surface; a pair of materials that may meet without a word on how; particles in walls, unless they may.
+/// A file that is no surface; a pair of materials that may meet without a word on how; a belt that leaves its plane; particles in walls, unless they may.
 pub(super) fn place_walls(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -29,11 +32,7 @@ pub(super) fn place_walls(
     state: &State,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Wall>> {
-    let places = state.particles.poses.iter().map(|pose| pose.place().into());
-    let of_clumps = state.clumps.templates.iter().map(|t| 2.0 * t.reach_m);
-    let extent_m = (Bounds::of(places).diagonal_m().max(0.0)
-        + 2.0 * state.particles.largest_radius_m())
-    .max(of_clumps.fold(0.0, f64::max));
+    let sizes = Sizes::of(state);
     let mut walls = Vec::new();
     for (name, entry) in &scene.walls {
         let place = format!("{}: [walls.{name}]", scene.source);
@@ -51,7 +50,9 @@ pub(super) fn place_walls(
             kinds.need(scene, pair, &who)?;
         }
         let shape = shape(entry, name, notes).map_err(|error| error.within(&place))?;
-        question_size(name, entry, &shape, extent_m, notes);
+        notes.extend(question_size(name, entry, &shape, sizes));
+        let frame = frame(entry);
+        refuse_belt_off_plane(&place, entry, &frame)?;
         let material = kinds.material(&entry.material);
         let mut wall = Wall {
             name: name.clone(),
@@ -59,7 +60,7 @@ pub(super) fn place_walls(
             kinds: kinds.kinds.clone(),
             surface_velocity_m_s: entry.surface_velocity_m_s,
             motion: entry.motion.clone(),
-            ..Wall::standing(shape, frame(entry))
+            ..Wall::standing(shape, frame)
         };
         let touches = starting_touches(&wall, state);
         let is_through = touches.iter().any(|(_, touch)| touch.distance_m < 0.0);
@@ -103,53 +104,36 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
                 *vertex = from_pivot(*vertex);
             }
             let mesh = Mesh::from_surface(&surface)?;
-            let dropped = surface.degenerate_facets + mesh.content.degenerate;
-            if dropped > 0 {
-                notes.push(format!(
-                    "wall '{name}': {dropped} facets without area were dropped"
-                ));
-            }
-            if mesh.content.open_edges > 0 {
-                notes.push(format!(
-                    "wall '{name}': the surface is open ({} edges of one triangle only); it pushes on both sides",
-                    mesh.content.open_edges
-                ));
-            } else if signed_volume(&surface.vertices_m, &surface.triangles) < 0.0 {
-                notes.push(format!(
-                    "wall '{name}': the surface is inside out; it pushes on both sides, so nothing changes"
-                ));
-            }
-            notes.extend(
-                surface
-                    .warnings
-                    .iter()
-                    .map(|w| format!("wall '{name}': {w}")),
-            );
+            notes.extend(oddities(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")));
             Shape::Mesh(mesh)
         }
     })
 }
 
-/// The surface of a file that a scene names, in m.
-pub(super) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
-    let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
-        Diagnostic::input(
-            &file,
-            format!("cannot be read: {error}"),
-            "check its name: it counts from the scene's folder",
-        )
-    })?;
-    read_open_surface(&bytes, &file, unit_m)
-}
-
-/// Volume that triangles enclose, m3: below 0 where they look inwards.
-fn signed_volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
-    let of_one = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| nalgebra::Vector3::from(vertices[v as usize]));
-        a.dot(&b.cross(&c)) / 6.0
+/// Refuses a belt whose surface would move into or out of the plane that it is.
+fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Result<()> {
+    let WallShape::Plane { normal, .. } = &entry.shape else {
+        return Ok(());
     };
-    triangles.iter().map(of_one).sum()
+    let belt = Vector3::from(entry.surface_velocity_m_s);
+    let normal = Vector3::from(frame.direction_to_space(*normal));
+    let off_m_s = belt.dot(&normal);
+    if off_m_s.abs() <= OFF_PLANE * belt.norm() {
+        return Ok(());
+    }
+    let along = belt - off_m_s * normal;
+    let [x, y, z] = [0, 1, 2].map(|k| significant(along[k], 9));
+    Err(Diagnostic::input(
+        place,
+        format!(
+            "surface_velocity has {} m/s of {} m/s along the plane's normal, but a belt moves along its surface (at most {OFF_PLANE} of its speed off it)",
+            significant(off_m_s, 4),
+            significant(belt.norm(), 4)
+        ),
+        format!(
+            "write surface_velocity = [{x}, {y}, {z}], which is its part along the plane; or velocity, if the wall as a whole is to move"
+        ),
+    ))
 }
 
 /// Turned as `rotation` says, then tilted about y, both about the pivot.
@@ -164,35 +148,6 @@ fn frame(entry: &SceneWall) -> Frame {
     }
 }
 
-/// Asks for the unit of a surface that is out of all proportion.
-fn question_size(
-    name: &str,
-    entry: &SceneWall,
-    shape: &Shape,
-    extent_m: f64,
-    notes: &mut Vec<String>,
-) {
-    let WallShape::Stl { unit_m, .. } = &entry.shape else {
-        return;
-    };
-    let size_m = shape.bounds().diagonal_m();
-    let ratio = size_m / extent_m;
-    if (OTHER_UNIT[0]..OTHER_UNIT[1]).contains(&ratio) {
-        return;
-    }
-    let (times, than) = if ratio > 1.0 {
-        (ratio, "larger")
-    } else {
-        (1.0 / ratio, "smaller")
-    };
-    notes.push(format!(
-        "wall '{name}' is {} across, {times:.0} times {than} than all bodies together ({}): is a unit of its file {}?",
-        show_length(size_m),
-        show_length(extent_m),
-        show_length(*unit_m),
-    ));
-}
-
 /// What overlaps a wall at the start by more than rounding.
 fn starting_touches(wall: &Wall, state: &State) -> Vec<(u32, Touch)> {
     let mut found = Vec::new();
@@ -203,7 +158,12 @@ fn starting_touches(wall: &Wall, state: &State) -> Vec<(u32, Touch)> {
         let reach_m = pose.radius_m() * (1.0 - ROUNDING);
         if bounds.is_near(&centre, reach_m) {
             of_one.clear();
-            wall.shape.touches(centre, reach_m, &mut of_one);
+            match &wall.shape {
+                Shape::Mesh(mesh) if mesh.holds(centre) => {
+                    of_one.push(mesh.touch_from_inside(centre));
+                }
+                shape => shape.touches(centre, reach_m, &mut of_one),
+            }
             let in_space = |touch: &Touch| wall.frame.touch_to_space(touch);
             found.extend(of_one.iter().map(|touch| (i, in_space(touch))));
         }
@@ -235,6 +195,9 @@ fn refuse_touches(
     let remedy = match (&wall.shape, is_behind) {
         (Shape::Plane(_), true) => {
             "turn the plane's normal to the side of the bodies, or move the bodies"
+        }
+        (Shape::Mesh(_), true) => {
+            "move the body or the wall: its centre is inside a closed surface whose normals look outwards, so a solid; if that is to be a container, export it with its normals inwards"
         }
         (_, true) => "move the body or the wall: its centre is inside",
         _ => {

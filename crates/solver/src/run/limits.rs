@@ -163,14 +163,14 @@ impl<'a> Limits<'a> {
                 self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
             }
         }
-        if let (true, Some(_)) = (look_at_contacts, self.safety) {
+        if let (true, Some(safety)) = (look_at_contacts, self.safety) {
             // Loads or supports may have made bodies faster than was foreseen. Not the fastest particle: a bond that breaks lets a few snap back.
             let p = &state.particles;
             let kinetic_j = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
-                let largest_s = impact_step_s(state, speed_m_s);
+                let largest_s = impact_step_s(state, speed_m_s, safety);
                 self.take(state, largest_s, "speed", progress, files.as_deref_mut())?;
             }
         }

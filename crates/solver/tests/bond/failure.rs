@@ -64,6 +64,50 @@ fn stresses_are_those_of_a_round_bar() {
     assert_near(found.bending_pa, 7.0 * RADIUS_M / second_moment);
 }
 
+/// A bond without strength breaks under any load, and by none; no number is lost on the way.
+#[test]
+fn of_no_strength_any_load_is_too_much() {
+    for zero in [
+        Criteria {
+            tension_pa: 0.0,
+            ..NONE
+        },
+        Criteria {
+            shear_pa: 0.0,
+            ..NONE
+        },
+        Criteria {
+            von_mises_pa: 0.0,
+            ..NONE
+        },
+        Criteria {
+            tension_pa: 0.0,
+            shear_pa: 0.0,
+            von_mises_pa: 0.0,
+            compressive: false,
+        },
+    ] {
+        let screen = Screen::new(&zero);
+        for factor in [1.0, 0.3, 5.0] {
+            assert_eq!(utilisation(&zero, &Stresses::default(), factor), 0.0);
+        }
+        let [used, factor] = screen.used_and_factor(&BondLoad::default(), RADIUS_M);
+        assert!(used == 0.0 && factor > 0.0);
+        let tiny = BondLoad {
+            normal_n: 1e-30,
+            shear_n: 1e-30,
+            torsion_n_m: 1e-30,
+            bending_n_m: 1e-30,
+        };
+        assert_eq!(
+            utilisation(&zero, &stresses(&tiny, RADIUS_M), 2.0),
+            f64::INFINITY
+        );
+        let [used, factor] = screen.used_and_factor(&tiny, RADIUS_M);
+        assert!(used > factor);
+    }
+}
+
 /// Each criterion sees the modes that are its own.
 #[test]
 fn each_mode_uses_its_share_of_each_strength() {

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use dem_io::Body;
 use dem_io::scene::{BodySource, scene_from_text};
 use dem_run::check::ledger::{Ledger, balance};
+use dem_run::measure::bond_utilisation;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
@@ -151,23 +152,31 @@ fn a_vibrating_body_that_falls_apart_gains_no_energy() {
     }
 }
 
-/// Places of the second sphere of a pair from the first, step by step for 1.5 ms, as they fly into each other from a small overlap.
-fn collision(bonded: bool, time_step_s: f64) -> Vec<Vector3<f64>> {
+/// Velocities of the first sphere of a pair, m/s; the second has the opposite ones.
+const INTO_EACH_OTHER: [f64; 3] = [0.5, 0.05, 0.0];
+const BY_EACH_OTHER: [f64; 3] = [0.02, 0.5, 0.1];
+const AWAY: [f64; 3] = [-0.5, 0.0, 0.0];
+
+/// Places of the second sphere of a pair from the first, step by step for 1.5 ms, as they fly from a small overlap; bonded with these criteria of failure.
+fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Vec<Vector3<f64>> {
+    let bonded = failure.is_some();
     let list = if bonded { ", bond_list = [[0, 1]]" } else { "" };
+    let failure = failure.unwrap_or("tension = 1");
     let text = format!(
         "version = 1\nrun.end_time = 1\nrun.time_step = {time_step_s}\nrun.start_overlap = \"relax\"\nclusters.interval = 1\n\
          materials.cake = {{ density = 2000, young_modulus = \"10 MPa\" }}\n\
          contacts.cake-cake = {{ restitution = 0.5, friction = 0.5 }}\n\
-         bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ tension = 1e-3, shear = 1e-3 }} }}\n\
+         bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ {failure} }} }}\n\
          bodies.pair = {{ material = \"cake\", bonds = \"cake\", particles = [[0, 0, 0, 1e-3], [1.999e-3, 0, 0, 1e-3]]{list} }}\n"
     );
     let Plan { mut state, .. } = planned(&text);
-    for (motion, velocity) in state.particles.motions.iter_mut().zip([0.5, -0.5]) {
-        motion.velocity_m_s = [velocity, 0.1 * velocity, 0.0];
+    for (motion, sign) in state.particles.motions.iter_mut().zip([1.0, -1.0]) {
+        motion.velocity_m_s = velocity_m_s.map(|v| sign * v);
     }
     let mut places = Vec::new();
     while state.time_s < 1.5e-3 {
         step(&mut state);
+        assert!(!bonded || !bond_utilisation(&state, 0).is_nan());
         places.push(state.particles.poses[1].place() - state.particles.poses[0].place());
     }
     assert_eq!(state.broken_count, u64::from(bonded));
@@ -176,17 +185,44 @@ fn collision(bonded: bool, time_step_s: f64) -> Vec<Vector3<f64>> {
 
 #[test]
 fn a_bond_without_strength_is_none() {
-    // It acts until it is looked at for the second time, and its cluster is searched a step later: that much of the approach is lost.
-    let off = [4e-7, 2e-7, 1e-7].map(|dt| {
-        let (bonded, free) = (collision(true, dt), collision(false, dt));
-        let apart = bonded.iter().zip(&free).map(|(a, b)| (a - b).norm());
-        let flown_m = (free[free.len() - 1] - free[0]).norm();
-        assert!(flown_m > 0.3e-3);
-        apart.fold(0.0, f64::max) / flown_m
-    });
-    eprintln!("bonded and free pair differ by {off:?} of their way");
-    assert!(off[0] > 1.8 * off[1] && off[1] > 1.8 * off[2], "{off:?}");
-    assert!(off[2] < 2e-3, "{off:?}");
+    for failure in [
+        "tension = 1e-3, shear = 1e-3",
+        "tension = 0, shear = \"0 Pa\"",
+        "von_mises = 0, tension = 0",
+        "tension = 0, shear = 0, rate_strengthening = true, weibull_modulus = 3",
+    ] {
+        for velocity_m_s in [INTO_EACH_OTHER, BY_EACH_OTHER, AWAY] {
+            // It acts until it is looked at for the second time, and its cluster is searched a step later: that much of the approach is lost.
+            let off = [4e-7, 2e-7, 1e-7].map(|dt| {
+                let bonded = flight(Some(failure), velocity_m_s, dt);
+                let free = flight(None, velocity_m_s, dt);
+                let apart = bonded.iter().zip(&free).map(|(a, b)| (a - b).norm());
+                let flown_m = (free[free.len() - 1] - free[0]).norm();
+                assert!(flown_m > 0.3e-3);
+                apart.fold(0.0, f64::max) / flown_m
+            });
+            let what = format!("{failure}, {velocity_m_s:?}");
+            eprintln!("{what}: bonded and free pair differ by {off:?} of their way");
+            assert!(
+                off[0] > 1.8 * off[1] && off[1] > 1.8 * off[2],
+                "{what}: {off:?}"
+            );
+            assert!(off[2] < 2e-3, "{what}: {off:?}");
+        }
+    }
+}
+
+/// It carries nothing: nothing of no strength is used.
+#[test]
+fn a_bond_without_strength_holds_a_body_at_rest_together() {
+    let text = cube(0.25, "").replace("tension = 1e9", "tension = 0, von_mises = 0");
+    let Plan { mut state, .. } = planned(&text);
+    act(&mut state);
+    for at in 0..state.bonds.len() {
+        assert!(!bond_utilisation(&state, at).is_nan());
+    }
+    let balance = balance(&mut state);
+    assert!(balance.energy_error.is_finite(), "{balance:?}");
 }
 
 /// Which cluster each particle is in, by the smallest particle that unbroken bonds lead to: breadth first.

@@ -10,4 +10,5 @@
 mod apart;
 mod clouds;
 mod rest;
+mod surfaces;
 mod walls;

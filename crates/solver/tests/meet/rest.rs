@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use dem_run::plan::Plan;
+use dem_run::plan::time_step::impact_step_s;
 use dem_run::step::step;
 
 use crate::apart::planned;
@@ -196,5 +197,38 @@ fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
             "{motion}: {speed_m_s} m/s"
         );
         assert!(step_s < 1e-4, "{motion}: {step_s} s");
+    }
+}
+
+/// The step that impacts allow follows `safety` as that of stability does.
+#[test]
+fn half_the_safety_halves_the_step_of_impacts() {
+    let plate = "plane = { point = [0, 0, -1], normal = [0, 0, 1] }";
+    let hertz = scene(plate).replace("run.safety = 0.2\n", "");
+    let linear = hertz.replace(
+        "friction",
+        "law = \"linear\", normal_stiffness = 1e5, friction",
+    );
+    for text in [hertz, linear] {
+        let with = |safety: f64| {
+            let safety = format!("run.end_time = 1\nrun.safety = {safety}");
+            planned(&text.replace("run.end_time = 1", &safety))
+        };
+        let usual = planned(&text);
+        assert_eq!(with(0.9).step, usual.step);
+        assert!(
+            usual.step.step_s < 0.5 * usual.step.foreseen_s,
+            "an impact decides"
+        );
+        let speed_m_s = usual.step.impact_speed_m_s;
+        for share in [0.5, 0.1] {
+            let found = with(0.9 * share);
+            // The end time is met.
+            let ratio = found.step.step_s / usual.step.step_s;
+            assert!((ratio / share - 1.0).abs() < 1e-3, "{share}: {ratio}");
+            let in_run =
+                [0.9 * share, 0.9].map(|safety| impact_step_s(&found.state, speed_m_s, safety));
+            assert!((in_run[0] / in_run[1] / share - 1.0).abs() < 1e-14);
+        }
     }
 }

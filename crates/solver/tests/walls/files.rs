@@ -3,7 +3,7 @@
 use dem_io::surface::read_open_surface;
 use dem_run::geometry::{Mesh, Shape};
 
-use crate::{Surface, add_tiles, box_surface, touches};
+use crate::{Surface, add_tiles, box_surface, closed_box, touches};
 
 /// An ASCII STL.
 fn stl((vertices, triangles): &Surface) -> String {
@@ -89,6 +89,55 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
     );
     let read = read_open_surface(stl(&tee).as_bytes(), "tee.stl", 1.0).unwrap();
     assert_eq!((read.t_junctions, read.triangles.len()), (1, 4));
+}
+
+/// Facets that are turned against their neighbours are counted, those that stand there both ways are none of them.
+#[test]
+fn turned_facets_are_counted() {
+    let read = |surface: &Surface| {
+        let read = read_open_surface(stl(surface).as_bytes(), "wall.stl", 1.0).unwrap();
+        (read.turned_facets, read.duplicate_facets)
+    };
+    let turn = |triangles: &mut [[u32; 3]], which: &[usize]| {
+        which.iter().for_each(|t| triangles[*t].swap(0, 1));
+    };
+    let both_ways = |triangles: &[[u32; 3]]| {
+        let turned = triangles.iter().map(|[a, b, c]| [*b, *a, *c]);
+        triangles.iter().copied().chain(turned).collect()
+    };
+    let plate = plate();
+    assert_eq!(read(&plate), (0, 0));
+    let mut some = plate.clone();
+    turn(&mut some.1, &[3, 4, 17]);
+    assert_eq!(read(&some), (3, 0));
+    let mut most = plate.clone();
+    turn(&mut most.1, &(3..32).collect::<Vec<_>>());
+    assert_eq!(read(&most), (3, 0));
+    let doubled: Surface = (plate.0.clone(), both_ways(&plate.1));
+    assert_eq!(read(&doubled), (0, 32));
+    let mut one_doubled = some.clone();
+    one_doubled.1.push(plate.1[9]);
+    let [a, b, c] = plate.1[10];
+    one_doubled.1.extend([[b, a, c]; 2]);
+    // Two of three lie the other way round: that is its way.
+    assert_eq!(read(&one_doubled), (4, 3));
+
+    // The tiles of this box are wound as they come: half of its sides look inwards.
+    let tiles = box_surface([0.0; 3], [1.0; 3], 2);
+    let (turned, _) = read(&tiles);
+    assert_eq!(turned, 24);
+
+    // A hollow within a box is wound against it, but hangs together with nothing of it.
+    let (mut vertices, mut triangles) = closed_box([0.0; 3], [1.0; 3]);
+    let (inner, hollow) = closed_box([0.25; 3], [0.75; 3]);
+    let first = vertices.len() as u32;
+    vertices.extend(inner);
+    triangles.extend(
+        hollow
+            .iter()
+            .map(|[a, b, c]| [b + first, a + first, c + first]),
+    );
+    assert_eq!(read(&(vertices, triangles)), (0, 0));
 }
 
 #[test]

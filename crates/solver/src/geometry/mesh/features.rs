@@ -24,6 +24,8 @@ pub(super) struct Features {
     pub(super) open_edges: usize,
     /// Edges of more than two triangles.
     pub(super) crowded_edges: usize,
+    /// Edges along which not as many triangles run one way as the other.
+    pub(super) unpaired_edges: usize,
 }
 
 /// The edges and the triangles that share each.
@@ -33,6 +35,8 @@ struct Edges {
     starts: Vec<u32>,
     /// The edges of each triangle: from its first, second, third corner.
     of: Vec<[u32; 3]>,
+    /// Edges along which not as many triangles run one way as the other.
+    unpaired: usize,
 }
 
 impl Edges {
@@ -52,12 +56,16 @@ impl Edges {
             sharing: sides.iter().map(|(_, t, _)| *t).collect(),
             starts: vec![0],
             of: vec![[0; 3]; indices.len()],
+            unpaired: 0,
         };
         let mut end = 0;
         for sharing in sides.chunk_by(|a, b| a.0 == b.0) {
-            for &(_, t, k) in sharing {
+            let mut rising = 0;
+            for &([low, _], t, k) in sharing {
                 edges.of[t as usize][k as usize] = edges.len() as u32;
+                rising += usize::from(indices[t as usize][k as usize] == low);
             }
+            edges.unpaired += usize::from(2 * rising != sharing.len());
             end += sharing.len() as u32;
             edges.starts.push(end);
         }
@@ -158,6 +166,7 @@ pub(super) fn features(triangles: &[Triangle], indices: &[[u32; 3]], diagonal: f
         corners: single_corners,
         open_edges: edges.count(|triangles| triangles == 1),
         crowded_edges: edges.count(|triangles| triangles > 2),
+        unpaired_edges: edges.unpaired,
     }
 }
 

@@ -85,6 +85,28 @@ impl Tree {
         }
     }
 
+    /// Calls `visit` with each triangle of the leaves that a ray from a point along z may meet, in order.
+    pub(super) fn visit_above(&self, point: &[f64; 3], visit: &mut impl FnMut(u32)) {
+        if !self.nodes.is_empty() {
+            self.visit_node_above(0, point, visit);
+        }
+    }
+
+    fn visit_node_above(&self, at: u32, point: &[f64; 3], visit: &mut impl FnMut(u32)) {
+        let node = &self.nodes[at as usize];
+        let Bounds { low, high } = &node.bounds;
+        let is_below = (0..2).all(|k| point[k] >= low[k] && point[k] <= high[k]);
+        if !is_below || point[2] > high[2] {
+            return;
+        }
+        if node.count > 0 {
+            (node.at..node.at + node.count).for_each(visit);
+        } else {
+            self.visit_node_above(at + 1, point, visit);
+            self.visit_node_above(node.at, point, visit);
+        }
+    }
+
     /// The box around all.
     pub(super) fn bounds(&self) -> Bounds {
         self.nodes.first().map_or(Bounds::EMPTY, |node| node.bounds)

@@ -10,7 +10,8 @@ use crate::physics::number::Number;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Strengths of a bond. An infinite strength is not asked for; several may act together.
+/// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any load takes more than all, and none takes nothing.
+/// Several may act together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Criteria {
     /// MUSEN's normal strength: largest normal stress of axial force and bending, Pa.
@@ -83,13 +84,16 @@ pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
 #[inline(always)]
 pub fn utilisation(criteria: &Criteria, stresses: &Stresses, strength_factor: f64) -> f64 {
     let [normal, shear, von_mises] = shares(criteria, stresses);
-    normal.max(shear).max(von_mises) / strength_factor
+    share(normal.max(shear).max(von_mises), strength_factor)
 }
+
+/// Largest number by which [`Screen`] multiplies: finite, so that 0 times it is 0.
+const LARGEST: f64 = 1e300;
 
 /// Finds the few bonds that may have reached their strength, without a root or a division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screen {
-    /// One over the square of each strength: normal, shear, von Mises, 1/Pa2.
+    /// One over the square of each strength: normal, shear, von Mises, 1/Pa2; [`LARGEST`] for strengths of 0.
     per_strength_squared: [f64; 3],
     compressive: bool,
 }
@@ -103,7 +107,8 @@ impl Screen {
             criteria.von_mises_pa,
         ];
         Self {
-            per_strength_squared: strengths.map(|strength| 1.0 / (strength * strength)),
+            per_strength_squared: strengths
+                .map(|strength| (1.0 / (strength * strength)).min(LARGEST)),
             compressive: criteria.compressive,
         }
     }
@@ -159,8 +164,18 @@ fn shares(criteria: &Criteria, stresses: &Stresses) -> [f64; 3] {
     let pulled = stresses.axial_pa.max(0.0) + stresses.bending_pa;
     let von_mises = (pulled * pulled + 3.0 * shear * shear).sqrt();
     [
-        normal / criteria.tension_pa,
-        shear / criteria.shear_pa,
-        von_mises / criteria.von_mises_pa,
+        share(normal, criteria.tension_pa),
+        share(shear, criteria.shear_pa),
+        share(von_mises, criteria.von_mises_pa),
     ]
+}
+
+/// A stress over a strength, neither below 0; nothing of no strength is 0.
+#[inline(always)]
+fn share(stress: f64, strength: f64) -> f64 {
+    if stress == 0.0 {
+        0.0
+    } else {
+        stress / strength
+    }
 }

@@ -1,0 +1,143 @@
+//! Surfaces of STL files: read, and what is odd about them but harmless.
+
+use std::path::Path;
+
+use dem_io::scene::{Wall as SceneWall, WallShape};
+use dem_io::surface::{OpenSurface, read_open_surface};
+use dem_io::units::show_length;
+use dem_io::{Diagnostic, Result};
+
+use crate::geometry::{Bounds, Mesh, Shape};
+use crate::state::State;
+
+/// A surface that is larger than all bodies together by this factor makes one ask for its unit.
+const TOO_LARGE: f64 = 300.0;
+/// And so does one that is smaller than they are by this factor, if it is smaller than so many of their spheres: a pin or a tooth may be.
+const TOO_SMALL: f64 = 50.0;
+const OF_A_PIN: f64 = 3.0;
+
+/// How large bodies are, those that are still to come as well, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    /// Of all together.
+    all_m: f64,
+    /// Diameter of the largest sphere.
+    sphere_m: f64,
+}
+
+impl Sizes {
+    pub(super) fn of(state: &State) -> Self {
+        let places = state.particles.poses.iter().map(|pose| pose.place().into());
+        let of_clumps = state.clumps.templates.iter().map(|t| 2.0 * t.reach_m);
+        let standing_m =
+            Bounds::of(places).diagonal_m().max(0.0) + 2.0 * state.particles.largest_radius_m();
+        Self {
+            all_m: of_clumps.fold(standing_m, f64::max),
+            sphere_m: 2.0 * state.largest_radius_m(),
+        }
+    }
+}
+
+/// The surface of a file that a scene names, in m.
+pub(in crate::plan) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
+    let file = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        Diagnostic::input(
+            &file,
+            format!("cannot be read: {error}"),
+            "check its name: it counts from the scene's folder",
+        )
+    })?;
+    read_open_surface(&bytes, &file, unit_m)
+}
+
+/// What is odd about a surface, and what that changes.
+pub(super) fn oddities(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item = String> {
+    let content = &mesh.content;
+    let mut odd = Vec::new();
+    let mut tell = |count: usize, [one, more]: [&str; 2]| match count {
+        0 => {}
+        1 => odd.push(format!("1 {one}")),
+        count => odd.push(format!("{count} {more}")),
+    };
+    tell(
+        surface.degenerate_facets + content.degenerate,
+        [
+            "facet without area was dropped: it bounds nothing",
+            "facets without area were dropped: they bound nothing",
+        ],
+    );
+    tell(
+        surface.duplicate_facets,
+        [
+            "facet that stood there already was dropped: each counts once, so nothing changes",
+            "facets that stood there already were dropped: each counts once, so nothing changes",
+        ],
+    );
+    tell(
+        surface.turned_facets,
+        [
+            "facet is turned against its neighbours: a surface pushes on both sides, so no force changes, but this one has no inside, and a body that starts in it is not found",
+            "facets are turned against their neighbours: a surface pushes on both sides, so no force changes, but this one has no inside, and a body that starts in it is not found",
+        ],
+    );
+    if content.open_edges > 0 {
+        odd.push(format!(
+            "the surface is open ({} edges of one triangle only); it pushes on both sides",
+            content.open_edges
+        ));
+    } else if content.unpaired_edges == 0
+        && signed_volume(&surface.vertices_m, &surface.triangles) < 0.0
+    {
+        odd.push(
+            "the surface is inside out; it pushes on both sides, so nothing changes".to_owned(),
+        );
+    }
+    odd.extend(surface.warnings.iter().cloned());
+    odd.into_iter()
+}
+
+/// Volume that triangles enclose, m3: below 0 where they look inwards.
+fn signed_volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
+    let of_one = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| nalgebra::Vector3::from(vertices[v as usize]));
+        a.dot(&b.cross(&c)) / 6.0
+    };
+    triangles.iter().map(of_one).sum()
+}
+
+/// Asks for the unit of a surface that is out of all proportion.
+pub(super) fn question_size(
+    name: &str,
+    entry: &SceneWall,
+    shape: &Shape,
+    sizes: Sizes,
+) -> Option<String> {
+    let WallShape::Stl { unit_m, .. } = &entry.shape else {
+        return None;
+    };
+    let Sizes { all_m, sphere_m } = sizes;
+    let size_m = shape.bounds().diagonal_m();
+    let than = if size_m > TOO_LARGE * all_m {
+        let times = size_m / all_m;
+        format!(
+            "{times:.0} times larger than all bodies together ({})",
+            show_length(all_m)
+        )
+    } else if size_m < sphere_m {
+        format!("smaller than a single sphere ({})", show_length(sphere_m))
+    } else if size_m < (all_m / TOO_SMALL).min(OF_A_PIN * sphere_m) {
+        let times = all_m / size_m;
+        format!(
+            "{times:.0} times smaller than all bodies together ({})",
+            show_length(all_m)
+        )
+    } else {
+        return None;
+    };
+    Some(format!(
+        "wall '{name}' is {} across, {than}: is a unit of its file {}?",
+        show_length(size_m),
+        show_length(*unit_m),
+    ))
+}
