@@ -129,7 +129,7 @@ fn bodies_of_data_are_as_said() {
         .lines()
         .filter(|line| line.starts_with("dem-pack "))
         .collect();
-    assert_eq!(commands.len(), 5);
+    assert_eq!(commands.len(), 6);
     for command in commands {
         let mut words: Vec<&str> = command.split(' ').skip(1).collect();
         let kept = words.pop().unwrap();

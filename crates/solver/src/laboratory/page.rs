@@ -40,7 +40,8 @@ pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
 }
 
 /// The first line of `force-displacement.csv`.
-const COLUMNS: &str = "time_s,travel_m,displacement_m,force_n,reaction_n,deflection_m,broken_bonds";
+const COLUMNS: &str =
+    "time_s,travel_m,displacement_m,load_n,force_n,reaction_n,deflection_m,broken_bonds";
 
 /// What was noted, a row for each interval. Every number reads back as the same bits.
 fn curve_csv(record: &Record, lowest_frequency_hz: f64) -> String {
@@ -55,6 +56,7 @@ fn curve_csv(record: &Record, lowest_frequency_hz: f64) -> String {
             row.time_s,
             row.travel_m,
             row.travel_m - play_m,
+            row.load_n(),
             row.force_n,
             row.reaction_n,
             row.deflection_m,

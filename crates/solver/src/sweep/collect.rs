@@ -36,7 +36,7 @@ pub struct Reading {
     pub closed_form: Option<f64>,
     /// Of masses of pieces: each, kg. Otherwise empty.
     pub masses_kg: Vec<f64>,
-    /// Of a curve: its points (displacement in m, force in N). Otherwise empty.
+    /// Of a curve: its points (displacement in m, load in N). Otherwise empty.
     pub curve: Vec<[f64; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! Force over displacement of laboratory tests, and how far two such curves are apart.
+//! Load over displacement of laboratory tests, and how far two such curves are apart.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::table::SweepTable;
 /// Most curves in one plot: as many as there are colours.
 const MOST_CURVES: usize = 7;
 
-/// The curve of the test whose results stand in this folder: points (displacement in m, force in N), rising in the first.
+/// The curve of the test whose results stand in this folder: points (displacement in m, load in N), rising in the first.
 ///
 /// # Errors
 /// Why there is none, in words.
@@ -21,9 +21,9 @@ pub fn curve(results: &Path) -> Result<Vec<[f64; 2]>, String> {
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let place = |wanted: &str| names.iter().position(|name| *name == wanted);
-    let (Some(x), Some(y)) = (place("displacement_m"), place("force_n")) else {
+    let (Some(x), Some(y)) = (place("displacement_m"), place("load_n")) else {
         return Err(format!(
-            "its {FILE} has no columns displacement_m and force_n"
+            "its {FILE} has no columns displacement_m and load_n"
         ));
     };
     let point = |line: &str| -> Option<[f64; 2]> {
@@ -36,13 +36,13 @@ pub fn curve(results: &Path) -> Result<Vec<[f64; 2]>, String> {
         .ok_or_else(|| format!("its {FILE} has no curve"))
 }
 
-/// Largest force, N.
+/// Largest load, N.
 pub fn largest_n(curve: &[[f64; 2]]) -> f64 {
     curve.iter().map(|[_, force]| *force).fold(0.0, f64::max)
 }
 
-/// The area between two curves over the area under the second, from no displacement to where the later of the two has its largest force.
-/// Lines join the points; beyond its last point a curve keeps its last force.
+/// The area between two curves over the area under the second, from no displacement to where the later of the two has its largest load.
+/// Lines join the points; beyond its last point a curve keeps its last load.
 pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
     let at_peak = |points: &[[f64; 2]]| {
         let peak = points.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
@@ -109,7 +109,7 @@ pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
             ..Axis::default()
         },
         y: Axis {
-            label: "force (N)".to_owned(),
+            label: "load (N)".to_owned(),
             ..Axis::default()
         },
         lines,

@@ -109,7 +109,7 @@ pub struct Judged {
     pub is_on_front: bool,
     /// Time of the run that it is compared with over its own.
     pub times_as_fast: Option<f64>,
-    /// Of a curve: its points (displacement in m, force in N). Otherwise empty.
+    /// Of a curve: its points (displacement in m, load in N). Otherwise empty.
     #[serde(skip)]
     pub curve: Vec<[f64; 2]>,
 }
