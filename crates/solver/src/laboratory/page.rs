@@ -112,7 +112,7 @@ pub fn curve(record: &Record, result: &TestResult) -> Plot {
             ..Axis::default()
         },
         y: Axis {
-            label: "force (N)".to_owned(),
+            label: "load (N)".to_owned(),
             ..Axis::default()
         },
         lines,
