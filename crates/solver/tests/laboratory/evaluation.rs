@@ -101,19 +101,21 @@ fn evaluated_at(
     record: &Record,
     broken: bool,
 ) -> TestResult {
-    let bonds = dem_io::scene_from_text(SCENE, "scene.toml", &[])
-        .unwrap()
-        .bonds;
-    let bonds: &BondKind = &bonds["clay"];
+    let bonds = clay(SCENE);
     evaluate(&Evidence {
         test,
         setup,
         record,
         places_m: &PLACES,
-        bonds: Some(bonds),
+        bonds: Some(&bonds),
         lowest_frequency_hz,
         broken,
     })
+}
+
+fn clay(scene: &str) -> BondKind {
+    let scene = dem_io::scene_from_text(scene, "scene.toml", &[]).unwrap();
+    scene.bonds["clay"].clone()
 }
 
 const SCENE: &str = r#"version = 1
@@ -254,6 +256,24 @@ fn a_body_that_holds_has_no_strength() {
     }
     assert_near(result.figure("largest force"), 50.0);
     assert!(result.to_string().contains("the stroke was done first"));
+}
+
+/// No strength of bonds makes a body stronger in proportion if they have none.
+#[test]
+fn bonds_without_strength_are_not_calibrated() {
+    let result = evaluate(&Evidence {
+        test: &test(TestKind::FourPointBending),
+        setup: &setup(Specimen::Beam(BEAM)),
+        record: &record(2e4, 50.0),
+        places_m: &PLACES,
+        bonds: Some(&clay(&SCENE.replace("0.185 MPa", "0 Pa"))),
+        lowest_frequency_hz: 40.0,
+        broken: true,
+    });
+    assert!(!result.calibration.is_empty());
+    assert!(result.calibration.iter().all(|f| f.value.is_finite()));
+    let of_strength = |name: &str| name.starts_with("strength");
+    assert!(!result.calibration.iter().any(|f| of_strength(&f.name)));
 }
 
 #[test]
