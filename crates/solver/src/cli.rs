@@ -21,8 +21,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::setup::setup;
 use crate::laboratory::watch::TestSettings;
-use crate::plan::plan;
+use crate::plan::{Plan, plan};
 use crate::run::{RunSettings, run as run_plan};
 use crate::snapshot::Snapshot;
 
@@ -131,7 +132,9 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
                 None => scene_data,
             };
-            check::check(&scene_data, bodies, threads, scene.force_step, scene.json)
+            let plan = plan(&scene_data, bodies, threads, scene.force_step)?;
+            refuse_test(&scene_data, &plan)?;
+            check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
@@ -351,6 +354,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     };
     let force_step = arguments.scene.force_step;
     let prepared = plan(&scene, bodies, threads, force_step)?;
+    refuse_test(&scene, &prepared)?;
     if !arguments.quiet {
         for note in &prepared.notes {
             // Nobody to read it is no reason to stop.
@@ -409,6 +413,15 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     } else {
         write_standard_output(|out| write!(out, "{summary}"))
     }
+}
+
+/// Refuses a test that cannot be made, before anything is written.
+fn refuse_test(scene: &Scene, plan: &Plan) -> Result<()> {
+    let Some(test) = &scene.test else {
+        return Ok(());
+    };
+    let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
+    setup(scene, test, &plan.state, particles, None).map(|_| ())
 }
 
 /// What a run has to know of the test of a scene.

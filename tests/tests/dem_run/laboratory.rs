@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -258,5 +259,27 @@ fn what_a_test_cannot_be_made_of() {
             )),
             "{wall}: {said}"
         );
+        // Nothing has been written, and a plan is refused alike.
+        let out = format!("{}-out", name.trim_end_matches(".toml"));
+        assert!(!bench.path(&out).exists());
+        let output = bench
+            .command(Path::new("check"), &round)
+            .arg(scene_of_data(name))
+            .output()
+            .unwrap();
+        assert_eq!(crate::refused(&output), (said, 2));
+    }
+
+    // Speeds and times of which no time step follows.
+    for key in ["rate", "stroke"] {
+        let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
+        let set = format!("test.{key}=1e300");
+        let options = ["--body", &body, "--set", &set, "--out", "fast-out"];
+        let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);
+        assert!(
+            said.contains("check the units of speeds, rates and times"),
+            "{said}"
+        );
+        assert!(!bench.path("fast-out").exists());
     }
 }

@@ -11,6 +11,9 @@ use super::table::Table;
 use crate::Result;
 use crate::units::{NUMBER, STIFFNESS};
 
+/// Least coefficient of restitution: dampers that leave less need steps without end.
+const LEAST_RESTITUTION: f64 = 1e-3;
+
 const KEYS: [&str; 8] = [
     "law",
     "normal_stiffness",
@@ -111,9 +114,9 @@ fn read(
     }
     let restitution = table.need("restitution", "0.5")?.limited(
         &NUMBER,
-        |e| e > 0.0 && e <= 1.0,
-        "more than 0 and at most 1",
-        "1 loses nothing; a usual value is 0.5",
+        |e| (LEAST_RESTITUTION..=1.0).contains(&e),
+        "at least 0.001 and at most 1",
+        "1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step",
     )?;
     let friction = table
         .read("friction", |field| field.not_negative(&NUMBER))?

@@ -1,17 +1,16 @@
 //! `dem-run check`: what a scene will do.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
+use dem_io::Result;
 use dem_io::safe_write::write_standard_output;
 use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
-use dem_io::{Body, Result};
 use serde_json::{Value, json};
 
 use crate::clock::{Stage, StageClock};
 use crate::plan::savings::saving;
-use crate::plan::{Plan, PlannedStage, plan};
+use crate::plan::{Plan, PlannedStage};
 use crate::state::State;
 use crate::state::memory::bytes;
 use crate::step::step;
@@ -19,17 +18,10 @@ use crate::step::step;
 /// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
 const TRIAL: (u32, f64) = (2000, 0.5);
 
-/// Plans the scene and says what came of it, as text or as JSON.
-pub(super) fn check(
-    scene: &Scene,
-    bodies: BTreeMap<String, Body>,
-    threads: usize,
-    force_step: bool,
-    as_json: bool,
-) -> Result<()> {
-    let plan = plan(scene, bodies, threads, force_step)?;
+/// Says what came of planning the scene, as text or as JSON.
+pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     if scene.run.integrator == Integrator::Static {
-        return super::statics::check(scene, &plan, memory_bytes(&plan.state), as_json);
+        return super::statics::check(scene, plan, memory_bytes(&plan.state), as_json);
     }
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
@@ -78,7 +70,7 @@ pub(super) fn check(
                 out,
                 "{}\n{}",
                 scene.describe(),
-                text(&plan, steps, bytes, trial.as_ref())
+                text(plan, steps, bytes, trial.as_ref())
             )
         }
     })

@@ -49,7 +49,7 @@ pub struct FirstBroken {
     pub time_s: f64,
     /// Load at that time, N.
     pub force_n: f64,
-    /// Travel of what loads at that time, m.
+    /// Travel of what loads at that time, from where the fitted line has no load, m.
     pub travel_m: f64,
     /// Where in the body at the start, m. Length 3.
     pub place_m: [f64; 3],
@@ -275,6 +275,10 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
     if !evidence.broken {
         add("largest force", largest, "N", None);
     }
+    let first_broken = first_broken(evidence).map(|first| FirstBroken {
+        travel_m: first.travel_m - play_m,
+        ..first
+    });
     let mut result = TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
@@ -283,7 +287,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
         dimensions,
         figures,
         calibration: Vec::new(),
-        first_broken: first_broken(evidence),
+        first_broken,
         crack: crack(evidence),
         half_the_rate_changes: Vec::new(),
     };

@@ -198,18 +198,15 @@ impl Record {
         !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n
     }
 
-    /// Means of the rows over `over_s`, around each.
+    /// Means of the rows over `over_s`, around each: rows are shorter where the time step has become smaller.
     pub fn smoothed(&self, over_s: f64) -> Vec<Row> {
-        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else {
-            return Vec::new();
+        let rows = &self.rows;
+        let around = |row: &Row| {
+            let from = rows.partition_point(|other| other.time_s < row.time_s - 0.5 * over_s);
+            let to = rows.partition_point(|other| other.time_s <= row.time_s + 0.5 * over_s);
+            mean(&rows[from..to])
         };
-        let apart_s = (last.time_s - first.time_s) / (self.rows.len() - 1).max(1) as f64;
-        let aside = (0.5 * (over_s / apart_s - 1.0)).round().max(0.0) as usize;
-        let around = |at: usize| {
-            let aside = aside.min(at).min(self.rows.len() - 1 - at);
-            mean(&self.rows[at - aside..=at + aside])
-        };
-        (0..self.rows.len()).map(around).collect()
+        rows.iter().map(around).collect()
     }
 }
 

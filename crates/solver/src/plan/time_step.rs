@@ -190,6 +190,16 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         }
         None => run.end_time_s / (run.end_time_s / outlook.step_s).ceil(),
     };
+    if !(step_s.is_finite() && step_s > 0.0) {
+        return Err(Diagnostic::input(
+            scene.source.clone(),
+            format!(
+                "the time step would be {step_s} s: impacts at {:.3e} m/s, an end after {:.3e} s",
+                outlook.impact_speed_m_s, run.end_time_s
+            ),
+            "check the units of speeds, rates and times",
+        ));
+    }
     Ok(StepChoice {
         step_s,
         given: run.time_step_s.is_some(),

@@ -32,8 +32,8 @@ pub fn curve(results: &Path) -> Result<Vec<[f64; 2]>, String> {
     };
     let points: Option<Vec<[f64; 2]>> = lines.map(point).collect();
     points
-        .filter(|points| points.len() > 1)
-        .ok_or_else(|| format!("its {FILE} has no curve"))
+        .filter(|points| points.len() > 1 && largest_n(points) > 0.0)
+        .ok_or_else(|| format!("its {FILE} has no curve: nothing was loaded"))
 }
 
 /// Largest load, N.

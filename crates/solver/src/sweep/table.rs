@@ -128,7 +128,8 @@ impl Row {
 impl Judged {
     /// The error, or the uncertainty where that is larger: below it nothing can be told.
     pub fn sure_error(&self) -> Option<f64> {
-        Some(self.error?.max(self.uncertainty.unwrap_or(0.0)))
+        let error = self.error.filter(|error| !error.is_nan())?;
+        Some(error.max(self.uncertainty.unwrap_or(0.0)))
     }
 }
 

@@ -184,6 +184,8 @@ fn a_beam_by_its_force_and_way() {
 
     let first = result.first_broken.clone().unwrap();
     assert_near(Some(first.force_n), 0.8 * force);
+    // From where the fitted line has no load, as the failure travel.
+    assert_near(Some(first.travel_m), 0.8 * force / by_travel);
     assert_eq!(first.place_m, PLACES[0]);
     let crack = result.crack.clone().unwrap();
     assert_near(Some(crack.offset_m), 0.035);
@@ -231,19 +233,31 @@ fn fast_oscillations_are_left_out() {
     assert!(raw.figure("failure force").unwrap() > 53.0);
 }
 
-/// Rows of different lengths of an interval at the ends, and fewer rows than a mean takes.
 #[test]
-fn means_of_few_rows() {
+fn means_at_the_ends_and_of_rows_that_become_shorter() {
     let record = record(2e4, 50.0);
     let whole = record.smoothed(0.0051);
     assert_eq!(whole.len(), record.rows.len());
-    assert_eq!(whole[0], record.rows[0]);
-    assert_near(Some(whole[1].force_n), record.rows[1].force_n);
+    // Of the first three rows.
+    assert_near(Some(whole[0].force_n), record.rows[1].force_n);
     assert_near(Some(whole[500].travel_m), record.rows[500].travel_m);
-    let mut few = record.clone();
-    few.rows.truncate(2);
-    assert_eq!(few.smoothed(1.0), few.rows);
     assert_eq!(Record::default().smoothed(1.0), []);
+
+    let row = |time_s: f64, force_n: f64| Row {
+        time_s,
+        force_n,
+        ..Row::default()
+    };
+    let mut uneven = Record::default();
+    uneven.rows = (0..10).map(|i| row(f64::from(i), 0.0)).collect();
+    uneven
+        .rows
+        .extend((0..20).map(|i| row(10.0 + 0.25 * f64::from(i), f64::from(i == 8))));
+    // Three rows are within 1 s of one before, nine of the one at 12 s.
+    let smooth = uneven.smoothed(2.0);
+    assert_near(Some(smooth[18].force_n), 1.0 / 9.0);
+    assert_near(Some(smooth[5].time_s), 5.0);
+    assert!(smooth[5].force_n == 0.0);
 }
 
 #[test]
