@@ -136,6 +136,7 @@ fn a_test_that_goes_on_says_the_same() {
     let half = format!("run.end_time={}", 0.7 * end_s);
     let first = summary(&bench.good(&scene, &[&once[..], &["parts", "--set", &half]].concat()));
     assert_eq!(first["test"]["broken"], false);
+    assert_eq!(first["test"]["strength_wanted_pa"], 0.2e6);
     let parts = summary(&bench.good(&scene, &[&once[..], &["parts", "--resume"]].concat()));
     // The step fits the end of the run, which was another one at first.
     for name in [
@@ -270,9 +271,17 @@ fn what_a_test_cannot_be_made_of() {
         assert_eq!(crate::refused(&output), (said, 2));
     }
 
+    // A bar is no disc: 180 mm by 35 mm across the load and along it.
+    let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
+    let disc = "test.kind='brazilian-disc'";
+    let options = ["--body", &body, "--set", disc, "--out", "disc-out"];
+    let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);
+    let wanted = "the body 'sample' is no disc: 35 mm along the load, 180 mm across it";
+    assert!(said.contains(wanted), "{said}");
+    assert!(!bench.path("disc-out").exists());
+
     // Speeds and times of which no time step follows.
     for key in ["rate", "stroke"] {
-        let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
         let set = format!("test.{key}=1e300");
         let options = ["--body", &body, "--set", &set, "--out", "fast-out"];
         let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);

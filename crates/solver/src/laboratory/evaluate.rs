@@ -81,6 +81,8 @@ pub struct TestResult {
     pub kind: String,
     /// Whether the body broke: the load fell below half of its largest.
     pub broken: bool,
+    /// Strength that the scene names, Pa.
+    pub strength_wanted_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
     /// Velocity of what loads, m/s.
@@ -282,6 +284,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
     let mut result = TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
+        strength_wanted_pa: strength,
         lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
         dimensions,
@@ -296,7 +299,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
 }
 
 /// Names of figures that are looked up.
-const STIFFNESS: &str = "stiffness";
+pub(super) const STIFFNESS: &str = "stiffness";
 const EQ_18: &str = "modulus without shear";
 /// Modulus of the body by its own deflection or elongation, shear counted.
 pub const MODULUS: &str = "modulus of the body";

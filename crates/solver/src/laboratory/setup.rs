@@ -12,6 +12,8 @@ use crate::state::State;
 const SPOT: f64 = 0.125;
 /// Measured length of a bar over its length.
 const GAUGE: f64 = 0.5;
+/// Larger over smaller size of a disc across its axis, at most.
+const ROUND: f64 = 1.25;
 /// A disc has split in two if the crack is no further from the loaded diameter than this share of it, on average.
 const NEAR_DIAMETER: f64 = 0.1;
 
@@ -62,7 +64,7 @@ pub struct Setup {
 /// Looks at walls and body. `particles`: those of the tested body, in a state before the first step. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
-/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is nowhere between them.
+/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is nowhere between them; a disc that is not round.
 pub fn setup(
     scene: &Scene,
     test: &Test,
@@ -81,7 +83,7 @@ pub fn setup(
             .map_err(|(problem, remedy)| {
                 Diagnostic::input(format!("{}: [test]", scene.source), problem, remedy)
             })?,
-        TestKind::BrazilianDisc => disc(test, direction, extent),
+        TestKind::BrazilianDisc => disc(scene, test, direction, extent)?,
         TestKind::Compression | TestKind::Tension => bar(test, direction, volume_m3, extent),
     };
     if test.kind != TestKind::Tension {
@@ -272,7 +274,12 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
 }
 
 /// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.
-fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Setup {
+fn disc(
+    scene: &Scene,
+    test: &Test,
+    direction: Vector3<f64>,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+) -> Result<Setup> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let square = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
     let axis = square
@@ -281,11 +288,24 @@ fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> 
             (axis - direction * axis.dot(&direction)).normalize()
         });
     let along = forwards(axis.cross(&direction));
-    let diameter_m = test.height_m.unwrap_or_else(|| size(extent(&direction)));
+    let [across_m, high_m] = [along, direction].map(|way| size(extent(&way)));
+    if across_m.max(high_m) > ROUND * across_m.min(high_m) {
+        return Err(Diagnostic::input(
+            format!("{}: [test]", scene.source),
+            format!(
+                "the body '{}' is no disc: {} mm along the load, {} mm across it (at most {ROUND} times as large one way as the other)",
+                test.body,
+                significant(1e3 * high_m, 3),
+                significant(1e3 * across_m, 3)
+            ),
+            "take a disc whose axis is square to direction, or another kind of test",
+        ));
+    }
+    let diameter_m = test.height_m.unwrap_or(high_m);
     let centre = middle(extent(&along)) * along
         + middle(extent(&axis)) * axis
         + middle(extent(&direction)) * direction;
-    Setup {
+    Ok(Setup {
         specimen: Specimen::Disc {
             diameter_m,
             thickness_m: test.width_m.unwrap_or_else(|| size(extent(&axis))),
@@ -298,7 +318,7 @@ fn disc(test: &Test, direction: Vector3<f64>, extent: impl Fn(&Vector3<f64>) -> 
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
-    }
+    })
 }
 
 /// A bar along the load.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use dem_io::units::significant;
 
-use super::evaluate::{Figure, TestResult};
+use super::evaluate::{Figure, STIFFNESS, TestResult};
 use super::page::{percent, shown};
 
 /// A change by half the rate above this is worth a word.
@@ -14,6 +14,18 @@ impl TestResult {
     /// What speaks against the test. Empty: nothing.
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
+        if self.strength_wanted_pa.is_some() && !self.broken {
+            doubts.push(
+                "the body did not break, there is no strength: take a longer stroke (test.stroke)"
+                    .to_owned(),
+            );
+        }
+        if self.figure(STIFFNESS).is_none_or(|found| found <= 0.0) {
+            doubts.push(
+                "no stiffness can be told, the load did not rise steadily: look at force-displacement.csv"
+                    .to_owned(),
+            );
+        }
         if self.crack.as_ref().is_some_and(|crack| !crack.is_within) {
             doubts.push("the crack is not where the test wants it".to_owned());
         }

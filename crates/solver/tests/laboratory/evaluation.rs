@@ -270,6 +270,14 @@ fn a_body_that_holds_has_no_strength() {
     }
     assert_near(result.figure("largest force"), 50.0);
     assert!(result.to_string().contains("the stroke was done first"));
+    let doubts = result.doubts();
+    assert_eq!(doubts.len(), 1, "{doubts:?}");
+    assert!(doubts[0].contains("the body did not break"), "{doubts:?}");
+    // Whoever asks for a stiffness alone has it.
+    let mut elastic = test.clone();
+    elastic.strength_pa = None;
+    let result = evaluated(&elastic, &setup(Specimen::Beam(BEAM)), &record, false);
+    assert!(result.doubts().is_empty(), "{:?}", result.doubts());
 }
 
 /// No strength of bonds makes a body stronger in proportion if they have none.
@@ -300,6 +308,8 @@ fn an_empty_record_has_no_figures() {
     let empty = Record::default();
     let result = evaluated(&test, &setup(bar), &empty, false);
     assert!(result.figures.is_empty(), "{:?}", result.figures);
+    let doubts = result.doubts().join("; ");
+    assert!(doubts.contains("no stiffness can be told"), "{doubts}");
 }
 
 #[test]

@@ -45,7 +45,7 @@ pub(in crate::plan) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurfac
         Diagnostic::input(
             &file,
             format!("cannot be read: {error}"),
-            "check its name: it counts from the scene's folder",
+            "check its name: it counts from the scene's folder, or with --set from where you stand",
         )
     })?;
     read_open_surface(&bytes, &file, unit_m)
