@@ -21,9 +21,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
-use crate::laboratory::setup::setup;
 use crate::laboratory::watch::TestSettings;
-use crate::plan::{Plan, plan};
+use crate::plan::plan;
 use crate::run::{RunSettings, run as run_plan};
 use crate::snapshot::Snapshot;
 
@@ -133,7 +132,6 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
                 None => scene_data,
             };
             let plan = plan(&scene_data, bodies, threads, scene.force_step)?;
-            refuse_test(&scene_data, &plan)?;
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
@@ -338,8 +336,11 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         }
         None => None,
     };
-    let test = lowest_in_test_hz(&scene, &bodies, threads)?
-        .map(|lowest_hz| test_settings(&scene, &bodies, lowest_hz));
+    let lowest_hz = lowest_in_test_hz(&scene, &bodies, threads)?;
+    let test = lowest_hz.map(|lowest_frequency_hz| TestSettings {
+        lowest_frequency_hz,
+        at_twice_the_rate: None,
+    });
     let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
     let twice = match &test {
         Some(test) if checked => {
@@ -354,7 +355,6 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     };
     let force_step = arguments.scene.force_step;
     let prepared = plan(&scene, bodies, threads, force_step)?;
-    refuse_test(&scene, &prepared)?;
     if !arguments.quiet {
         for note in &prepared.notes {
             // Nobody to read it is no reason to stop.
@@ -412,29 +412,6 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         Ok(())
     } else {
         write_standard_output(|out| write!(out, "{summary}"))
-    }
-}
-
-/// Refuses a test that cannot be made, before anything is written.
-fn refuse_test(scene: &Scene, plan: &Plan) -> Result<()> {
-    let Some(test) = &scene.test else {
-        return Ok(());
-    };
-    let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
-    setup(scene, test, &plan.state, particles, None).map(|_| ())
-}
-
-/// What a run has to know of the test of a scene.
-fn test_settings(
-    scene: &Scene,
-    bodies: &BTreeMap<String, Body>,
-    lowest_frequency_hz: f64,
-) -> TestSettings {
-    let body = scene.test.as_ref().and_then(|test| bodies.get(&test.body));
-    TestSettings {
-        lowest_frequency_hz,
-        volume_m3: body.and_then(|body| body.about.shape_volume_m3),
-        at_twice_the_rate: None,
     }
 }
 

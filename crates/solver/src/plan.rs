@@ -17,6 +17,7 @@ use dem_io::{Body, Diagnostic, Result};
 
 use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
+use crate::laboratory::setup::{Setup, setup};
 use crate::stages::loads::SetLoad;
 use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
@@ -51,6 +52,8 @@ pub struct Plan {
     pub is_adaptive: bool,
     /// The stages of a step.
     pub stages: Vec<PlannedStage>,
+    /// The laboratory test as it stands. None: the scene has none.
+    pub test: Option<Setup>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
 }
@@ -59,8 +62,8 @@ pub struct Plan {
 ///
 /// # Errors
 /// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom, materials that
-/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit; where the scene goes to its
-/// equilibrium at once, a piece that supports do not hold.
+/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit, a laboratory
+/// test that cannot be made; where the scene goes to its equilibrium at once, a piece that supports do not hold.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,
@@ -71,6 +74,8 @@ pub fn plan(
     let ball_m = ball_m(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
+    let tested = scene.test.as_ref().and_then(|test| read.get(&test.body));
+    let tested_m3 = tested.and_then(|body| body.about.shape_volume_m3);
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let to_come = templates.iter();
@@ -109,6 +114,11 @@ pub fn plan(
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;
     let stages = stages::stages(&state, scene);
+    let test = scene.test.as_ref().map(|test| {
+        let particles = particles_of(&sets, &test.body);
+        setup(scene, test, &state, particles, tested_m3)
+    });
+    let test = test.transpose()?;
     Ok(Plan {
         state,
         bodies,
@@ -116,6 +126,7 @@ pub fn plan(
         step,
         is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
+        test,
         notes,
     })
 }

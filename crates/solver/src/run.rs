@@ -125,8 +125,10 @@ pub fn run(
         return crate::statics::run(plan, scene, &settings, tell);
     }
     let mut gauges = gauges(scene, &plan);
-    let watch = match (&scene.test, settings.test) {
-        (Some(test), Some(of_test)) => Some(Watch::new(scene, test, of_test, &plan)?),
+    let watch = match (&scene.test, &plan.test, settings.test) {
+        (Some(test), Some(setup), Some(of_test)) => {
+            Some(Watch::new(scene, test, setup.clone(), of_test, &plan))
+        }
         _ => None,
     };
     let Plan {

@@ -93,7 +93,7 @@ impl Loading {
         let mut loading = Self {
             moving,
             resting,
-            weight_n: weight_n(setup, state),
+            weight_n: state.ledger.mass_kg() * dot(state.gravity_m_s2, setup.direction),
             every: (every as u64).max(FEWEST_STEPS),
             start_m: 0.0,
             apart_m: 0.0,
@@ -135,13 +135,6 @@ impl Holders {
         });
         of_walls.chain(of_supports).sum()
     }
-}
-
-/// Weight of all particles along the direction of a test, N.
-fn weight_n(setup: &Setup, state: &State) -> f64 {
-    let motions = state.particles.motions.iter();
-    let masses = motions.map(|motion| 1.0 / motion.inverse_mass);
-    masses.sum::<f64>() * dot(state.gravity_m_s2, setup.direction)
 }
 
 fn apart_m(setup: &Setup, state: &State) -> f64 {

@@ -79,13 +79,12 @@ pub fn setup(
         .map(|&i| state.particles.poses[i as usize].radius_m());
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
     let found = match test.kind {
-        TestKind::FourPointBending | TestKind::ThreePointBending => beam(scene, test, extent)
-            .map_err(|(problem, remedy)| {
-                Diagnostic::input(format!("{}: [test]", scene.source), problem, remedy)
-            })?,
-        TestKind::BrazilianDisc => disc(scene, test, direction, extent)?,
-        TestKind::Compression | TestKind::Tension => bar(test, direction, volume_m3, extent),
+        TestKind::FourPointBending | TestKind::ThreePointBending => beam(scene, test, extent),
+        TestKind::BrazilianDisc => disc(test, direction, extent),
+        TestKind::Compression | TestKind::Tension => Ok(bar(test, direction, volume_m3, extent)),
     };
+    let place = || format!("{}: [test]", scene.source);
+    let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
     if test.kind != TestKind::Tension {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
@@ -275,11 +274,10 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
 
 /// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.
 fn disc(
-    scene: &Scene,
     test: &Test,
     direction: Vector3<f64>,
     extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> Result<Setup> {
+) -> std::result::Result<Setup, Refusal> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let square = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
     let axis = square
@@ -290,8 +288,7 @@ fn disc(
     let along = forwards(axis.cross(&direction));
     let [across_m, high_m] = [along, direction].map(|way| size(extent(&way)));
     if across_m.max(high_m) > ROUND * across_m.min(high_m) {
-        return Err(Diagnostic::input(
-            format!("{}: [test]", scene.source),
+        return Err((
             format!(
                 "the body '{}' is no disc: {} mm along the load, {} mm across it (at most {ROUND} times as large one way as the other)",
                 test.body,

@@ -9,7 +9,7 @@ use super::crack::{CrackPicture, Sphere};
 use super::evaluate::{Evidence, TestResult, evaluate};
 use super::page::{TestFiles, write_test};
 use super::record::{Holders, Loading, Record};
-use super::setup::{Setup, setup};
+use super::setup::Setup;
 use crate::plan::Plan;
 use crate::state::State;
 
@@ -18,8 +18,6 @@ use crate::state::State;
 pub struct TestSettings {
     /// Lowest frequency of the body in the test, Hz.
     pub lowest_frequency_hz: f64,
-    /// Volume of the body's shape, m3. None: no file names one.
-    pub volume_m3: Option<f64>,
     /// What came of the same test at twice the rate. None: it was not done.
     pub at_twice_the_rate: Option<TestResult>,
 }
@@ -37,52 +35,38 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Of a plan that has not been stepped.
-    ///
-    /// # Errors
-    /// Those of [`setup`].
+    /// Of a test that stands as `setup` says, in a plan that has not been stepped.
     pub fn new(
         scene: &'a Scene,
         test: &'a Test,
+        setup: Setup,
         settings: TestSettings,
         plan: &Plan,
-    ) -> Result<Self> {
+    ) -> Self {
         let state = &plan.state;
         let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
-        let setup = setup(scene, test, state, particles, settings.volume_m3)?;
+        let walls = scene.walls.keys().map(|name| test.moves.contains(name));
         let grips: Vec<String> = test.moves.iter().map(|name| support_of(name)).collect();
-        let walls = scene.walls.keys().enumerate();
-        let supports = scene.supports.keys().enumerate();
-        let (mut moving, mut resting) = (Holders::default(), Holders::default());
-        for (at, name) in walls {
-            let holders = if test.moves.contains(name) {
-                &mut moving
-            } else {
-                &mut resting
-            };
-            holders.walls.push(at);
-        }
-        for (at, name) in supports {
-            let holders = if grips.contains(name) {
-                &mut moving
-            } else {
-                &mut resting
-            };
-            holders.supports.push(at);
-        }
+        let supports = scene.supports.keys().map(|name| grips.contains(name));
+        let ([walls, other_walls], [supports, other_supports]) = (split(walls), split(supports));
+        let moving = Holders { walls, supports };
+        let resting = Holders {
+            walls: other_walls,
+            supports: other_supports,
+        };
         let loading = Loading::of(moving, resting, &setup, state, scene.run.end_time_s);
         let spheres = (0..).zip(&state.particles.poses);
         let spheres = spheres
             .map(|(i, pose)| (pose.position_m, particles.binary_search(&i).is_ok()))
             .collect();
-        Ok(Self {
+        Self {
             scene,
             test,
             settings,
             setup,
             loading,
             spheres,
-        })
+        }
     }
 
     /// Notes a step; whether the body is broken.
@@ -147,4 +131,13 @@ impl<'a> Watch<'a> {
         }
         Ok(result)
     }
+}
+
+/// The places of those that load, and those of the others.
+fn split(load: impl Iterator<Item = bool>) -> [Vec<usize>; 2] {
+    let mut found = [Vec::new(), Vec::new()];
+    for (at, loads) in load.enumerate() {
+        found[usize::from(!loads)].push(at);
+    }
+    found
 }
