@@ -19,7 +19,7 @@ pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
 pub use pictures::PictureFiles;
-pub use plots::{Axis, Line, Plot, svg};
+pub use plots::{Axis, Line, MOST_LINES, Plot, svg};
 pub use series::{Series, SeriesFile, read_series};
 pub use stored_frame::{StoredFragment, StoredFrame, read_frame};
 pub use summary::write_json;

@@ -6,6 +6,7 @@ pub mod clock;
 pub mod clusters;
 mod disjoint;
 pub mod geometry;
+pub mod interpolation;
 pub mod interrupt;
 pub mod laboratory;
 pub mod machine;

@@ -29,8 +29,11 @@ const INK: &str = "#222222";
 const GRID: &str = "#e4e4e4";
 const FINE_GRID: &str = "#f2f2f2";
 
+/// Lines of a plot that each have a colour of their own.
+pub const MOST_LINES: usize = 7;
+
 /// Colours of the lines, told apart with any colour vision (Okabe and Ito).
-const COLOURS: [&str; 7] = [
+const COLOURS: [&str; MOST_LINES] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555",
 ];
 
@@ -58,6 +61,16 @@ pub struct Axis {
     pub log: bool,
     /// Of counts: there are no numbers between whole ones. Not for an axis with logarithms.
     pub whole: bool,
+}
+
+impl Axis {
+    /// A linear axis of a quantity and its SI unit: `time (s)`.
+    pub fn of(label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            ..Self::default()
+        }
+    }
 }
 
 /// A line through points in their order.

@@ -24,8 +24,37 @@ pub(super) struct Dropped {
 /// An even number of equal triangles may also be where two parts touch or overlap, face on face. Where that closes the surface, none
 /// is kept of those that stand there both ways round (a wall between the parts), and two of those that stand there one way round.
 pub(super) fn drop_superfluous(mesh: &mut Mesh) -> Dropped {
+    let all = mesh.triangles.len();
+    let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT);
+    let pairs: Vec<Pair> = (0..)
+        .zip(&kept)
+        .filter(|(_, equal)| equal.count % 2 == 0)
+        .map(|(triangle, equal)| Pair {
+            triangle,
+            both_ways: equal.both_ways,
+        })
+        .collect();
+    if !pairs.is_empty() {
+        settle_pairs(mesh, &pairs);
+    }
+    Dropped {
+        degenerate,
+        duplicate: all - degenerate - mesh.triangles.len(),
+    }
+}
+
+/// A set of equal triangles.
+pub(super) struct Equal {
+    count: usize,
+    /// As many stand there one way round as the other.
+    pub(super) both_ways: bool,
+}
+
+/// Drops triangles no higher than `no_height` (local units) and all but one of each set of equal ones, wound as most of its set are, and sorts the rest by
+/// their vertices. How many had no area, and the set of each that is kept.
+pub(super) fn keep_one_of_equal(mesh: &mut Mesh, no_height: f64) -> (usize, Vec<Equal>) {
     let mut sorted: Vec<([u32; 3], bool)> = (0..mesh.triangles.len() as u32)
-        .filter(|t| has_area(mesh, *t))
+        .filter(|t| has_area(mesh, *t, no_height))
         .map(|t| {
             let [a, b, c] = smallest_first(mesh.triangles[t as usize]);
             ([a, b.min(c), b.max(c)], b > c)
@@ -33,31 +62,22 @@ pub(super) fn drop_superfluous(mesh: &mut Mesh) -> Dropped {
         .collect();
     let degenerate = mesh.triangles.len() - sorted.len();
     sorted.sort_unstable();
-    let count = sorted.len();
     mesh.triangles.clear();
-    let mut pairs = Vec::new();
+    let mut kept = Vec::new();
     for equal in sorted.chunk_by(|x, y| x.0 == y.0) {
         let turned = equal.iter().filter(|(_, turned)| *turned).count();
-        if equal.len() % 2 == 0 {
-            pairs.push(Pair {
-                triangle: mesh.triangles.len() as u32,
-                both_ways: 2 * turned == equal.len(),
-            });
-        }
         let [a, b, c] = equal[0].0;
         mesh.triangles.push(if 2 * turned > equal.len() {
             [a, c, b]
         } else {
             [a, b, c]
         });
+        kept.push(Equal {
+            count: equal.len(),
+            both_ways: 2 * turned == equal.len(),
+        });
     }
-    if !pairs.is_empty() {
-        settle_pairs(mesh, &pairs);
-    }
-    Dropped {
-        degenerate,
-        duplicate: count - mesh.triangles.len(),
-    }
+    (degenerate, kept)
 }
 
 /// A triangle that stands there an even number of times.
@@ -67,9 +87,9 @@ struct Pair {
     both_ways: bool,
 }
 
-fn has_area(mesh: &Mesh, triangle: u32) -> bool {
+fn has_area(mesh: &Mesh, triangle: u32, no_height: f64) -> bool {
     let [a, b, c] = mesh.triangles[triangle as usize];
-    a != b && b != c && c != a && height(mesh, triangle) > NO_HEIGHT
+    a != b && b != c && c != a && height(mesh, triangle) > no_height
 }
 
 /// The least height of a triangle.

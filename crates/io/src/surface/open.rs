@@ -1,9 +1,11 @@
 //! Facets -> welded triangles of a surface that need not enclose anything: a plate, a chute, a hopper without a lid.
 
+use super::duplicates::keep_one_of_equal;
 use super::frame::Frame;
-use super::mesh::{Edges, Mesh, smallest_first};
+use super::mesh::{Edges, Mesh};
 use super::sets::Sets;
-use super::vector::{bounds, distance, length, normal};
+use super::shells::join;
+use super::vector::{bounds, distance};
 use super::{t_junctions, weld};
 use crate::hash::fnv1a;
 use crate::stl::read_facets;
@@ -35,6 +37,8 @@ pub struct OpenSurface {
     pub duplicate_facets: usize,
     /// Triangles that are wound against the others that they hang together with: those of each part that are the fewer. 0: each part is wound one way.
     pub turned_facets: usize,
+    /// Whether what the triangles enclose has a volume below 0, as where those of a closed surface look inwards. Says nothing of an open one.
+    pub is_inside_out: bool,
     /// One sentence for each thing that is odd about the file but harmless.
     pub warnings: Vec<String>,
 }
@@ -86,6 +90,7 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
         .iter()
         .filter(|turned| **turned)
         .count();
+    let is_inside_out = mesh.signed_volume(0..mesh.triangles.len() as u32) < 0.0;
     mesh.order_vertices();
     Ok(OpenSurface {
         source: String::new(),
@@ -102,6 +107,7 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
         degenerate_facets: dropped[0],
         duplicate_facets: dropped[1],
         turned_facets,
+        is_inside_out,
         warnings: file.warnings,
     })
 }
@@ -112,35 +118,16 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
 /// and as its neighbours are where there are as many of either way.
 fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     let all = mesh.triangles.len();
-    let mut kept: Vec<([u32; 3], [u32; 3])> = (0..all as u32)
-        .filter(|t| has_area(mesh, *t, diagonal))
-        .map(|t| {
-            let triangle = mesh.triangles[t as usize];
-            let mut sorted = triangle;
-            sorted.sort_unstable();
-            (sorted, smallest_first(triangle))
-        })
-        .collect();
-    let with_area = kept.len();
-    kept.sort_unstable();
-    mesh.triangles.clear();
-    let mut both_ways = Vec::new();
-    for equal in kept.chunk_by(|a, b| a.0 == b.0) {
-        let [first, last] = [equal[0].1, equal[equal.len() - 1].1];
-        let of_first = equal.partition_point(|(_, triangle)| *triangle == first);
-        both_ways.push(2 * of_first == equal.len());
-        let is_last = 2 * of_first < equal.len();
-        mesh.triangles.push(if is_last { last } else { first });
-    }
-    if both_ways.contains(&true) {
-        let turned = turned(mesh, |t| !both_ways[t as usize]);
+    let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT * diagonal);
+    if kept.iter().any(|equal| equal.both_ways) {
+        let turned = turned(mesh, |t| !kept[t as usize].both_ways);
         for (t, triangle) in mesh.triangles.iter_mut().enumerate() {
-            if both_ways[t] && turned[t] {
+            if kept[t].both_ways && turned[t] {
                 triangle.swap(1, 2);
             }
         }
     }
-    [all - with_area, with_area - mesh.triangles.len()]
+    [degenerate, all - degenerate - kept.len()]
 }
 
 /// Which triangles are wound against most of those that they hang together with over edges of two; `counts` says which of these count.
@@ -148,9 +135,8 @@ fn turned(mesh: &Mesh, counts: impl Fn(u32) -> bool) -> Vec<bool> {
     let mut sets = Sets::new(mesh.triangles.len());
     for group in Edges::of(mesh).groups() {
         if let [a, b] = *group {
-            let against = mesh.half_edge(a) == mesh.half_edge(b);
             // A strip with one side fits together no way: the first edges have their say.
-            sets.join(a / 3, b / 3, against);
+            let _ = join(mesh, &mut sets, a, b);
         }
     }
     let all = 0..mesh.triangles.len() as u32;
@@ -166,12 +152,4 @@ fn turned(mesh: &Mesh, counts: impl Fn(u32) -> bool) -> Vec<bool> {
         .iter()
         .map(|(root, turned)| *turned != (majority[*root as usize] < 0))
         .collect()
-}
-
-fn has_area(mesh: &Mesh, triangle: u32, diagonal: f64) -> bool {
-    let [a, b, c] = mesh.triangles[triangle as usize];
-    let corners = mesh.corners(triangle);
-    let [p, q, r] = corners;
-    let longest = distance(p, q).max(distance(q, r)).max(distance(r, p));
-    a != b && b != c && c != a && length(normal(corners)) > NO_HEIGHT * diagonal * longest
 }

@@ -50,7 +50,10 @@ pub(super) fn connect(mesh: &Mesh, edges: &Edges) -> Result<Connected, u32> {
 }
 
 /// Joins the triangles of two half-edges of the same edge: wound alike, one runs against the other.
-fn join(mesh: &Mesh, sets: &mut Sets, a: u32, b: u32) -> Result<(), u32> {
+///
+/// # Errors
+/// The first half-edge, if the two are joined already and the other way.
+pub(super) fn join(mesh: &Mesh, sets: &mut Sets, a: u32, b: u32) -> Result<(), u32> {
     let turned = mesh.half_edge(a) == mesh.half_edge(b);
     if sets.join(a / 3, b / 3, turned) {
         Ok(())

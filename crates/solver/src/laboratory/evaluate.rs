@@ -177,6 +177,11 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     })
 }
 
+/// Travel at which the line fitted to the load over the travel has no load, m: play until everything touches. 0 where there is no line.
+pub fn play_m(rows: &[Row]) -> f64 {
+    slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
+}
+
 /// The row with the largest load.
 pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
@@ -266,7 +271,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
             add(STRENGTH, failure.map(stress), "Pa", strength);
         }
     }
-    let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
+    let play_m = play_m(rows);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
     add(
         "failure travel",

@@ -8,7 +8,7 @@ use dem_io::scene::Test;
 use dem_io::units::significant;
 
 use super::crack::{CrackPicture, crack_svg};
-use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, rows_of, slope};
+use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, play_m, rows_of, slope};
 use super::record::{Record, Row};
 
 /// What the files of a test are made of.
@@ -31,11 +31,12 @@ pub struct TestFiles<'a> {
 /// # Errors
 /// Those of the files.
 pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
-    let curve = curve(files.record, files.result);
+    let rows = rows_of(files.record, files.result.lowest_frequency_hz);
+    let curve = curve(&rows, files.result);
     let crack = crack_svg(&files.picture);
     folder.write_plot("force-displacement", &curve)?;
     folder.write_picture("crack", &crack)?;
-    folder.write_test_curve(&curve_csv(files.record, files.result.lowest_frequency_hz))?;
+    folder.write_test_curve(&curve_csv(files.record, play_m(&rows)))?;
     folder.write_test_page(&page(files, &svg(&curve), &crack))
 }
 
@@ -43,11 +44,9 @@ pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
 const COLUMNS: &str =
     "time_s,travel_m,displacement_m,load_n,force_n,reaction_n,deflection_m,broken_bonds";
 
-/// What was noted, a row for each interval. Every number reads back as the same bits.
-fn curve_csv(record: &Record, lowest_frequency_hz: f64) -> String {
+/// What was noted, a row for each interval; the displacement is the travel less `play_m`. Every number reads back as the same bits.
+fn curve_csv(record: &Record, play_m: f64) -> String {
     let mut out = format!("{COLUMNS}\n");
-    let smoothed = rows_of(record, lowest_frequency_hz);
-    let play_m = slope(&smoothed, |row| row.travel_m).map_or(0.0, |slope| slope.start_m);
     for row in &record.rows {
         let broken = record
             .broken
@@ -68,11 +67,9 @@ fn curve_csv(record: &Record, lowest_frequency_hz: f64) -> String {
     out
 }
 
-/// Load over displacement, with the theory's line where the scene names a modulus.
-pub fn curve(record: &Record, result: &TestResult) -> Plot {
-    let rows = &rows_of(record, result.lowest_frequency_hz);
-    let by_travel = slope(rows, |row| row.travel_m);
-    let play_m = by_travel.map_or(0.0, |slope| slope.start_m);
+/// Load over displacement of the rows by which a test is evaluated ([`rows_of`]), with the theory's line where the scene names a modulus.
+pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
+    let play_m = play_m(rows);
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
         rows.iter().map(|row| [way(row), row.load_n()]).collect()
     };
@@ -107,14 +104,8 @@ pub fn curve(record: &Record, result: &TestResult) -> Plot {
     let failure = named(result, FAILURE_FORCE).and_then(|figure| figure.theory);
     Plot {
         title: result.kind.replace('-', " "),
-        x: Axis {
-            label: "displacement (m)".to_owned(),
-            ..Axis::default()
-        },
-        y: Axis {
-            label: "load (N)".to_owned(),
-            ..Axis::default()
-        },
+        x: Axis::of("displacement (m)"),
+        y: Axis::of("load (N)"),
         lines,
         reference: failure.map(|force| (force, "failure force wanted".to_owned())),
     }

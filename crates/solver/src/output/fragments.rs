@@ -156,14 +156,10 @@ pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
 }
 
 fn plot(title: &str, x: &str, y: &str, points: Vec<[f64; 2]>) -> Plot {
-    let axis = |label: &str| Axis {
-        label: label.to_owned(),
-        ..Axis::default()
-    };
     Plot {
         title: title.to_owned(),
-        x: axis(x),
-        y: axis(y),
+        x: Axis::of(x),
+        y: Axis::of(y),
         lines: vec![Line {
             name: title.to_lowercase(),
             points,

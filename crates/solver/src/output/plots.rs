@@ -87,14 +87,8 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
     };
     Plot {
         title: title.to_owned(),
-        x: Axis {
-            label: "time (s)".to_owned(),
-            ..Axis::default()
-        },
-        y: Axis {
-            label: y.to_owned(),
-            ..Axis::default()
-        },
+        x: Axis::of("time (s)"),
+        y: Axis::of(y),
         lines: columns.iter().map(line).collect(),
         reference: None,
     }

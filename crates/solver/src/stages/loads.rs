@@ -2,6 +2,7 @@
 
 use dem_io::scene::Factor;
 
+use crate::interpolation::interpolated;
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// A load on some particles, the same on each.
@@ -22,14 +23,7 @@ pub fn factor_at(factor: &Factor, time_s: f64) -> f64 {
     match factor {
         Factor::One => 1.0,
         Factor::Ramp { until_s } => (time_s / until_s).clamp(0.0, 1.0),
-        Factor::Table(points) => {
-            let after = points.partition_point(|[t, _]| *t <= time_s);
-            match (points[..after].last(), points.get(after)) {
-                (Some([t0, f0]), Some([t1, f1])) => f0 + (f1 - f0) * (time_s - t0) / (t1 - t0),
-                (Some([_, f]), None) | (None, Some([_, f])) => *f,
-                (None, None) => 1.0,
-            }
-        }
+        Factor::Table(points) => interpolated(points, time_s).unwrap_or(1.0),
     }
 }
 

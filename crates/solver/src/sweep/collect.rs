@@ -118,17 +118,19 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         }
         MeasureOf::Masses(pieces) => {
             let masses_kg = masses_kg(*pieces, results)?;
+            let count = masses_kg.len() as f64;
             return Ok(Reading {
-                masses_kg: masses_kg.clone(),
-                ..plain(masses_kg.len() as f64)
+                masses_kg,
+                ..plain(count)
             });
         }
         MeasureOf::Curve => {
             let curve = curve(results)?;
+            let largest_n = largest_n(&curve);
             return Ok(Reading {
                 unit: "N".to_owned(),
-                curve: curve.clone(),
-                ..plain(largest_n(&curve))
+                curve,
+                ..plain(largest_n)
             });
         }
         MeasureOf::Measure(name) => (&summary["measures"], name, "reference"),

@@ -3,12 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use dem_io::results::{Axis, Line, Plot};
+use dem_io::results::{Axis, Line, MOST_LINES, Plot};
 
 use super::table::SweepTable;
-
-/// Most curves in one plot: as many as there are colours.
-const MOST_CURVES: usize = 7;
+use crate::interpolation::interpolated;
 
 /// The curve of the test whose results stand in this folder: points (displacement in m, load in N), rising in the first.
 ///
@@ -56,8 +54,9 @@ pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
     let (mut between, mut under) = (0.0, 0.0);
     for ends in places.windows(2) {
         let width_m = ends[1] - ends[0];
+        let load_n = |points, x| interpolated(points, x).unwrap_or(0.0);
         let [own, other] =
-            [curve, reference].map(|points| [force_at(points, ends[0]), force_at(points, ends[1])]);
+            [curve, reference].map(|points| [load_n(points, ends[0]), load_n(points, ends[1])]);
         between += width_m * mean_size(own[0] - other[0], own[1] - other[1]);
         under += 0.5 * width_m * (other[0] + other[1]);
     }
@@ -73,20 +72,7 @@ fn mean_size(from: f64, to: f64) -> f64 {
     }
 }
 
-/// Between points the line through them.
-fn force_at(curve: &[[f64; 2]], x: f64) -> f64 {
-    let after = curve.partition_point(|point| point[0] <= x);
-    match (
-        after.checked_sub(1).map(|at| curve[at]),
-        curve.get(after).copied(),
-    ) {
-        (Some([x0, y0]), Some([x1, y1])) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
-        (Some([_, y]), None) | (None, Some([_, y])) => y,
-        (None, None) => 0.0,
-    }
-}
-
-/// The curves of a measure of all runs, of seven at most. None: it is of something else.
+/// The curves of a measure of all runs, of as many as have a colour. None: it is of something else.
 pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
     let runs = table.runs.iter();
     let with_curve = runs.filter(|row| {
@@ -95,7 +81,7 @@ pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
             .is_some_and(|j| !j.curve.is_empty())
     });
     let lines: Vec<Line> = with_curve
-        .take(MOST_CURVES)
+        .take(MOST_LINES)
         .map(|row| Line {
             name: row.settings.join(", "),
             points: row.results[measure].curve.clone(),
@@ -104,14 +90,8 @@ pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
         .collect();
     (!lines.is_empty()).then(|| Plot {
         title: table.measures[measure].name.replace('_', " "),
-        x: Axis {
-            label: "displacement (m)".to_owned(),
-            ..Axis::default()
-        },
-        y: Axis {
-            label: "load (N)".to_owned(),
-            ..Axis::default()
-        },
+        x: Axis::of("displacement (m)"),
+        y: Axis::of("load (N)"),
         lines,
         reference: None,
     })

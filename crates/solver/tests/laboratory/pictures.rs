@@ -3,6 +3,7 @@
 use dem_io::results::svg;
 use dem_io::scene::TestKind;
 use dem_run::laboratory::crack::{CrackPicture, crack_svg};
+use dem_run::laboratory::evaluate::rows_of;
 use dem_run::laboratory::page::curve;
 use dem_run::laboratory::setup::Specimen;
 use dem_run::laboratory::theory::Beam;
@@ -21,7 +22,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     let record = record(2e4, 50.0);
     let test = test(TestKind::FourPointBending);
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
-    let plot = curve(&record, &result);
+    let plot = curve(&rows_of(&record, result.lowest_frequency_hz), &result);
     let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
     assert_eq!(
         names,

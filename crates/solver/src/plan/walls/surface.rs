@@ -86,24 +86,13 @@ pub(super) fn oddities(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item
             "the surface is open ({} edges of one triangle only); it pushes on both sides",
             content.open_edges
         ));
-    } else if content.unpaired_edges == 0
-        && signed_volume(&surface.vertices_m, &surface.triangles) < 0.0
-    {
+    } else if content.unpaired_edges == 0 && surface.is_inside_out {
         odd.push(
             "the surface is inside out; it pushes on both sides, so nothing changes".to_owned(),
         );
     }
     odd.extend(surface.warnings.iter().cloned());
     odd.into_iter()
-}
-
-/// Volume that triangles enclose, m3: below 0 where they look inwards.
-fn signed_volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
-    let of_one = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| nalgebra::Vector3::from(vertices[v as usize]));
-        a.dot(&b.cross(&c)) / 6.0
-    };
-    triangles.iter().map(of_one).sum()
 }
 
 /// Asks for the unit of a surface that is out of all proportion.
