@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::{Bench, root, scene_of_data};
 
 /// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The bonds are rods of 4 mm by which it has a closed form.
-fn bar() -> String {
+pub(crate) fn bar() -> String {
     let particles: Vec<String> = (0..11)
         .map(|i| format!("[0, 0, {}, 0.002]", 0.004 * f64::from(i)))
         .collect();

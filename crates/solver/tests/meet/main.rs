@@ -8,6 +8,8 @@
 )]
 
 mod apart;
+#[path = "../walls/closed_box.rs"]
+mod closed_box;
 mod clouds;
 mod rest;
 mod surfaces;

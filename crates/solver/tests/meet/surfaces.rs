@@ -9,6 +9,7 @@ use dem_run::plan::{Plan, plan};
 use dem_run::step::step;
 
 use crate::apart::planned;
+use crate::closed_box::closed_box;
 
 type Corners = [[f64; 3]; 3];
 
@@ -42,20 +43,10 @@ fn plate() -> Vec<Corners> {
     squares.flat_map(of_one).collect()
 }
 
-/// A box of twelve triangles with their normals outwards, m.
-fn closed_box(low: [f64; 3], high: [f64; 3]) -> Vec<Corners> {
-    let corner =
-        |n: usize| [0, 1, 2].map(|k: usize| if n >> k & 1 == 0 { low[k] } else { high[k] });
-    let sides = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = |[a, b, c, d]: [usize; 4]| [[a, b, c], [a, c, d]].map(|t| t.map(corner));
-    sides.into_iter().flat_map(triangles).collect()
+fn box_corners(low: [f64; 3], high: [f64; 3]) -> Vec<Corners> {
+    let (vertices, triangles) = closed_box(low, high);
+    let corners = triangles.iter().map(|t| t.map(|v| vertices[v as usize]));
+    corners.collect()
 }
 
 /// A sphere of 5 mm radius over a wall.
@@ -149,7 +140,7 @@ fn turned_and_doubled_triangles_push_as_a_clean_plate_does() {
 #[test]
 fn a_body_that_starts_inside_a_solid_surface_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let outwards = closed_box([-0.1, -0.1, -0.2], [0.1, 0.1, 0.0]);
+    let outwards = box_corners([-0.1, -0.1, -0.2], [0.1, 0.1, 0.0]);
     let inwards: Vec<Corners> = outwards.iter().copied().map(turned).collect();
     let mut mixed = outwards.clone();
     mixed[0] = turned(mixed[0]);
@@ -205,7 +196,7 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
 #[test]
 fn a_surface_out_of_proportion_asks_for_its_unit() {
     let folder = tempfile::tempdir().unwrap();
-    let cube = |edge_m: f64| closed_box([-0.5 * edge_m; 3], [0.5 * edge_m; 3]);
+    let cube = |edge_m: f64| box_corners([-0.5 * edge_m; 3], [0.5 * edge_m; 3]);
     // Two spheres of 10 mm, and as many far apart.
     let near = "[0, 0, 20, 5e-3], [0.02, 0, 20, 5e-3]";
     let wide = "[0, 0, 20, 5e-3], [8, 0, 20, 5e-3]";

@@ -3,7 +3,8 @@
 use dem_io::surface::read_open_surface;
 use dem_run::geometry::{Mesh, Shape};
 
-use crate::{Surface, add_tiles, box_surface, closed_box, touches};
+use crate::closed_box::closed_box;
+use crate::{Surface, add_tiles, box_surface, touches};
 
 /// An ASCII STL.
 fn stl((vertices, triangles): &Surface) -> String {

@@ -7,6 +7,7 @@
 )]
 
 mod brute;
+mod closed_box;
 mod files;
 mod frames;
 mod inside;
@@ -66,26 +67,6 @@ pub(crate) fn box_surface(low: [f64; 3], high: [f64; 3], n: u32) -> Surface {
         }
     }
     surface
-}
-
-/// A box of twelve triangles, all with their normals outwards.
-pub(crate) fn closed_box(low: [f64; 3], high: [f64; 3]) -> Surface {
-    let vertices = (0..8_usize)
-        .map(|n| [0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] }))
-        .collect();
-    let sides = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = sides
-        .iter()
-        .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]])
-        .collect();
-    (vertices, triangles)
 }
 
 /// Adds `n` by `n` squares whose corners `place` tells.
