@@ -3,6 +3,7 @@
 pub mod bodies;
 mod clumps;
 mod contacts;
+mod forecast;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -18,6 +19,7 @@ use dem_io::{Body, Diagnostic, Result};
 use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
+use crate::output::inputs::Inputs;
 use crate::stages::loads::SetLoad;
 use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
@@ -29,10 +31,12 @@ use crate::statics::held::refuse_loose;
 use self::bodies::{PlacedBody, place_bodies};
 use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::forecast::forecast;
+pub use self::forecast::{Forecast, ToCome};
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
-use self::time_step::{StepChoice, choose_step};
+use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
 
 /// Particles and bonds that are worth a thread of their own.
 const WORTH_A_THREAD: usize = 5000;
@@ -58,6 +62,10 @@ pub struct Plan {
     pub notes: Vec<String>,
     /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
     pub warnings: Vec<String>,
+    /// What will happen, as far as it can be told.
+    pub forecast: Forecast,
+    /// What is planned, for the results.
+    pub inputs: Inputs,
 }
 
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
@@ -72,6 +80,7 @@ pub fn plan(
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
+    let inputs = Inputs::of(scene, &read);
     let mut read = read;
     let ball_m = ball_m(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
@@ -105,7 +114,7 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     let warnings = doubts(scene, &state);
     state.ledger = Ledger::opened(&state);
-    let step = match scene.run.integrator {
+    let mut step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
         Integrator::Static => {
             refuse_loose(&state, &bodies, &scene.source)?;
@@ -115,6 +124,15 @@ pub fn plan(
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;
+    step.rayleigh_s = rayleigh_s(scene, &state, &bodies);
+    let arriving = arriving_as_clusters(&state);
+    let forecast = forecast(
+        scene,
+        &state,
+        &bodies,
+        step.impact_speed_m_s,
+        arriving.as_ref(),
+    );
     let stages = stages::stages(&state, scene);
     let test = scene.test.as_ref().map(|test| {
         let particles = particles_of(&sets, &test.body);
@@ -131,6 +149,8 @@ pub fn plan(
         test,
         notes,
         warnings,
+        forecast,
+        inputs,
     })
 }
 

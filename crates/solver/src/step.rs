@@ -151,9 +151,9 @@ pub fn move_on(state: &mut State) {
 /// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
 fn find_pieces(state: &mut State) {
     state.splits.clear();
-    let Some(clusters) = &mut state.clusters else {
+    if state.clusters.is_none() {
         return;
-    };
+    }
     let broken = state.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
     if !state
@@ -162,6 +162,14 @@ fn find_pieces(state: &mut State) {
     {
         return;
     }
+    find_pieces_now(state);
+}
+
+/// The same, whether it is time to or not.
+pub fn find_pieces_now(state: &mut State) {
+    let Some(clusters) = &mut state.clusters else {
+        return;
+    };
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
     state.clock.did(Stage::Clusters, damaged.len());
     state.splits = clusters.update(state.time_s, &damaged, &state.bonds);

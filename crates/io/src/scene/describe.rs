@@ -22,6 +22,15 @@ const LISTED: usize = 8;
 impl Scene {
     /// All values in SI with their units, defaults included: one line each, `key   value`, aligned.
     pub fn describe(&self) -> String {
+        self.described().aligned()
+    }
+
+    /// The same as keys and values, in the same order.
+    pub fn values(&self) -> Vec<(String, String)> {
+        self.described().lines
+    }
+
+    fn described(&self) -> Lines {
         let mut lines = Lines::default();
         lines.run(&self.run);
         for (name, material) in &self.materials {
@@ -71,7 +80,7 @@ impl Scene {
         if let Some(test) = &self.test {
             lines.test(test);
         }
-        lines.aligned()
+        lines
     }
 }
 

@@ -110,3 +110,8 @@ impl Template {
             + size_of_val(&self.bonds.histories[..])
     }
 }
+
+/// What all arrays of a state take, bytes.
+pub fn all_bytes(state: &State) -> usize {
+    Stage::ALL.iter().map(|&stage| bytes(state, stage)).sum()
+}
