@@ -352,6 +352,7 @@ pub fn run(
         particles: state.particles.len(),
         bonds: state.bonds.len(),
         broken_bonds: state.broken_count,
+        broken_by_cause: state.broken_by_cause,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         population: PopulationSummary::of(&state),
         sleep: state.sleep.as_ref().map(SleepSummary::of),

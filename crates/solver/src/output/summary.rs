@@ -9,6 +9,7 @@ use super::fragments::FragmentSummary;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
+use crate::physics::bond::failure::CauseCounts;
 use crate::state::State;
 use crate::state::sleep::Sleep;
 use crate::statics::EquilibriumSummary;
@@ -42,6 +43,8 @@ pub struct Summary {
     pub bonds: usize,
     /// Bonds that broke.
     pub broken_bonds: u64,
+    /// The same by what they failed by.
+    pub broken_by_cause: CauseCounts,
     /// What the bodies broke into, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
@@ -303,12 +306,16 @@ impl fmt::Display for Summary {
             .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
             .collect();
         writeln!(f, "time         {}", shares.join("   "))?;
+        let causes = match self.broken_bonds {
+            0 => String::new(),
+            _ => format!(": {}", self.broken_by_cause),
+        };
         if self.population.is_some() {
-            writeln!(f, "broken       {} bonds", self.broken_bonds)?;
+            writeln!(f, "broken       {} bonds{causes}", self.broken_bonds)?;
         } else if self.bonds > 0 {
             writeln!(
                 f,
-                "broken       {} of {} bonds",
+                "broken       {} of {} bonds{causes}",
                 self.broken_bonds, self.bonds
             )?;
         }

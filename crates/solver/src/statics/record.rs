@@ -17,6 +17,7 @@ use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use crate::output::summary::{Summary, measure_lines};
+use crate::physics::bond::failure::CauseCounts;
 use crate::run::RunSettings;
 use crate::state::State;
 
@@ -160,6 +161,7 @@ impl AtRest<'_> {
             particles: state.particles.len(),
             bonds: state.bonds.len(),
             broken_bonds: 0,
+            broken_by_cause: CauseCounts::default(),
             fragments,
             population: None,
             sleep: None,
