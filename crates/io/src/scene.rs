@@ -235,15 +235,18 @@ pub enum RateOf {
 /// What breaks a bond; whichever comes first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
-    /// `tension`: largest normal stress, Pa (MUSEN's sigma_max).
+    /// `tension`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
+    /// the sign of the force).
     pub tension_pa: Option<f64>,
+    /// `compression`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
+    /// breaks there.
+    pub compression_pa: Option<f64>,
     /// `shear`: largest shear stress, Pa (MUSEN's tau_max).
     pub shear_pa: Option<f64>,
-    /// `compressive`: the normal stress counts in compression too. True unless given.
-    pub compressive: bool,
     /// `von_mises`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_pa: Option<f64>,
-    /// `rate_strengthening`: strain rate from which strengths rise with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
+    /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
+    /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
     pub rate_strengthening_from_1_s: Option<f64>,
     /// `rate_of`: what that rate is of. The elongation unless given.
     pub rate_of: RateOf,

@@ -9,7 +9,7 @@ use crate::check::ledger::Balance;
 use crate::check::totals::synchronous_motions;
 use crate::clusters::fragments;
 use crate::physics::bond::BondLoad;
-use crate::physics::bond::failure::{stresses, utilisation};
+use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::physics::rigid::rotation_vector;
 use crate::plan::Plan;
 use crate::plan::bodies::PlacedBody;
@@ -321,7 +321,8 @@ pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     match &bonds.rules[bonds.rule_of(at)].criteria {
         Some(criteria) if !bonds.is_broken(at) => {
             let stresses = stresses(load, bonds.radius_m(at));
-            utilisation(criteria, &stresses, bonds.strength_factor(at))
+            let factors = Factors::scattered(bonds.strength_factor(at));
+            utilisation(criteria, &stresses, factors)
         }
         _ => 0.0,
     }

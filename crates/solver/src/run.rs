@@ -429,6 +429,7 @@ pub fn run_as_far_as_it_goes(
         broken_bonds: state.broken_count,
         largest_bond_strain: progress.seen.bond_strain.largest,
         largest_overlap: progress.seen.overlap.largest,
+        broken_by_cause: state.broken_by_cause,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         population: PopulationSummary::of(&state),
         sleep: state.sleep.as_ref().map(SleepSummary::of),

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::Ledger;
 use crate::measure;
+use crate::physics::bond::failure::CauseCounts;
 use crate::physics::bond::incremental::History;
 use crate::plan::bodies::PlacedBody;
 use crate::run::Progress;
@@ -35,6 +36,7 @@ pub struct Snapshot {
     time_step_s: f64,
     previous_time_step_s: f64,
     broken_count: u64,
+    broken_by_cause: CauseCounts,
     particles: Vec<PlaceAndMotion>,
     broken: Vec<u32>,
     histories: Vec<[f64; 6]>,
@@ -69,6 +71,7 @@ impl Snapshot {
             time_step_s: state.time_step_s,
             previous_time_step_s: state.previous_time_step_s,
             broken_count: state.broken_count,
+            broken_by_cause: state.broken_by_cause,
             particles: p
                 .poses
                 .iter()
@@ -200,6 +203,7 @@ impl Snapshot {
         state.time_step_s = self.time_step_s;
         state.previous_time_step_s = self.previous_time_step_s;
         state.broken_count = self.broken_count;
+        state.broken_by_cause = self.broken_by_cause;
         let there = (0..state.bonds.len()).filter(|&at| state.bonds.is_broken(at));
         state.broken_gone = self.broken_count.saturating_sub(there.count() as u64);
         Ok(())

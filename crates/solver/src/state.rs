@@ -15,6 +15,7 @@ pub mod walls;
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
 use crate::clusters::{Clusters, Split, Triggers};
+use crate::physics::bond::failure::CauseCounts;
 use crate::stages::breakage::Break;
 use crate::stages::loads::SetLoad;
 use crate::stages::supports::SetSupport;
@@ -83,6 +84,8 @@ pub struct State {
     pub broken: Vec<Break>,
     /// Bonds broken so far.
     pub broken_count: u64,
+    /// The same by what they failed by.
+    pub broken_by_cause: CauseCounts,
     /// Those of them that have gone with their bodies.
     pub broken_gone: u64,
     /// Energy and momentum that went in and out.
@@ -128,6 +131,7 @@ impl State {
             fastest_m_s: 0.0,
             broken: Vec::new(),
             broken_count: 0,
+            broken_by_cause: CauseCounts::default(),
             broken_gone: 0,
             clock: StageClock::default(),
         };

@@ -63,6 +63,9 @@ pub fn act(state: &mut State) {
     );
     state.clock.did(Stage::Rates, rates);
     state.broken_count += state.broken.len() as u64;
+    for broken in &state.broken {
+        state.broken_by_cause.count(broken.cause);
+    }
     if !state.broken.is_empty() {
         leave_out_broken(state);
     }

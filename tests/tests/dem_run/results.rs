@@ -68,6 +68,10 @@ fn events_tell_every_bond_that_broke() {
         .collect();
     assert!(rows.len() >= 4);
     assert_eq!(summary["broken_bonds"], rows.len());
+    for cause in ["tension", "compression", "shear", "von_mises"] {
+        let counted = rows.iter().filter(|row| row[9] == cause).count();
+        assert_eq!(summary["broken_by_cause"][cause], counted, "{cause}");
+    }
     let bonds = [
         [0, 1],
         [1, 2],

@@ -181,6 +181,7 @@ impl Lines {
         let failure = &kind.failure;
         for (key, limit, unit) in [
             ("tension", failure.tension_pa, "Pa"),
+            ("compression", failure.compression_pa, "Pa"),
             ("shear", failure.shear_pa, "Pa"),
             ("von_mises", failure.von_mises_pa, "Pa"),
             (
@@ -199,10 +200,6 @@ impl Lines {
         self.add(
             format!("{path}.failure.rate_of"),
             rate_of.map_or("", |(name, _)| name).to_owned(),
-        );
-        self.add(
-            format!("{path}.failure.compressive"),
-            failure.compressive.to_string(),
         );
     }
 

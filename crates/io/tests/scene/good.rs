@@ -327,7 +327,7 @@ fn bonds() {
         BondFailure {
             tension_pa: Some(1e6),
             shear_pa: Some(2e6),
-            compressive: false,
+            compression_pa: Some(15e6),
             von_mises_pa: Some(3e6),
             rate_strengthening_from_1_s: Some(1e-5),
             rate_of: RateOf::RelativeVelocity,
@@ -340,7 +340,7 @@ fn bonds() {
     assert_eq!(sheared.radius_factor, None);
     assert_eq!(sheared.damping, BondDamping::default());
     assert_eq!(sheared.failure.rate_strengthening_from_1_s, Some(4.64e-6));
-    assert!(sheared.failure.compressive);
+    assert_eq!(sheared.failure.compression_pa, None);
 }
 
 #[test]

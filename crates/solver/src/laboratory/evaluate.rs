@@ -344,7 +344,9 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
         let value = wanted / modulus * bonds.young_modulus_pa;
         found.push(Figure::new(name, value, "Pa", None));
     }
-    let of_bonds = bonds.failure.von_mises_pa.or(bonds.failure.tension_pa);
+    let failure = &bonds.failure;
+    let of_bonds = failure.von_mises_pa.or(failure.tension_pa);
+    let of_bonds = of_bonds.or(failure.compression_pa);
     let of_bonds = of_bonds.filter(|strength| *strength > 0.0);
     if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
         let factor = strength / of_bonds;

@@ -11,6 +11,7 @@ use super::inputs::Inputs;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
+use crate::physics::bond::failure::CauseCounts;
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;
@@ -57,6 +58,8 @@ pub struct Summary {
     pub largest_bond_strain: f64,
     /// Largest overlap of a contact over the radius of its smaller sphere.
     pub largest_overlap: f64,
+    /// The same by what they failed by.
+    pub broken_by_cause: CauseCounts,
     /// What the bodies broke into, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
@@ -374,12 +377,16 @@ impl fmt::Display for Summary {
             .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
             .collect();
         writeln!(f, "time         {}", shares.join("   "))?;
+        let causes = match self.broken_bonds {
+            0 => String::new(),
+            _ => format!(": {}", self.broken_by_cause),
+        };
         if self.population.is_some() {
-            writeln!(f, "broken       {} bonds", self.broken_bonds)?;
+            writeln!(f, "broken       {} bonds{causes}", self.broken_bonds)?;
         } else if self.bonds > 0 {
             writeln!(
                 f,
-                "broken       {} of {} bonds",
+                "broken       {} of {} bonds{causes}",
                 self.broken_bonds, self.bonds
             )?;
         }

@@ -13,7 +13,7 @@ use crate::physics::bond::damping::{chen, chen_by_mode, platzer, reduced};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
-use crate::physics::bond::scatter::strength_factor;
+use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
 use crate::stages::population::{Born, GONE, Renumbered};
@@ -157,14 +157,13 @@ pub(super) fn place_body(
     if bonds.rules.is_empty() {
         bonds.rules = scene.bonds.values().map(rule).collect();
     }
-    let number = scene.bodies.keys().position(|known| known == name);
     let mut one = place_particles(scene, name, entry, body, particles)?;
     let of_kind = entry.bond_kind.as_ref();
     let rule = of_kind.and_then(|kind| scene.bonds.keys().position(|known| known == kind));
     match (rule, of_kind.and_then(|kind| scene.bonds.get(kind))) {
         (Some(rule), Some(kind)) => {
             one.first_bond = bonds.len();
-            let seed = (scene.run.seed, number.unwrap_or(0) as u64);
+            let seed = (scene.run.seed, body_key(name, 0));
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
                 .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
         }
@@ -318,7 +317,7 @@ fn place_bonds(
     body: &Body,
     kind: &BondKind,
     rule: usize,
-    (seed, number): (u64, u64),
+    (seed, body_key): (u64, u64),
     particles: &Particles,
     placed: &mut PlacedBody,
     bonds: &mut Bonds,
@@ -377,7 +376,7 @@ fn place_bonds(
             let pair = body.bonds[original].map(u64::from);
             bonds
                 .strength_factors
-                .push(strength_factor(seed, number, pair, modulus));
+                .push(strength_factor(seed, body_key, pair, modulus));
         } else if !bonds.strength_factors.is_empty() {
             bonds.strength_factors.push(1.0);
         }
@@ -438,17 +437,23 @@ fn model(model: SceneModel) -> BondModel {
 
 fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
-    let strengths = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
-    let [tension_pa, shear_pa, von_mises_pa] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
+    let strengths = [
+        failure.tension_pa,
+        failure.compression_pa,
+        failure.shear_pa,
+        failure.von_mises_pa,
+    ];
+    let [tension_pa, compression_pa, shear_pa, von_mises_pa] =
+        strengths.map(|s| s.unwrap_or(f64::INFINITY));
     let damping = &kind.damping;
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
         damped: damping.viscous > 0.0 || damping.force_n_s_m > 0.0 || damping.torque > 0.0,
         criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
             tension_pa,
+            compression_pa,
             shear_pa,
             von_mises_pa,
-            compressive: failure.compressive,
         }),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         rate_of: failure.rate_of,

@@ -127,7 +127,6 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         .bond_kind
         .as_ref()
         .and_then(|kind| scene.bonds[kind].failure.weibull_modulus);
-    let number = scene.bodies.keys().position(|body| body == name);
     // Each body has its own factors.
     bonds.strength_factors.clear();
     Ok(Template {
@@ -149,7 +148,6 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         file_number,
         scatter: modulus.map(|modulus| Scatter {
             seed: scene.run.seed,
-            body: number.unwrap_or(0) as u64,
             modulus,
         }),
         bonds_of_file: placed.bonds,

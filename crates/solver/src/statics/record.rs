@@ -18,6 +18,7 @@ use crate::output::frames::FrameOrder;
 use crate::output::inputs::Inputs;
 use crate::output::series;
 use crate::output::summary::{Summary, Verdict, measure_lines};
+use crate::physics::bond::failure::CauseCounts;
 use crate::run::RunSettings;
 use crate::stages::bonds::largest_strain;
 use crate::state::State;
@@ -166,6 +167,7 @@ impl AtRest<'_> {
             broken_bonds: 0,
             largest_bond_strain: largest_strain(&state.bonds, &state.particles.poses),
             largest_overlap: 0.0,
+            broken_by_cause: CauseCounts::default(),
             fragments,
             population: None,
             sleep: None,

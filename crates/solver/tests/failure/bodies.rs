@@ -27,13 +27,18 @@ pub(crate) const YOUNG_PA: f64 = 1e13;
 /// Strengths that do not matter.
 pub(crate) const NONE: Criteria = Criteria {
     tension_pa: f64::INFINITY,
+    compression_pa: f64::INFINITY,
     shear_pa: f64::INFINITY,
     von_mises_pa: f64::INFINITY,
-    compressive: true,
 };
-/// MUSEN's normal strength.
+/// Strength at the tensile edge.
 pub(crate) const NORMAL: Criteria = Criteria {
     tension_pa: STRENGTH_PA,
+    ..NONE
+};
+/// Strength at the pressed edge.
+pub(crate) const PRESSED: Criteria = Criteria {
+    compression_pa: 1.3 * STRENGTH_PA,
     ..NONE
 };
 /// MUSEN's shear strength.
@@ -46,12 +51,12 @@ pub(crate) const VON_MISES: Criteria = Criteria {
     von_mises_pa: 1.1 * STRENGTH_PA,
     ..NONE
 };
-/// All three.
+/// All four.
 pub(crate) const ALL: Criteria = Criteria {
     tension_pa: NORMAL.tension_pa,
+    compression_pa: PRESSED.compression_pa,
     shear_pa: SHEAR.shear_pa,
     von_mises_pa: VON_MISES.von_mises_pa,
-    compressive: true,
 };
 
 /// Cross-section of a bond, m2.

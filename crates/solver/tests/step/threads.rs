@@ -21,9 +21,9 @@ const BREAKING: BondRule = BondRule {
     damped: false,
     criteria: Some(Criteria {
         tension_pa: 0.1e6,
+        compression_pa: 0.1e6,
         shear_pa: 0.2e6,
         von_mises_pa: 0.12e6,
-        compressive: true,
     }),
     strengthening_from_1_s: Some(1.1),
     rate_of: dem_io::scene::RateOf::Elongation,
