@@ -89,6 +89,12 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
             state.bonds.len()
         ),
     );
+    for (name, bonds) in &plan.unused_bonds {
+        line(
+            "",
+            format!("'{name}' as a rigid clump; its {bonds} bonds are not used"),
+        );
+    }
     let why = if choice.given { "given" } else { "chosen" };
     let step = significant(choice.step_s, 5);
     let limit = if choice.foreseen_s.is_finite() {
