@@ -63,7 +63,7 @@ fn balls() -> [Ball; 2] {
     ]
 }
 
-fn vector(of: Triple) -> Vector3<f64> {
+fn vector(of: Triple<f64>) -> Vector3<f64> {
     of.into()
 }
 
@@ -187,34 +187,35 @@ fn friction_bounds_the_dashpot() {
     }
 }
 
+/// Moment on b of a contact that has rolled by so much across the normal, N m.
+fn moment(rolling: &impl RollingFriction<f64>, touch: &Touch, rolled_rad: f64) -> Vector3<f64> {
+    let law = Linear::new(2e4, 0.4, &Behaviour::new(1.0, 0.5));
+    let across = vector(touch.normal).cross(&Vector3::new(1.0, 0.0, 0.5));
+    let history = History {
+        rolling_rad: (across.normalize() * rolled_rad).into(),
+        overlap_m: OVERLAP_M,
+        ..History::default()
+    };
+    vector(response(&law, rolling, touch, &history, 0.0).moment_on_b)
+}
+
 /// Rolling friction is a moment of mu_r R* N at most, across the normal, whatever the lever.
 #[test]
 fn rolling_friction_is_bounded_by_the_reduced_radius() {
-    let law = Linear::new(2e4, 0.4, &Behaviour::new(1.0, 0.5));
-    let roll = |rolling: &dyn Fn(&Touch) -> Triple, touch: &Touch, radius_m: f64| {
-        let moment = vector(rolling(touch));
-        assert!(moment.dot(&vector(touch.normal)).abs() < 1e-9 * moment.norm());
-        assert_near(moment.norm(), 0.05 * radius_m * 2e4 * OVERLAP_M, 1e-9);
-    };
-    fn of<R: RollingFriction<f64>>(law: &Linear, rolling: &R, touch: &Touch, rad: f64) -> Triple {
-        let n = vector(touch.normal);
-        let rolled = n.cross(&Vector3::new(1.0, 0.0, 0.5)).normalize() * rad;
-        let history = History {
-            rolling_rad: rolled.into(),
-            overlap_m: OVERLAP_M,
-            ..History::default()
-        };
-        response(law, rolling, touch, &history, 0.0).moment_on_b
-    }
     for (touch, radius_m, _) in touches() {
         let constant = ConstantMoment { friction: 0.05 };
-        roll(&|touch| of(&law, &constant, touch, 0.0), &touch, radius_m);
         let spring = ElasticPlastic {
             friction: 0.05,
             damping_ratio: 0.0,
         };
-        // Rolled so far that the spring slips.
-        roll(&|touch| of(&law, &spring, touch, 100.0), &touch, radius_m);
+        // The spring rolled so far that it slips.
+        for moment in [
+            moment(&constant, &touch, 0.0),
+            moment(&spring, &touch, 100.0),
+        ] {
+            assert!(moment.dot(&vector(touch.normal)).abs() < 1e-9 * moment.norm());
+            assert_near(moment.norm(), 0.05 * radius_m * 2e4 * OVERLAP_M, 1e-9);
+        }
     }
 }
 
