@@ -10,6 +10,7 @@ mod contact;
 mod describe;
 mod direction;
 mod field;
+mod initial;
 mod inlet;
 mod load;
 mod material;
@@ -43,6 +44,7 @@ use std::path::PathBuf;
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};
+pub use initial::Initial;
 pub use inlet::{FeedRate, Inlet};
 pub use outlet::Outlet;
 pub use read::{read_scene, scene_from_text, text_of};
@@ -77,6 +79,8 @@ pub struct Scene {
     pub walls: BTreeMap<String, Wall>,
     /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
     pub sets: BTreeMap<String, ParticleSet>,
+    /// `[initial.NAME]`
+    pub initial: BTreeMap<String, Initial>,
     /// `[supports.NAME]`
     pub supports: BTreeMap<String, Support>,
     /// `[loads.NAME]`
@@ -147,17 +151,21 @@ pub enum StartOverlap {
     Refuse,
     /// "relax": the overlap is the origin of their contact law.
     Relax,
+    /// "keep": contacts like all others, which press with the force of their overlap.
+    Keep,
 }
 
-/// What particles are made of.
+/// What particles and walls are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand in the scene has none.
     pub density_kg_m3: Option<f64>,
     /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
-    /// `poisson_ratio`, in (-1, 0.5). 0.3 unless given.
+    /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
     pub poisson_ratio: f64,
+    /// `rigid`: does not deform; of walls only, and without the values above. Not unless given.
+    pub rigid: bool,
 }
 
 /// Which beam a bond is taken for.
@@ -199,7 +207,7 @@ pub struct BondKind {
     pub formulation: Formulation,
     /// `young_modulus`, Pa.
     pub young_modulus_pa: f64,
-    /// `poisson_ratio`, in (-1, 0.5).
+    /// `poisson_ratio`, in (-1, 0.5].
     pub poisson_ratio: f64,
     /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
     pub radius_factor: Option<f64>,
@@ -355,6 +363,9 @@ pub struct Support {
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,
+    /// `end`: from this time on the freedoms are free, s. Not before the factor's last change.
+    /// None: never.
+    pub end_s: Option<f64>,
 }
 
 /// A load on a set of particles, shared equally among them.
@@ -368,6 +379,8 @@ pub struct Load {
     pub torque_n_m: [f64; 3],
     /// `ramp` or `table`.
     pub factor: Factor,
+    /// `end`: from this time on it is zero, s. Not before the factor's last change. None: never.
+    pub end_s: Option<f64>,
 }
 
 /// What is measured. Of a set, positions and velocities are means, energies, forces and counts are sums. Walls have positions, forces and

@@ -4,6 +4,7 @@ pub mod bodies;
 mod clumps;
 mod contacts;
 mod forecast;
+mod initial;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -29,10 +30,13 @@ use crate::state::sleep::Sleep;
 use crate::statics::held::refuse_loose;
 
 use self::bodies::{PlacedBody, place_bodies};
-use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
+use self::clumps::{
+    ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of, unused_bonds,
+};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::forecast::forecast;
 pub use self::forecast::{Forecast, ToCome};
+use self::initial::start;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
@@ -58,6 +62,8 @@ pub struct Plan {
     pub stages: Vec<PlannedStage>,
     /// The laboratory test as it stands. None: the scene has none.
     pub test: Option<Setup>,
+    /// Bodies that stay rigid clumps all along, and how many bonds they have, which nobody uses.
+    pub unused_bonds: Vec<(String, usize)>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
     /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
@@ -83,6 +89,7 @@ pub fn plan(
     let inputs = Inputs::of(scene, &read);
     let mut read = read;
     let ball_m = ball_m(scene, &read);
+    let unused_bonds = unused_bonds(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
     let tested = scene.test.as_ref().and_then(|test| read.get(&test.body));
@@ -99,6 +106,7 @@ pub fn plan(
         state.particle_resistance = vec![Wrench::default(); state.particles.len()];
     }
     state.supports = supports(scene, &sets)?;
+    start(scene, &sets, &bodies, &mut state)?;
     state.loads = loads(scene, &sets, &state.supports)?;
     let mut notes = Vec::new();
     state.rules = rules(scene, &templates)?;
@@ -147,6 +155,7 @@ pub fn plan(
         is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
         test,
+        unused_bonds,
         notes,
         warnings,
         forecast,
@@ -226,6 +235,7 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
         supports.push(SetSupport {
             holds: support.holds,
             factor: support.factor.clone(),
+            end_s: support.end_s.unwrap_or(f64::INFINITY),
             held: particles
                 .iter()
                 .map(|&particle| Held {
@@ -245,17 +255,11 @@ fn loads(
     sets: &BTreeMap<String, Vec<u32>>,
     supports: &[SetSupport],
 ) -> Result<Vec<SetLoad>> {
-    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
-    for support in supports {
-        for one in &support.held {
-            let entry = held.entry(one.particle).or_default();
-            for (held, hold) in entry.iter_mut().zip(&support.holds) {
-                *held |= hold.is_some();
-            }
-        }
-    }
     let mut loads = Vec::new();
     for (name, load) in &scene.loads {
+        // What is let go before the load ends can move with it.
+        let end_s = load.end_s.unwrap_or(f64::INFINITY);
+        let held = held_freedoms(supports.iter().filter(|support| support.end_s >= end_s));
         let particles = particles_of(sets, &load.of);
         let share = 1.0 / particles.len() as f64;
         let six: Vec<f64> = load.force_n.into_iter().chain(load.torque_n_m).collect();
@@ -289,9 +293,24 @@ fn loads(
             force_n: load.force_n.map(|f| f * share),
             torque_n_m: load.torque_n_m.map(|t| t * share),
             factor: load.factor.clone(),
+            end_s,
         });
     }
     Ok(loads)
+}
+
+/// Which freedoms of which particles these supports hold.
+fn held_freedoms<'a>(supports: impl Iterator<Item = &'a SetSupport>) -> BTreeMap<u32, [bool; 6]> {
+    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
+    for support in supports {
+        for one in &support.held {
+            let entry = held.entry(one.particle).or_default();
+            for (held, hold) in entry.iter_mut().zip(&support.holds) {
+                *held |= hold.is_some();
+            }
+        }
+    }
+    held
 }
 
 /// The particles of a set that the scene is known to have.

@@ -179,4 +179,9 @@ impl State {
     pub fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
     }
+
+    /// The step before and the one to come, s.
+    pub fn steps_s(&self) -> [f64; 2] {
+        [self.previous_time_step_s, self.time_step_s]
+    }
 }

@@ -73,7 +73,8 @@ pub fn act(state: &mut State) {
     find_pieces(state);
     state.clock.book(Stage::Clusters);
     let p = &mut state.particles;
-    add_loads(&state.loads, state.time_s, &mut p.wrenches);
+    let steps_s = [before_s, state.time_step_s];
+    add_loads(&state.loads, state.time_s, steps_s, &mut p.wrenches);
     state.clock.book(Stage::Loads);
 
     if !state.bond_resistance.is_empty() {

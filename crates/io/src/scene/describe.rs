@@ -12,8 +12,8 @@ use super::measure::TIMES;
 use super::run::{INTEGRATORS, START_OVERLAPS};
 use super::support::FREEDOMS;
 use super::{
-    BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Load, Material, Measure,
-    Output, ParticleSet, Pick, Run, Scene, Support,
+    BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Initial, Load, Material,
+    Measure, Output, ParticleSet, Pick, Run, Scene, Support,
 };
 
 /// Most items of a list that are written out.
@@ -50,6 +50,9 @@ impl Scene {
         }
         for (name, set) in &self.sets {
             lines.set(&format!("sets.{name}"), set);
+        }
+        for (name, initial) in &self.initial {
+            lines.initial(&format!("initial.{name}"), initial);
         }
         for (name, support) in &self.supports {
             lines.support(&format!("supports.{name}"), support);
@@ -122,6 +125,9 @@ impl Lines {
     }
 
     fn material(&mut self, path: &str, material: &Material) {
+        if material.rigid {
+            return self.add(format!("{path}.rigid"), "true");
+        }
         self.add(
             format!("{path}.density"),
             optional(material.density_kg_m3, "kg/m3", "from the body's file"),
@@ -257,6 +263,17 @@ impl Lines {
         }
     }
 
+    fn initial(&mut self, path: &str, initial: &Initial) {
+        self.add(format!("{path}.of"), initial.of.clone());
+        for (key, components, unit) in [
+            ("velocity", initial.velocity_m_s, "m/s"),
+            ("angular_velocity", initial.angular_velocity_rad_s, "rad/s"),
+            ("displacement", initial.displacement_m, "m"),
+        ] {
+            self.add(format!("{path}.{key}"), vector(components, unit));
+        }
+    }
+
     fn support(&mut self, path: &str, support: &Support) {
         self.add(format!("{path}.of"), support.of.clone());
         for (at, (freedom, hold)) in FREEDOMS.iter().zip(&support.holds).enumerate() {
@@ -275,6 +292,7 @@ impl Lines {
             self.add(format!("{path}.{freedom}"), text);
         }
         self.factor(path, &support.factor);
+        self.add(format!("{path}.end"), optional(support.end_s, "s", "never"));
     }
 
     fn load(&mut self, path: &str, load: &Load) {
@@ -282,6 +300,7 @@ impl Lines {
         self.add(format!("{path}.force"), vector(load.force_n, "N"));
         self.add(format!("{path}.torque"), vector(load.torque_n_m, "N m"));
         self.factor(path, &load.factor);
+        self.add(format!("{path}.end"), optional(load.end_s, "s", "never"));
     }
 
     fn factor(&mut self, path: &str, factor: &Factor) {

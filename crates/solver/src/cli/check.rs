@@ -98,6 +98,12 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
             }
         ),
     );
+    for (name, bonds) in &plan.unused_bonds {
+        line(
+            "",
+            format!("'{name}' as a rigid clump; its {bonds} bonds are not used"),
+        );
+    }
     for fed in &plan.forecast.to_come {
         line(
             "to come",

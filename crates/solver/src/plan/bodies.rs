@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use dem_io::body::files::body_files;
-use dem_io::scene::{BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene};
+use dem_io::scene::{
+    BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene, StartAs,
+};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -167,7 +169,7 @@ pub(super) fn place_body(
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
                 .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
         }
-        _ if !body.bonds.is_empty() => {
+        _ if !body.bonds.is_empty() && !stays_rigid(scene, name) => {
             return Err(Diagnostic::input(
                 format!("{}: [bodies.{name}]", scene.source),
                 format!(
@@ -180,6 +182,12 @@ pub(super) fn place_body(
         _ => {}
     }
     Ok(one)
+}
+
+/// Whether a body is a rigid clump all along: then nobody uses its bonds.
+pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
+    let start = scene.bodies.get(name).map(|entry| entry.start_as);
+    matches!(start, Some(StartAs::Clump(_))) && !scene.replacement.contains_key(name)
 }
 
 /// The same message said of a body of the scene and, where it comes from a file, of that one of its `files` that says so.
@@ -263,7 +271,7 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     let pose = &particles.poses[i];
     let is_placed = pose.position_m.iter().all(|x| x.is_finite());
     if is_placed && inert.into_iter().all(f64::is_normal) {
-        return check_place(number, pose);
+        return check_place(pose, || format!("particle {number}"));
     }
     Err(Diagnostic::input(
         format!("particle {number}"),
@@ -276,15 +284,15 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     ))
 }
 
-/// Whether a particle of a body's file is so near to the origin that its place can be told.
-fn check_place(number: usize, pose: &Pose) -> Result<()> {
+/// Whether a particle, `who` in words, is so near to the origin that its place can be told.
+pub(super) fn check_place(pose: &Pose, who: impl Fn() -> String) -> Result<()> {
     let farthest_m = pose.place().amax();
     let rounded_m = f64::EPSILON * farthest_m;
     if rounded_m <= ROUNDING * pose.radius_m() {
         return Ok(());
     }
     Err(Diagnostic::input(
-        format!("particle {number}"),
+        who(),
         format!(
             "{farthest_m:.3e} m from the origin its coordinates are rounded by {rounded_m:.1e} m, more than {ROUNDING:e} of its radius of {:.3e} m",
             pose.radius_m()

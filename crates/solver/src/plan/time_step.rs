@@ -1,6 +1,6 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use beside it.
 
-use dem_io::scene::{Factor, SAFETY, Scene, WallMotion};
+use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
 use dem_io::{Diagnostic, Result};
 
 use nalgebra::Vector3;
@@ -90,7 +90,9 @@ impl Outlook {
             f64::INFINITY
         };
         // A contact that is pressed now is on its way: an adaptive step must not rise before its end.
-        let [pressed_k, pressed_c] = if run.adaptive {
+        // What is pressed from the start on is followed like an impact, too.
+        let keeps = run.start_overlap == StartOverlap::Keep;
+        let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
         } else {
             [0.0; 2]

@@ -111,7 +111,10 @@ fn last_change_s(state: &State) -> f64 {
             _ => f64::INFINITY,
         },
     });
-    let ends = loads.chain(supports).map(end).chain(of_walls);
+    let let_go = state.supports.iter().map(|support| support.end_s);
+    let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));
+    let let_go = let_go.filter(|end_s| end_s.is_finite());
+    let ends = loads.chain(supports).map(end).chain(of_walls).chain(let_go);
     ends.fold(0.0, f64::max)
 }
 
