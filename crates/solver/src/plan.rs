@@ -3,6 +3,7 @@
 pub mod bodies;
 mod clumps;
 mod contacts;
+mod measures;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -29,6 +30,7 @@ use crate::statics::held::refuse_loose;
 use self::bodies::{PlacedBody, place_bodies};
 use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::measures::refuse_valueless;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
@@ -101,6 +103,7 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
+    refuse_valueless(scene, &sets, &state)?;
     notes.extend(doubts(scene, &state));
     state.ledger = Ledger::opened(&state);
     let step = match scene.run.integrator {

@@ -11,6 +11,7 @@ pub mod rules;
 pub mod shares;
 pub mod sleep;
 pub mod walls;
+pub mod watches;
 
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
@@ -27,6 +28,7 @@ use self::rules::Rules;
 use self::shares::{Share, divide};
 use self::sleep::Sleep;
 use self::walls::Wall;
+use self::watches::Watch;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
 #[derive(Debug, Clone)]
@@ -57,6 +59,8 @@ pub struct State {
     pub sleep: Option<Sleep>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
+    /// Forces and contacts that measures follow in every step. Empty: none.
+    pub watches: Vec<Watch>,
     /// Loads.
     pub loads: Vec<SetLoad>,
     /// Supports.
@@ -116,6 +120,7 @@ impl State {
             contacts: None,
             sleep: None,
             walls: Vec::new(),
+            watches: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
             gravity_m_s2: [0.0; 3],

@@ -208,6 +208,7 @@ impl Summary {
         if self.population.as_ref().is_some_and(|p| p.never_replaced) {
             doubts.push("no clump was ever replaced: no trigger of [replacement] fired".to_owned());
         }
+        doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
