@@ -1,8 +1,10 @@
 //! The angle of repose of a heap.
 //!
-//! A cone of height H and radius R has a variance of height of 3/80 H^2, a mean square distance from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
-//! slope whatever the ground is and however much is missing all over its surface: sqrt(8 var z / mean r^2). Spheres count with their own extent. The third says whether there is a slope
-//! at all: a bed that is flat on top has none.
+//! A cone of height H and radius R has a variance of height of 3/80 H^2, a mean square distance
+//! from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
+//! slope whatever the ground is and however much is missing all over its surface: sqrt(8 var z /
+//! mean r^2). Spheres count with their own extent. The third says whether there is a slope at all:
+//! a bed that is flat on top has none.
 
 use nalgebra::Vector3;
 
@@ -14,7 +16,8 @@ pub const FEWEST: usize = 50;
 
 /// Farther from the axis than this times the radius of the cone lies what has rolled away.
 const ROLLED_AWAY: f64 = 1.25;
-/// The covariance tells less of a slope than the variances: by up to a fifth for the layers of a small cone. What is missing beyond that is flat.
+/// The covariance tells less of a slope than the variances: by up to a fifth for the layers of a
+/// small cone. What is missing beyond that is flat.
 const CONICAL: f64 = 0.8;
 
 /// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
@@ -37,8 +40,9 @@ struct Moments {
     covariance_m3: f64,
 }
 
-/// Slope, degrees, of the cone whose mass is spread as far up and as far out as that of the members; 0 where they are flat on top. Few that have rolled far away do not change it.
-/// No number for fewer than [`FEWEST`]. `up`: unit vector.
+/// Slope, degrees, of the cone whose mass is spread as far up and as far out as that of the
+/// members; 0 where they are flat on top. Few that have rolled far away do not change it. No number
+/// for fewer than [`FEWEST`]. `up`: unit vector.
 pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<f64>) -> f64 {
     let mut heap = spheres(members, state, &up);
     if heap.len() < FEWEST {

@@ -27,7 +27,8 @@ impl Members {
         }
     }
 
-    /// Counts as particles are counted now: those of all, of bodies by their names, and of sets as far as their particles are there.
+    /// Counts as particles are counted now: those of all, of bodies by their names, and of sets as
+    /// far as their particles are there.
     pub(super) fn renumber(&mut self, by: &[Renumbered], bodies: &[PlacedBody], state: &State) {
         let named = |name: &String| *name == self.name;
         let templates = &state.clumps.templates;
@@ -60,7 +61,8 @@ impl Members {
         self.particles[..end].iter().map(|&i| i as usize)
     }
 
-    /// Its clumps among `clumps`, which are those of the state, perhaps at another moment; with their templates.
+    /// Its clumps among `clumps`, which are those of the state, perhaps at another moment; with
+    /// their templates.
     pub(super) fn clumps<'a>(
         &'a self,
         state: &'a State,

@@ -1,7 +1,8 @@
 //! A set as a whole: its centre of mass, how that moves, and how the set turns.
 //!
-//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that takes its place has the same of all its particles, so that every value is the same before and
-//! after, but for rounding.
+//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that takes
+//! its place has the same of all its particles, so that every value is the same before and after,
+//! but for rounding.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -69,7 +70,8 @@ fn turned(clump: &Clump, template: &Template) -> UnitQuaternion<f64> {
     rotation(clump.turned) * rotation(template.axes).inverse()
 }
 
-/// Centre of mass of where the members stood at the start, m. Those that were not there then do not count.
+/// Centre of mass of where the members stood at the start, m. Those that were not there then do not
+/// count.
 pub(super) fn start_centre(
     members: &Members,
     starts: &Starts,
@@ -167,7 +169,8 @@ pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> 
             .sum::<f64>()
 }
 
-/// Spin of the rigid body with the same inertia and the same angular momentum about the centre of mass, rad/s. Of a single particle or clump, its own.
+/// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
+/// mass, rad/s. Of a single particle or clump, its own.
 pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
@@ -218,7 +221,8 @@ pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vecto
     solved.unwrap_or_else(|| Vector3::repeat(f64::NAN))
 }
 
-/// Mean by mass of the rotation vectors since the start, rad, of 180 degrees at most. `turned_before`: of particles that were turned at the start.
+/// Mean by mass of the rotation vectors since the start, rad, of 180 degrees at most.
+/// `turned_before`: of particles that were turned at the start.
 pub(super) fn turn(
     members: &Members,
     state: &State,

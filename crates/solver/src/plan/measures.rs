@@ -8,7 +8,8 @@ use dem_io::{Diagnostic, Result};
 use crate::measure::FEWEST_IN_HEAP;
 use crate::state::State;
 
-/// Refuses a force or a contact where nothing can touch, a contact between two that share particles, and a slope of a heap of few particles.
+/// Refuses a force or a contact where nothing can touch, a contact between two that share
+/// particles, and a slope of a heap of few particles.
 ///
 /// # Errors
 /// Names the measure.
@@ -72,7 +73,8 @@ fn shared(
     }
 }
 
-/// How many particles there are of which a measure is the slope, if they are too few and no more can come.
+/// How many particles there are of which a measure is the slope, if they are too few and no more
+/// can come.
 fn few(
     measure: &Measure,
     scene: &Scene,

@@ -1,4 +1,5 @@
-//! Follows forces and contacts that measures ask for, in every step: a peak between two rows of the time series is seen.
+//! Follows forces and contacts that measures ask for, in every step: a peak between two rows of the
+//! time series is seen.
 
 use nalgebra::Vector3;
 
@@ -104,7 +105,8 @@ fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
 }
 
 impl Met {
-    /// Adds contacts between particles. `sign`: 1 where the force on the second of a pair is meant, -1 where that on the first is, none where neither is.
+    /// Adds contacts between particles. `sign`: 1 where the force on the second of a pair is meant,
+    /// -1 where that on the first is, none where neither is.
     fn pairs(
         &mut self,
         state: &State,

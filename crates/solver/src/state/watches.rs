@@ -34,7 +34,8 @@ pub struct Seen {
     pub value: f64,
     /// All values.
     pub history: History,
-    /// Deepest overlap in the step before, m; below 0 by the distance of what is apart. None: there was no step.
+    /// Deepest overlap in the step before, m; below 0 by the distance of what is apart. None: there
+    /// was no step.
     pub overlap_m: Option<f64>,
     /// How long the two have touched, s.
     pub touched_s: f64,
