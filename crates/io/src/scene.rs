@@ -383,19 +383,23 @@ pub struct Load {
     pub end_s: Option<f64>,
 }
 
-/// What is measured. Of a set, positions and velocities are means, energies, forces and counts are sums. Walls have positions, forces and
-/// torques, fragments a count and masses, sets all else and positions.
+/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies, forces and counts are
+/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
     Position(u8),
-    /// "displacement_x", ... since the start, m.
+    /// "displacement_x", ... of the centre of mass since the start, m.
     Displacement(u8),
-    /// "velocity_x", ... m/s.
+    /// "displacement": its magnitude, m.
+    DisplacementMagnitude,
+    /// "velocity_x", ... of the centre of mass, m/s.
     Velocity(u8),
-    /// "rotation_x", ... since the start (rotation vector), rad.
+    /// "velocity": its magnitude, m/s.
+    VelocityMagnitude,
+    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
     Rotation(u8),
-    /// "angular_velocity_x", ... rad/s.
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum, rad/s.
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the set, N.
     Reaction(u8),
@@ -409,10 +413,20 @@ pub enum Quantity {
     BrokenBonds,
     /// "largest_utilisation": stress over strength of the bond nearest to failure.
     LargestUtilisation,
-    /// "angle_of_repose": slope of the heap that the particles form, rad.
+    /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
-    /// "force_x", ... force of particles on the wall, N.
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls on a set, N.
     Force(u8),
+    /// "force": its magnitude, N.
+    ForceMagnitude,
+    /// "contact_force_x", ... force of contacts with what `with` names on the set, N.
+    ContactForce(u8),
+    /// "contact_force": its magnitude, N.
+    ContactForceMagnitude,
+    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    ContactOverlap,
+    /// "contact_duration": how long the two have touched since the start, s.
+    ContactDuration,
     /// "torque_x", ... torque of particles on the wall about its pivot, N m.
     Torque(u8),
     /// "count" of fragments.
@@ -443,12 +457,16 @@ pub struct Measure {
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,
+    /// `with`: the body, set or wall that `of` touches. Only of contacts, which need it.
+    pub with: Option<String>,
     /// `at`, "end" unless given.
     pub at: At,
-    /// `reference`: what the result should be, in the quantity's SI unit. Not zero where there is a tolerance.
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a `tolerance`.
     pub reference: Option<f64>,
     /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
     pub tolerance: Option<f64>,
+    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's unit.
+    pub tolerance_absolute: Option<f64>,
 }
 
 /// What is written, and how often. Times are simulated seconds.

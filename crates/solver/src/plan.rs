@@ -5,6 +5,7 @@ mod clumps;
 mod contacts;
 mod forecast;
 mod initial;
+mod measures;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -37,6 +38,7 @@ use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::forecast::forecast;
 pub use self::forecast::{Forecast, ToCome};
 use self::initial::start;
+use self::measures::refuse_valueless;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
@@ -120,6 +122,7 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
+    refuse_valueless(scene, &sets, &state)?;
     let warnings = doubts(scene, &state);
     state.ledger = Ledger::opened(&state);
     let mut step = match scene.run.integrator {

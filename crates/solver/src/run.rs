@@ -21,7 +21,7 @@ use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::machine::{machine, processor_time_s};
-use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
+use crate::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
 use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
@@ -187,6 +187,7 @@ pub fn run_as_far_as_it_goes(
         inputs,
         ..
     } = plan;
+    place_watches(&gauges, &mut state);
     let fingerprint = fingerprint(&state);
     let mut order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
     let of_pictures = settings.folder.and(Order::of(scene, &state));
@@ -210,7 +211,7 @@ pub fn run_as_far_as_it_goes(
             gauge.history = history;
         }
         if !state.clumps.templates.is_empty() {
-            renumber_gauges(&mut gauges, &[], &bodies, &state);
+            renumber_gauges(&mut gauges, &[], &bodies, &mut state);
             order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
         changed_step = change_step(&mut state, &choice, scene.run.adaptive);
@@ -361,7 +362,7 @@ pub fn run_as_far_as_it_goes(
             for by in &renumbered {
                 renumber(&mut bodies, by);
             }
-            renumber_gauges(&mut gauges, &renumbered, &bodies, &state);
+            renumber_gauges(&mut gauges, &renumbered, &bodies, &mut state);
             if let Some(files) = &mut files {
                 write_happened(&state, &happened, files)?;
                 files.order = FrameOrder::new(&bodies, &state);

@@ -15,6 +15,7 @@ use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
+use crate::state::watches::Seen;
 
 mod meetings;
 mod population;
@@ -44,6 +45,8 @@ pub struct Snapshot {
     meetings: Meetings,
     /// None: bodies neither come nor go, and what stands above is enough.
     population: Option<Population>,
+    /// What has been seen of forces and contacts in every step.
+    watches: Vec<Seen>,
     /// What the gauges have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
@@ -105,6 +108,7 @@ impl Snapshot {
             ledger: state.ledger,
             meetings: Meetings::taken(state),
             population,
+            watches: state.watches.iter().map(|watch| watch.seen).collect(),
             measures,
             progress,
         }
@@ -198,6 +202,9 @@ impl Snapshot {
         }
         state.ledger = self.ledger;
         self.meetings.restore(state)?;
+        for (watch, seen) in state.watches.iter_mut().zip(&self.watches) {
+            watch.seen = *seen;
+        }
         state.steps = self.steps;
         state.time_s = self.time_s;
         state.time_step_s = self.time_step_s;

@@ -13,6 +13,7 @@ use crate::stages::motion::{add_particle_damping, drift, kick};
 use crate::stages::sleep;
 use crate::stages::supports::{hold, remember};
 use crate::stages::walls::{move_walls, plan_motions, wall_wrenches};
+use crate::stages::watching::watch;
 use crate::state::State;
 use crate::state::particles::Wrench;
 use crate::state::shares::{Share, divide_anew};
@@ -121,6 +122,7 @@ pub fn act(state: &mut State) {
     crate::check::ledger::after_kick(state);
     count_done(state);
     state.clock.book(Stage::Ledger);
+    watch(state);
 }
 
 /// Second half of a step: the particles move on.

@@ -325,6 +325,9 @@ impl Lines {
         let unit = measure.quantity.dimension().si;
         self.add(format!("{path}.of"), measure.of.clone());
         self.add(format!("{path}.quantity"), measure.quantity.name());
+        if let Some(with) = &measure.with {
+            self.add(format!("{path}.with"), with.clone());
+        }
         self.add(format!("{path}.at"), word(&TIMES, measure.at));
         self.add(
             format!("{path}.reference"),
@@ -333,6 +336,10 @@ impl Lines {
         self.add(
             format!("{path}.tolerance"),
             optional(measure.tolerance, "", "none"),
+        );
+        self.add(
+            format!("{path}.tolerance_absolute"),
+            optional(measure.tolerance_absolute, unit, "none"),
         );
     }
 

@@ -491,6 +491,11 @@ fn measures_and_output() {
         ("punch", Quantity::Force(2))
     );
     assert_eq!(push.reference, Some(-1000.0));
+    assert_eq!((push.tolerance_absolute, &push.with), (None, &None));
+    let hit = &scene.measures["hit"];
+    assert_eq!(hit.quantity, Quantity::ContactOverlap);
+    assert_eq!(hit.with.as_deref(), Some("punch"));
+    assert_near(hit.tolerance_absolute.unwrap(), 1e-5);
     let pieces = &scene.measures["pieces"];
     assert_eq!(pieces.of, "fragments");
     assert_eq!(pieces.quantity, Quantity::MassOfLargest);
@@ -505,10 +510,15 @@ fn measures_and_output() {
         ("place", Quantity::Position(2), "m"),
         ("pieces", Quantity::Count, ""),
         ("largest", Quantity::MassFractionOfLargest, ""),
+        ("all_of_it", Quantity::ForceMagnitude, "N"),
+        ("sideways", Quantity::ContactForce(1), "N"),
+        ("while", Quantity::ContactDuration, "s"),
+        ("slope", Quantity::AngleOfRepose, "deg"),
     ] {
         assert_eq!(others[name].quantity, quantity);
         assert_eq!(quantity.dimension().si, unit);
     }
+    assert_near(others["slope"].reference.unwrap(), 30.0);
     let output = scene.output.unwrap();
     assert_eq!(output.folder, Some(folder().join("results")));
     assert_eq!(output.frames_s, Some(0.005));
@@ -671,6 +681,9 @@ fn values_in_words() {
         "initial.tip.displacement [0, -1e-6, 0] m",
         "materials.anvil.rigid true",
         "measures.bending.reference 0.0015 m",
+        "measures.bending.tolerance_absolute none",
+        "measures.hit.with punch",
+        "measures.hit.tolerance_absolute 0.00001 m",
         "output.frames 0.005 s",
         "output.pictures 0.01 s",
         "output.view.from [0.6, -0.8, 0]",

@@ -282,6 +282,7 @@ impl Summary {
                 population.waiting
             ));
         }
+        doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
         for measure in self.measures.iter().filter(|m| !m.is_good()) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
