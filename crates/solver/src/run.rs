@@ -114,7 +114,7 @@ impl<'a> Files<'a> {
 /// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is called now and then with the share of the end time reached, in 0..1.
 ///
 /// # Errors
-/// The run goes unstable (exit code 3), is interrupted, or its files cannot be written (1).
+/// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
 pub fn run(
     plan: Plan,
     scene: &Scene,
@@ -472,8 +472,7 @@ fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
         ),
         None => "with --out FOLDER its state would have been kept".to_owned(),
     };
-    Diagnostic::failed(
-        "",
+    Diagnostic::interrupted(
         format!(
             "interrupted at {:.6e} s, step {}",
             state.time_s, state.steps

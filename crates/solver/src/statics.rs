@@ -43,7 +43,7 @@ use self::record::AtRest;
 /// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
 ///
 /// # Errors
-/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, is interrupted, or its files cannot be written (1).
+/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, or its files cannot be written (1); it is interrupted (130).
 pub fn run(
     plan: Plan,
     scene: &Scene,
@@ -144,11 +144,11 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
             "the factors of the stiffness do not fit into memory",
             "use fewer particles, or run.integrator = \"leapfrog\"",
         ),
-        Cause::Interrupted => Diagnostic::failed(
-            place,
+        Cause::Interrupted => Diagnostic::interrupted(
             format!("interrupted: {reached}"),
             "a static run leaves no checkpoint: start it again",
-        ),
+        )
+        .within(&place),
     }
 }
 

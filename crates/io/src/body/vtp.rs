@@ -6,6 +6,7 @@
 
 mod contents;
 mod decode;
+mod guard;
 mod header;
 mod read;
 

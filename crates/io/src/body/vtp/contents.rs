@@ -45,6 +45,28 @@ impl Contents {
         Ok(())
     }
 
+    /// How many values an array can have at most.
+    pub(super) fn most_values(&self, role: Role) -> u64 {
+        const OF_FIELD: u64 = 1 << 20;
+        const OF_OTHER_PER_CELL: u64 = 1 << 10;
+        let counts = self.counts.unwrap_or_default();
+        let others = counts.cells_before.saturating_add(counts.cells_after);
+        let cells = counts.lines.saturating_add(others);
+        match role {
+            Role::Positions => counts.points.saturating_mul(3),
+            Role::Radii | Role::Clusters | Role::Densities => counts.points,
+            Role::Connectivity => counts.lines.saturating_mul(2),
+            Role::Offsets => counts.lines,
+            Role::BondRadii | Role::BondLengths | Role::Broken => cells,
+            Role::Field(_) => OF_FIELD,
+            Role::Other => {
+                let all = counts.points.saturating_add(cells);
+                all.saturating_mul(OF_OTHER_PER_CELL)
+                    .saturating_add(OF_FIELD)
+            }
+        }
+    }
+
     /// Takes in that there is point data of this name.
     pub(super) fn add_point_data(&mut self, name: &str) {
         self.point_data.push(name.to_owned());

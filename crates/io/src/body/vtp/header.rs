@@ -254,6 +254,15 @@ fn missing(name: &str) -> Diagnostic {
     Diagnostic::input("", format!("the attribute {name} is missing"), DAMAGED)
 }
 
+/// The file is none of VTK.
+pub(super) fn not_vtp() -> Diagnostic {
+    Diagnostic::input(
+        "",
+        "this is not a VTK XML file",
+        "a .vtp file begins with <VTKFile type=\"PolyData\" ...>",
+    )
+}
+
 /// XML that is not well formed.
 pub(super) fn damaged(error: &dyn std::fmt::Display) -> Diagnostic {
     Diagnostic::input(
