@@ -2,6 +2,7 @@
 
 pub mod fragments;
 pub mod frames;
+pub mod masses;
 pub mod pictures;
 pub mod plots;
 pub mod series;

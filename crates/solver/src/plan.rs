@@ -12,12 +12,15 @@ mod walls;
 
 use std::collections::BTreeMap;
 
+use dem_io::body::About;
+use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
 use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
+use crate::output::masses;
 use crate::stages::loads::SetLoad;
 use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
@@ -54,6 +57,8 @@ pub struct Plan {
     pub stages: Vec<PlannedStage>,
     /// The laboratory test as it stands. None: the scene has none.
     pub test: Option<Setup>,
+    /// What each body weighs, by its name.
+    pub masses: BTreeMap<String, BodyMass>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
 }
@@ -71,12 +76,16 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let mut read = read;
+    let about: BTreeMap<String, About> = (read.iter())
+        .map(|(name, body)| (name.clone(), body.about.clone()))
+        .collect();
     let ball_m = ball_m(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
     let tested = scene.test.as_ref().and_then(|test| read.get(&test.body));
     let tested_m3 = tested.and_then(|body| body.about.shape_volume_m3);
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
+    let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let to_come = templates.iter();
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
@@ -89,7 +98,8 @@ pub fn plan(
     }
     state.supports = supports(scene, &sets)?;
     state.loads = loads(scene, &sets, &state.supports)?;
-    let mut notes = Vec::new();
+    let mut notes = masses::notes(scene, &masses);
+    notes.extend(masses::warnings(scene, &about));
     state.rules = rules(scene, &templates)?;
     state.clumps.templates = templates;
     state.clumps.ball_m = ball_m;
@@ -127,6 +137,7 @@ pub fn plan(
         is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
         test,
+        masses,
         notes,
     })
 }

@@ -136,6 +136,7 @@ pub fn run(
         mut bodies,
         step: choice,
         stages,
+        masses,
         notes,
         ..
     } = plan;
@@ -351,6 +352,7 @@ pub fn run(
         machine: machine(),
         particles: state.particles.len(),
         bonds: state.bonds.len(),
+        bodies: masses,
         broken_bonds: state.broken_count,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         population: PopulationSummary::of(&state),

@@ -54,6 +54,7 @@ pub fn run(
     let Plan {
         mut state,
         bodies,
+        masses,
         notes,
         ..
     } = plan;
@@ -81,6 +82,7 @@ pub fn run(
         scene,
         gauges: &gauges,
         balance: &balance,
+        masses: &masses,
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
     let summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);

@@ -4,7 +4,7 @@ use super::decode::{DAMAGED, Number, Values};
 use super::header::{Array, Counts, Role};
 use super::{
     BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
-    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
+    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use crate::body::{Body, Parts};
 use crate::results::stored_frame::{self as frame, StoredFrame};
@@ -194,6 +194,7 @@ impl Contents {
             PARTICLE_DENSITY => about.particle_density_kg_m3 = first.map(float),
             OVERLAP => about.overlap = first.map(float),
             BONDING_RADIUS => about.bonding_radius = first.map(float),
+            WARNINGS => about.warnings = texts(&numbers)?,
             frame::TIME => self.of_frame.time_s = first.map(float),
             _ => {}
         }
@@ -381,6 +382,16 @@ fn whole(number: Number) -> Result<u64> {
         format!("{} is not a whole number of 64 bits", float(number)),
         DAMAGED,
     ))
+}
+
+/// Texts, each of which ends at a zero.
+fn texts(numbers: &[Number]) -> Result<Vec<String>> {
+    let numbers = numbers
+        .strip_suffix(&[Number::Integer(0)])
+        .unwrap_or(numbers);
+    let each = numbers.split(|number| *number == Number::Integer(0));
+    let each = each.filter(|text| !text.is_empty());
+    each.map(text).collect()
 }
 
 /// A text, which ends at the first zero. Its bytes may be signed or not.
