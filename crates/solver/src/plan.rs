@@ -61,6 +61,8 @@ pub struct Plan {
     pub masses: BTreeMap<String, BodyMass>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
+    /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
@@ -111,7 +113,7 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
-    notes.extend(doubts(scene, &state));
+    let warnings = doubts(scene, &state);
     state.ledger = Ledger::opened(&state);
     let step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
@@ -139,6 +141,7 @@ pub fn plan(
         test,
         masses,
         notes,
+        warnings,
     })
 }
 

@@ -56,6 +56,7 @@ pub fn run(
         bodies,
         masses,
         notes,
+        warnings,
         ..
     } = plan;
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
@@ -85,7 +86,8 @@ pub fn run(
         masses: &masses,
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
-    let summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    summary.judge(warnings);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;
     }
