@@ -101,7 +101,6 @@ pub fn plan(
     state.supports = supports(scene, &sets)?;
     state.loads = loads(scene, &sets, &state.supports)?;
     let mut notes = masses::notes(scene, &masses);
-    notes.extend(masses::warnings(scene, &about));
     state.rules = rules(scene, &templates)?;
     state.clumps.templates = templates;
     state.clumps.ball_m = ball_m;
@@ -113,7 +112,8 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
-    let warnings = doubts(scene, &state);
+    let mut warnings = masses::warnings(scene, &about);
+    warnings.extend(doubts(scene, &state));
     state.ledger = Ledger::opened(&state);
     let step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,

@@ -47,7 +47,9 @@ impl Contents {
 
     /// How many values an array can have at most.
     pub(super) fn most_values(&self, role: Role) -> u64 {
-        const OF_FIELD: u64 = 1 << 20;
+        // A field holds a text at most; what others add may be larger.
+        const OF_FIELD: u64 = 1 << 14;
+        const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
         let counts = self.counts.unwrap_or_default();
         let others = counts.cells_before.saturating_add(counts.cells_after);
@@ -62,7 +64,7 @@ impl Contents {
             Role::Other => {
                 let all = counts.points.saturating_add(cells);
                 all.saturating_mul(OF_OTHER_PER_CELL)
-                    .saturating_add(OF_FIELD)
+                    .saturating_add(OF_OTHER)
             }
         }
     }
@@ -384,14 +386,12 @@ fn whole(number: Number) -> Result<u64> {
     ))
 }
 
-/// Texts, each of which ends at a zero.
+/// Texts of one line, each of which ends at a zero.
 fn texts(numbers: &[Number]) -> Result<Vec<String>> {
-    let numbers = numbers
-        .strip_suffix(&[Number::Integer(0)])
-        .unwrap_or(numbers);
     let each = numbers.split(|number| *number == Number::Integer(0));
-    let each = each.filter(|text| !text.is_empty());
-    each.map(text).collect()
+    let each = each.filter(|text| !text.is_empty()).map(text);
+    let on_one_line = |text: String| text.replace(char::is_control, " ");
+    each.map(|text| text.map(on_one_line)).collect()
 }
 
 /// A text, which ends at the first zero. Its bytes may be signed or not.

@@ -10,7 +10,7 @@ use crate::Diagnostic;
 /// Bytes in front of the first element: a declaration, comments.
 const BEFORE_FIRST: u64 = 1 << 16;
 /// Bytes of all XML but the values of arrays.
-const MARKUP: u64 = 1 << 24;
+const MARKUP: u64 = 1 << 20;
 /// Bytes of a value as text: more than any program writes.
 const PER_VALUE: u64 = 64;
 
