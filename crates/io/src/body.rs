@@ -1,12 +1,14 @@
 //! A body: spheres, the bonds between them, and what is known of both.
 //!
 //! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending of the file's name,
-//! [`summary`] says what a body holds.
+//! [`summary`] says what a body holds, [`mass`] what it weighs.
 
 pub mod check;
 pub mod csv;
 pub mod files;
+pub mod inertia;
 pub mod lammps;
+pub mod mass;
 pub mod summary;
 pub(crate) mod table;
 pub mod txt;
@@ -38,6 +40,8 @@ pub struct About {
     pub bonding_radius: Option<f64>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
+    /// What the program that made it warned of, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Spheres joined by bonds. SI units.

@@ -8,6 +8,7 @@ pub mod body;
 pub mod checkpoint;
 pub mod diagnostic;
 pub mod hash;
+pub mod program;
 pub mod results;
 pub mod safe_write;
 pub mod scene;

@@ -295,6 +295,17 @@ pub struct BodyEntry {
     pub angular_velocity_rad_s: [f64; 3],
     /// `start_as`, "bonded" unless given, and `clump`.
     pub start_as: StartAs,
+    /// `body_density` or `mass`. None: its spheres have the density of the material.
+    pub whole_mass: Option<WholeMass>,
+}
+
+/// What a body weighs as a whole: the density of its spheres follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeMass {
+    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    Density(f64),
+    /// `mass`, kg.
+    Mass(f64),
 }
 
 /// Which particles are meant.

@@ -10,9 +10,10 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
+use dem_io::program::{Shell, print_completions, print_man_page};
 use dem_io::results::{Existing, ResultsFolder, write_json};
 use dem_io::safe_write::write_standard_output;
 use dem_io::scene::{BodySource, Integrator, Scene};
@@ -35,7 +36,7 @@ use crate::snapshot::Snapshot;
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 failed while running or interrupted, 2 bad input, 3 unstable.\n\
+    after_help = "Exit codes: 0 done, 1 failed while running, 2 bad input, 3 unstable, 130 interrupted.\n\
                   Examples:\n  \
                   dem-run data/scenes/cantilever.toml\n  \
                   dem-run spinning-bar.toml --set run.end_time=0.5 --out spin\n  \
@@ -74,6 +75,13 @@ enum Command {
     #[command(after_help = "Exit code 0 if all cases do as predicted, else 1.\n\
                       Example:\n  dem-run stress spin mass-ratio")]
     Stress(stress::StressArguments),
+    /// Print a script that completes dem-run's options in a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the man page
+    Man,
 }
 
 #[derive(Debug, Args)]
@@ -140,6 +148,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
+        Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
+        Some(Command::Man) => print_man_page(Arguments::command()),
         None if arguments.run.scene.names_a_scene() => {
             in_pool(arguments.run.scene.threads, |threads| {
                 run_scene(&arguments.run, threads, interrupt)

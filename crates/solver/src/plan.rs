@@ -15,6 +15,8 @@ mod walls;
 
 use std::collections::BTreeMap;
 
+use dem_io::body::About;
+use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
@@ -22,6 +24,7 @@ use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
 use crate::output::inputs::Inputs;
+use crate::output::masses;
 use crate::stages::loads::SetLoad;
 use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
@@ -66,6 +69,8 @@ pub struct Plan {
     pub test: Option<Setup>,
     /// Bodies that stay rigid clumps all along, and how many bonds they have, which nobody uses.
     pub unused_bonds: Vec<(String, usize)>,
+    /// What each body weighs, by its name.
+    pub masses: BTreeMap<String, BodyMass>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
     /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
@@ -90,6 +95,9 @@ pub fn plan(
 ) -> Result<Plan> {
     let inputs = Inputs::of(scene, &read);
     let mut read = read;
+    let about: BTreeMap<String, About> = (read.iter())
+        .map(|(name, body)| (name.clone(), body.about.clone()))
+        .collect();
     let ball_m = ball_m(scene, &read);
     let unused_bonds = unused_bonds(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
@@ -97,6 +105,7 @@ pub fn plan(
     let tested = scene.test.as_ref().and_then(|test| read.get(&test.body));
     let tested_m3 = tested.and_then(|body| body.about.shape_volume_m3);
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
+    let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let to_come = templates.iter();
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
@@ -110,7 +119,7 @@ pub fn plan(
     state.supports = supports(scene, &sets)?;
     start(scene, &sets, &bodies, &mut state)?;
     state.loads = loads(scene, &sets, &state.supports)?;
-    let mut notes = Vec::new();
+    let mut notes = masses::notes(scene, &masses);
     state.rules = rules(scene, &templates)?;
     state.clumps.templates = templates;
     state.clumps.ball_m = ball_m;
@@ -123,7 +132,8 @@ pub fn plan(
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     refuse_valueless(scene, &sets, &state)?;
-    let warnings = doubts(scene, &state);
+    let mut warnings = masses::warnings(scene, &about);
+    warnings.extend(doubts(scene, &state));
     state.ledger = Ledger::opened(&state);
     let mut step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
@@ -159,6 +169,7 @@ pub fn plan(
         stages,
         test,
         unused_bonds,
+        masses,
         notes,
         warnings,
         forecast,

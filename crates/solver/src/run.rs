@@ -142,7 +142,7 @@ impl End {
 /// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is called now and then with the share of the end time reached, in 0..1.
 ///
 /// # Errors
-/// The run goes unstable (exit code 3), is interrupted, or its files cannot be written (1).
+/// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
 pub fn run(
     plan: Plan,
     scene: &Scene,
@@ -182,6 +182,7 @@ pub fn run_as_far_as_it_goes(
         mut bodies,
         step: choice,
         stages,
+        masses,
         notes,
         mut warnings,
         inputs,
@@ -427,6 +428,7 @@ pub fn run_as_far_as_it_goes(
         machine: machine(),
         particles: state.particles.len(),
         bonds: state.bonds.len(),
+        bodies: masses,
         broken_bonds: state.broken_count,
         largest_bond_strain: progress.seen.bond_strain.largest,
         largest_overlap: progress.seen.overlap.largest,
@@ -572,8 +574,7 @@ fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
         ),
         None => "with --out FOLDER its state would have been kept".to_owned(),
     };
-    Diagnostic::failed(
-        "",
+    Diagnostic::interrupted(
         format!(
             "interrupted at {:.6e} s, step {}",
             state.time_s, state.steps

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plots;
-use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, write_file};
+use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, remove_if_abandoned, write_file};
 use crate::{Diagnostic, Result};
 
 const FRAMES: &str = "frames";
@@ -273,13 +273,18 @@ impl ResultsFolder {
         }
         for entry in entries(&folder)? {
             let path = entry.map_err(|error| explain(&folder, &error))?;
-            let is_ours = path
-                .file_name()
-                .and_then(|name| name.to_str())
-                .is_some_and(|name| ours(name) || name.starts_with(UNFINISHED_PREFIX));
-            if is_ours && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                fs::remove_file(&path).map_err(|error| explain(&path, &error))?;
-            }
+            let name = path.file_name().and_then(|name| name.to_str());
+            let name = name.unwrap_or_default();
+            let removed = if name.starts_with(UNFINISHED_PREFIX) {
+                remove_if_abandoned(&path)
+            } else if ours(name)
+                && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file())
+            {
+                fs::remove_file(&path)
+            } else {
+                Ok(())
+            };
+            removed.map_err(|error| explain(&path, &error))?;
         }
         Ok(())
     }

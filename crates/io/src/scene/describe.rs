@@ -13,7 +13,7 @@ use super::run::{INTEGRATORS, START_OVERLAPS};
 use super::support::FREEDOMS;
 use super::{
     BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Initial, Load, Material,
-    Measure, Output, ParticleSet, Pick, Run, Scene, Support,
+    Measure, Output, ParticleSet, Pick, Run, Scene, Support, WholeMass,
 };
 
 /// Most items of a list that are written out.
@@ -226,6 +226,13 @@ impl Lines {
             }
         }
         self.add(format!("{path}.material"), body.material.clone());
+        match body.whole_mass {
+            Some(WholeMass::Density(density)) => {
+                self.add(format!("{path}.body_density"), value(density, "kg/m3"));
+            }
+            Some(WholeMass::Mass(mass)) => self.add(format!("{path}.mass"), value(mass, "kg")),
+            None => self.add(format!("{path}.mass"), "that of its particles"),
+        }
         let bonds = body.bond_kind.as_deref().unwrap_or("none");
         self.add(format!("{path}.bonds"), bonds);
         for (key, components, unit) in [

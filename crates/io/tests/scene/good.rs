@@ -550,6 +550,7 @@ materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
 bodies.block.file               block.vtp
 bodies.block.material           clay
+bodies.block.mass               that of its particles
 bodies.block.bonds              none
 bodies.block.position           [0, 0, 0] m
 bodies.block.rotation           [0, 0, 0] rad
@@ -632,6 +633,9 @@ fn values_in_words() {
     let text = good("every-key.toml").describe();
     for line in [
         "materials.cake.young_modulus 2.5e7 Pa",
+        "bodies.bar.mass that of its particles",
+        "bodies.piped.body_density 1800 kg/m3",
+        "bodies.tool.mass 1.2 kg",
         "run.start_overlap relax",
         "contacts.belt-rubber-cake.law linear",
         "contacts.belt-rubber-cake.normal_stiffness 100000 N/m",

@@ -9,6 +9,7 @@ use dem_io::units::significant;
 use serde_json::{Value, json};
 
 use crate::clock::{Stage, StageClock};
+use crate::output::masses;
 use crate::plan::savings::saving;
 use crate::plan::{Plan, PlannedStage};
 use crate::state::State;
@@ -49,6 +50,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "scene": scene.source,
                 "particles": plan.state.particles.len(),
                 "bonds": plan.state.bonds.len(),
+                "bodies": plan.masses,
                 "time_step_s": plan.step.step_s,
                 "limit_s": plan.step.limit.step_s,
                 "foreseen_limit_s": plan.step.foreseen_s,
@@ -118,6 +120,9 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     }
     for first in &plan.forecast.first_contacts {
         line("first contact", first.clone());
+    }
+    for (name, mass) in masses::lines(&plan.masses) {
+        line(name, mass);
     }
     let why = if choice.given { "given" } else { "chosen" };
     let step = significant(choice.step_s, 5);

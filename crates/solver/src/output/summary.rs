@@ -1,13 +1,16 @@
 //! The summary of a run: what came of it, how far to trust it, where the time went.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use dem_io::Diagnostic;
+use dem_io::body::mass::BodyMass;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
 use super::fragments::FragmentSummary;
 use super::inputs::Inputs;
+use super::masses;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
@@ -52,6 +55,8 @@ pub struct Summary {
     pub particles: usize,
     /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
     pub bonds: usize,
+    /// What each body weighed at the start, by its name.
+    pub bodies: BTreeMap<String, BodyMass>,
     /// Bonds that broke.
     pub broken_bonds: u64,
     /// Largest elongation of a bond over its length, of either sign.
@@ -291,6 +296,17 @@ impl Summary {
         doubts
     }
 
+    /// Two lines for each body: what it weighs.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub(crate) fn write_masses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, line) in masses::lines(&self.bodies) {
+            writeln!(f, "{name:12} {line}")?;
+        }
+        Ok(())
+    }
+
     /// Notes, and what the result is worth.
     ///
     /// # Errors
@@ -445,6 +461,7 @@ impl fmt::Display for Summary {
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
+        self.write_masses(f)?;
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
         self.write_verdict(f)
     }

@@ -3,9 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use dem_io::body::About;
 use dem_io::body::files::body_files;
+use dem_io::body::mass::volume_m3;
 use dem_io::scene::{
-    BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene, StartAs,
+    BodyEntry, BodySource, BondKind, BondModel as SceneModel, ClumpMass, ClumpSettings,
+    Formulation, Scene, StartAs, WholeMass,
 };
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -18,6 +21,7 @@ use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
+use crate::shape::inertia::of_union;
 use crate::stages::population::{Born, GONE, Renumbered};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::clumps::Clumps;
@@ -216,18 +220,7 @@ fn place_particles(
     body: &Body,
     particles: &mut Particles,
 ) -> Result<PlacedBody> {
-    let density = scene
-        .materials
-        .get(&entry.material)
-        .and_then(|material| material.density_kg_m3)
-        .or(body.about.particle_density_kg_m3)
-        .ok_or_else(|| {
-            Diagnostic::input(
-                format!("{}: [materials.{}]", scene.source, entry.material),
-                format!("no density, and the file of body '{name}' names none"),
-                "add density = \"2050 kg/m3\"",
-            )
-        })?;
+    let density = sphere_density_kg_m3(scene, name, entry, body)?;
     let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
     let turned = entry.rotation_rad != [0.0; 3];
     let shift = Vector3::from(entry.position_m);
@@ -260,6 +253,53 @@ fn place_particles(
         first_bond: 0,
         bonds: Vec::new(),
     })
+}
+
+/// The density with which a body's shape is compared: that of its material, or the one that its file names, kg/m3.
+pub(crate) fn material_density_kg_m3(
+    scene: &Scene,
+    entry: &BodyEntry,
+    about: &About,
+) -> Option<f64> {
+    let material = scene.materials.get(&entry.material);
+    let given = material.and_then(|material| material.density_kg_m3);
+    given.or(about.particle_density_kg_m3)
+}
+
+/// Density of the spheres of a body, kg/m3: of its material, or such that it weighs what the scene says.
+fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Body) -> Result<f64> {
+    let place = || format!("{}: [bodies.{name}]", scene.source);
+    let mass_kg = match entry.whole_mass {
+        None => {
+            let density = material_density_kg_m3(scene, entry, &body.about);
+            return density.ok_or_else(|| {
+                Diagnostic::input(
+                    format!("{}: [materials.{}]", scene.source, entry.material),
+                    format!("no density, and the file of body '{name}' names none"),
+                    "add density = \"2050 kg/m3\"",
+                )
+            });
+        }
+        Some(WholeMass::Mass(mass_kg)) => mass_kg,
+        Some(WholeMass::Density(density)) => {
+            let volume = body.about.shape_volume_m3.ok_or_else(|| {
+                Diagnostic::input(
+                    place(),
+                    "body_density is that of a shape, whose volume the body's file does not name",
+                    "give it a mass, such as mass = \"0.4 kg\"; or use a .vtp that dem-pack wrote",
+                )
+            })?;
+            density * volume
+        }
+    };
+    let volume_m3 = match entry.start_as {
+        StartAs::Clump(ClumpSettings {
+            mass: ClumpMass::Union,
+            ..
+        }) => of_union(&body.positions, &body.radii, 1.0).mass_kg,
+        _ => body.radii.iter().map(|radius| volume_m3(*radius)).sum(),
+    };
+    Ok(mass_kg / volume_m3)
 }
 
 /// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold them.

@@ -1,8 +1,10 @@
 //! What a static run leaves: its summary, its text, its files.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use dem_io::Result;
+use dem_io::body::mass::BodyMass;
 use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
 use dem_io::units::significant;
@@ -124,6 +126,7 @@ impl EquilibriumSummary {
             "solved       {} unknowns; {} freedoms held",
             self.unknowns, self.held
         )?;
+        summary.write_masses(f)?;
         summary.write_verdict(f)
     }
 }
@@ -134,6 +137,7 @@ pub(super) struct AtRest<'a> {
     pub(super) scene: &'a Scene,
     pub(super) gauges: &'a [Gauge],
     pub(super) balance: &'a Balance,
+    pub(super) masses: &'a BTreeMap<String, BodyMass>,
 }
 
 impl AtRest<'_> {
@@ -164,6 +168,7 @@ impl AtRest<'_> {
             machine: machine(),
             particles: state.particles.len(),
             bonds: state.bonds.len(),
+            bodies: self.masses.clone(),
             broken_bonds: 0,
             largest_bond_strain: largest_strain(&state.bonds, &state.particles.poses),
             largest_overlap: 0.0,
