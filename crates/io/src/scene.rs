@@ -11,6 +11,7 @@ mod describe;
 mod direction;
 mod field;
 mod inlet;
+mod inputs;
 mod load;
 mod material;
 mod measure;

@@ -13,9 +13,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
+use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder};
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_standard_json, write_standard_output};
 use dem_io::scene::{BodySource, Integrator, Scene};
+use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -23,7 +25,7 @@ use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::plan::plan;
-use crate::run::{RunSettings, run as run_plan};
+use crate::run::{Finished, RunSettings, finish, run as run_plan};
 use crate::snapshot::Snapshot;
 
 /// Runs scenes with bonded bodies.
@@ -63,6 +65,7 @@ enum Command {
     /// Run a scene with many settings: error against run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and against what. Every run is a process of its own.\n\
+                      Exit code 1, after the tables are written, where runs failed or are missing; also with --collect and --quiet.\n\
                       Examples:\n  \
                       dem-run sweep data/studies/cantilever-models.toml --want error=1% --write fast.toml\n  \
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
@@ -358,8 +361,11 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     if !arguments.quiet {
         for note in &prepared.notes {
             // Nobody to read it is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "note: {note}");
+            let _ = writeln!(std::io::stderr(), "note: {}", visible(note));
         }
+    }
+    if let Some((path, _)) = &folder {
+        refuse_inputs_among_results(path, &scene.input_files())?;
     }
     let folder = folder
         .map(|(path, existing)| ResultsFolder::create(&path, existing))
@@ -399,20 +405,40 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
             bar.set_prefix("");
         }
-        run_plan(prepared, &scene, settings, &progress)
+        if let Some(finished) = finish(&prepared, &scene, &settings)? {
+            return Ok(Err(finished));
+        }
+        run_plan(prepared, &scene, settings, &progress).map(Ok)
     });
     bar.finish_and_clear();
-    let summary = summary?;
+    let summary = match summary? {
+        Ok(summary) => summary,
+        Err(finished) => return say_finished(arguments, &finished),
+    };
     if arguments.scene.json {
-        write_standard_output(|out| {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        })
+        write_standard_json(&summary)
     } else if arguments.quiet {
         Ok(())
     } else {
         write_standard_output(|out| write!(out, "{summary}"))
     }
+}
+
+/// Says what was missing of a run that had come to its end.
+fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
+    if arguments.scene.json {
+        return write_standard_json(&finished.summary);
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
+    write_standard_output(|out| {
+        writeln!(
+            out,
+            "this run had come to its end; what was missing has been written: {}",
+            visible(&finished.missing.join(", "))
+        )
+    })
 }
 
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
@@ -447,12 +473,8 @@ fn body_information(arguments: &SceneArguments) -> Result<()> {
         )
     })?;
     let summary = body_summary(&read_body(path)?);
-    write_standard_output(|out| {
-        if arguments.json {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        } else {
-            write!(out, "{summary}")
-        }
-    })
+    if arguments.json {
+        return write_standard_json(&summary);
+    }
+    write_standard_output(|out| write!(out, "{summary}"))
 }

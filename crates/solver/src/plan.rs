@@ -3,6 +3,7 @@
 pub mod bodies;
 mod clumps;
 mod contacts;
+mod outputs;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -29,6 +30,7 @@ use crate::statics::held::refuse_loose;
 use self::bodies::{PlacedBody, place_bodies};
 use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
@@ -110,6 +112,9 @@ pub fn plan(
             StepChoice::none(scene.run.end_time_s)
         }
     };
+    if scene.run.integrator == Integrator::Leapfrog {
+        refuse_endless_output(scene, step.step_s)?;
+    }
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;

@@ -1,6 +1,7 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod finish;
 mod fragments;
 mod limits;
 mod pictures;
@@ -10,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use dem_io::checkpoint::write_checkpoint;
-use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_io::scene::{Integrator, Scene};
 use dem_io::{Diagnostic, Result};
 
@@ -21,9 +22,8 @@ use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::machine::{machine, processor_time_s};
 use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
-use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
+use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
-use crate::output::plots::write_plots;
 use crate::output::series;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary};
 use crate::plan::Plan;
@@ -37,6 +37,8 @@ use crate::step::{act, move_on};
 use self::events::{
     change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
 };
+use self::finish::End;
+pub use self::finish::{Finished, finish};
 use self::fragments::write_fragments;
 use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
@@ -397,6 +399,8 @@ pub fn run(
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
         write_sleep(&state, files)?;
+        let end = End::of(&summary)?;
+        progress.end = Some(end.clone());
         save(
             &state,
             &bodies,
@@ -406,15 +410,7 @@ pub fn run(
             &mut progress,
             files,
         )?;
-        write_json(&files.folder.summary(), &summary)?;
-        write_plots(files.folder, &gauges)?;
-        if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
-            write_tree(files.folder, clusters)?;
-            write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
-        }
-        if let Some(pictures) = &files.pictures {
-            pictures.finish()?;
-        }
+        end.write(files.folder, &state, &gauges, files.pictures.as_ref())?;
     }
     Ok(summary)
 }

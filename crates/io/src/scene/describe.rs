@@ -15,6 +15,7 @@ use super::{
     BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Load, Material, Measure,
     Output, ParticleSet, Pick, Run, Scene, Support,
 };
+use crate::text::visible;
 
 /// Most items of a list that are written out.
 const LISTED: usize = 8;
@@ -92,7 +93,7 @@ impl Lines {
         let mut text = String::new();
         for (key, value) in &self.lines {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{key:width$}   {value}");
+            let _ = writeln!(text, "{key:width$}   {}", visible(value));
         }
         text
     }

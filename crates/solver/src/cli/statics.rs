@@ -1,7 +1,7 @@
 //! `dem-run check` of a scene that goes to its equilibrium at once.
 
 use dem_io::Result;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_standard_json, write_standard_output};
 use dem_io::scene::Scene;
 use serde_json::json;
 
@@ -18,19 +18,17 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
     let outlook =
         Outlook::of(state, scene.run.end_time_s).map_err(|error| error.within(&scene.source))?;
     let bytes = state_bytes + outlook.memory_bytes;
+    if as_json {
+        return write_standard_json(&json!({
+            "scene": scene.source,
+            "particles": state.particles.len(),
+            "bonds": state.bonds.len(),
+            "equilibrium": outlook,
+            "memory_bytes": bytes,
+            "notes": plan.notes,
+        }));
+    }
     write_standard_output(|out| {
-        if as_json {
-            let value = json!({
-                "scene": scene.source,
-                "particles": state.particles.len(),
-                "bonds": state.bonds.len(),
-                "equilibrium": outlook,
-                "memory_bytes": bytes,
-                "notes": plan.notes,
-            });
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            return writeln!(out);
-        }
         writeln!(out, "{}", scene.describe())?;
         let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");
         line(

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::Serialize;
 
@@ -222,7 +223,7 @@ impl Summary {
     /// Those of the formatter.
     pub(crate) fn write_verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for note in &self.notes {
-            writeln!(f, "note         {note}")?;
+            writeln!(f, "note         {}", visible(note))?;
         }
         let doubts = self.doubts();
         let verdict = if doubts.is_empty() {
@@ -245,11 +246,11 @@ impl fmt::Display for Summary {
         let results = self
             .results
             .as_ref()
-            .map_or(String::new(), |r| format!(" -> {r}"));
+            .map_or(String::new(), |r| format!(" -> {}", visible(r)));
         writeln!(
             f,
             "{}: {} s simulated in {} s on {} thread{}{results}",
-            self.scene,
+            visible(&self.scene),
             significant(self.simulated_s, 6),
             significant(self.wall_s, 3),
             self.threads,
