@@ -171,11 +171,17 @@ impl Write for VisibleLines<'_> {
 /// # Errors
 /// As [`write_standard_output`]; `value` cannot be put as JSON (exit code 1).
 pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
-    write_standard_bytes(|out| {
-        let json = serde_json::to_string_pretty(value)?;
-        out.write_all(visible_json(&json).as_bytes())?;
-        out.write_all(b"\n")
-    })
+    write_standard_output(|out| write_json_text(out, value))
+}
+
+/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are not finite become `null`.
+///
+/// # Errors
+/// Those of `out`; `value` cannot be put as JSON.
+pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    let json = serde_json::to_string_pretty(value)?;
+    out.write_all(visible_json(&json).as_bytes())?;
+    out.write_all(b"\n")
 }
 
 /// Writes to standard output what is no text, and is written as it is.

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use dem_io::Result;
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use serde_json::{Value, json};
@@ -43,33 +43,36 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
             .map(of_stage)
             .collect()
     };
-    if as_json {
-        return write_standard_json(&json!({
-            "scene": scene.source,
-            "particles": plan.state.particles.len(),
-            "bonds": plan.state.bonds.len(),
-            "time_step_s": plan.step.step_s,
-            "limit_s": plan.step.limit.step_s,
-            "foreseen_limit_s": plan.step.foreseen_s,
-            "impact_speed_m_s": plan.step.impact_speed_m_s,
-            "notes": plan.notes,
-            "limit_undamped_s": plan.step.limit.undamped_step_s,
-            "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
-            "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
-            "steps": steps,
-            "stages": of_stages(true),
-            "left_out": of_stages(false),
-            "memory_bytes": bytes,
-            "predicted_run_time_s": per_step_s.map(|s| steps * s),
-        }));
-    }
     write_standard_output(|out| {
-        write!(
-            out,
-            "{}\n{}",
-            scene.describe(),
-            text(plan, steps, bytes, trial.as_ref())
-        )
+        if as_json {
+            let value = json!({
+                "scene": scene.source,
+                "particles": plan.state.particles.len(),
+                "bonds": plan.state.bonds.len(),
+                "time_step_s": plan.step.step_s,
+                "limit_s": plan.step.limit.step_s,
+                "foreseen_limit_s": plan.step.foreseen_s,
+                "impact_speed_m_s": plan.step.impact_speed_m_s,
+                "notes": plan.notes,
+                "warnings": plan.warnings,
+                "limit_undamped_s": plan.step.limit.undamped_step_s,
+                "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
+                "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
+                "steps": steps,
+                "stages": of_stages(true),
+                "left_out": of_stages(false),
+                "memory_bytes": bytes,
+                "predicted_run_time_s": per_step_s.map(|s| steps * s),
+            });
+            write_json_text(out, &value)
+        } else {
+            write!(
+                out,
+                "{}\n{}",
+                scene.describe(),
+                text(plan, steps, bytes, trial.as_ref())
+            )
+        }
     })
 }
 
@@ -163,6 +166,9 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     }
     for note in &plan.notes {
         line("note", note.clone());
+    }
+    for warning in &plan.warnings {
+        line("warning", warning.clone());
     }
     line("memory", format!("about {}", size_text(bytes)));
     line(

@@ -1,7 +1,7 @@
 //! `dem-run check` of a scene that goes to its equilibrium at once.
 
 use dem_io::Result;
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::Scene;
 use serde_json::json;
 
@@ -18,17 +18,19 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
     let outlook =
         Outlook::of(state, scene.run.end_time_s).map_err(|error| error.within(&scene.source))?;
     let bytes = state_bytes + outlook.memory_bytes;
-    if as_json {
-        return write_standard_json(&json!({
-            "scene": scene.source,
-            "particles": state.particles.len(),
-            "bonds": state.bonds.len(),
-            "equilibrium": outlook,
-            "memory_bytes": bytes,
-            "notes": plan.notes,
-        }));
-    }
     write_standard_output(|out| {
+        if as_json {
+            let value = json!({
+                "scene": scene.source,
+                "particles": state.particles.len(),
+                "bonds": state.bonds.len(),
+                "equilibrium": outlook,
+                "memory_bytes": bytes,
+                "notes": plan.notes,
+                "warnings": plan.warnings,
+            });
+            return write_json_text(out, &value);
+        }
         writeln!(out, "{}", scene.describe())?;
         let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");
         line(
@@ -57,6 +59,9 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
         line("does not use", UNUSED)?;
         for note in &plan.notes {
             line("note", note)?;
+        }
+        for warning in &plan.warnings {
+            line("warning", warning)?;
         }
         line("memory", &format!("about {}", size_text(bytes)))
     })
