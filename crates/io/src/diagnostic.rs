@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::text::visible;
+
 /// Whose fault it is, which decides the exit code of the programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -107,14 +109,15 @@ impl Diagnostic {
     }
 }
 
+/// On one line: names of files and what they say are shown as by [`visible`].
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.place.is_empty() {
-            write!(f, "{}: ", self.place)?;
+            write!(f, "{}: ", visible(&self.place))?;
         }
-        f.write_str(&self.problem)?;
+        f.write_str(&visible(&self.problem))?;
         if !self.remedy.is_empty() {
-            write!(f, "; {}", self.remedy)?;
+            write!(f, "; {}", visible(&self.remedy))?;
         }
         Ok(())
     }

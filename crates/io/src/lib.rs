@@ -14,6 +14,7 @@ pub mod safe_write;
 pub mod scene;
 pub mod stl;
 pub mod surface;
+pub mod text;
 pub mod units;
 pub mod vtk;
 mod xml;

@@ -9,8 +9,10 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use serde::Serialize;
 use tempfile::NamedTempFile;
 
+use crate::text::{visible_json, visible_lines};
 use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
@@ -133,11 +135,74 @@ pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     PendingFile::write(path, write)?.publish()
 }
 
-/// Writes to standard output. A reader that closes the pipe early has what it wanted: no error.
+/// Writes lines of text to standard output, without what a terminal would obey ([`crate::text`]). A reader that closes
+/// the pipe early has what it wanted: no error.
 ///
 /// # Errors
 /// Standard output cannot be written to, such as a full disk behind it (exit code 1).
 pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    write_standard_bytes(|out| {
+        let mut lines = VisibleLines {
+            out,
+            last: Vec::new(),
+        };
+        write(&mut lines)?;
+        lines.flush()
+    })
+}
+
+/// Passes lines on once they are whole, without what a terminal would obey.
+struct VisibleLines<'a> {
+    out: &'a mut dyn Write,
+    last: Vec<u8>,
+}
+
+impl Write for VisibleLines<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.last.extend_from_slice(bytes);
+        if bytes.contains(&b'\n') {
+            let end = self.last.iter().rposition(|byte| *byte == b'\n');
+            let rest = self.last.split_off(end.map_or(0, |at| at + 1));
+            let whole = std::mem::replace(&mut self.last, rest);
+            let text = String::from_utf8_lossy(&whole);
+            self.out.write_all(visible_lines(&text).as_bytes())?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let text = String::from_utf8_lossy(&self.last);
+        self.out.write_all(visible_lines(&text).as_bytes())?;
+        self.last.clear();
+        self.out.flush()
+    }
+}
+
+/// Writes `value` to standard output as indented JSON. Numbers that are not finite become `null`.
+///
+/// # Errors
+/// As [`write_standard_output`]; `value` cannot be put as JSON (exit code 1).
+pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
+    write_standard_output(|out| write_json_text(out, value))
+}
+
+/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are not finite become `null`.
+///
+/// # Errors
+/// Those of `out`; `value` cannot be put as JSON.
+pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    let json = serde_json::to_string_pretty(value)?;
+    out.write_all(visible_json(&json).as_bytes())?;
+    out.write_all(b"\n")
+}
+
+/// Writes to standard output what is no text, and is written as it is.
+///
+/// # Errors
+/// As [`write_standard_output`].
+pub(crate) fn write_standard_bytes(
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
     quiet_when_closed(write_buffered(io::stdout().lock(), write))
         .map_err(|error| explain(Path::new("standard output"), &error))
 }
@@ -197,6 +262,45 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
     Ok(())
 }
 
+/// Whether two names are those of one file, also through links of both kinds. A device is none, and
+/// so is what is not there.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let (Ok(a), Ok(b)) = (fs::metadata(one), fs::metadata(other)) else {
+        return false;
+    };
+    if !(a.is_file() && b.is_file()) {
+        return false;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        (a.dev(), a.ino()) == (b.dev(), b.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let whole = [one, other].map(fs::canonicalize);
+        matches!(whole, [Ok(a), Ok(b)] if a == b)
+    }
+}
+
+/// Refuses to write `target`, an option or a file as messages name it by `place`, where it is one of the files that are read.
+///
+/// # Errors
+/// It is the same file as one of `inputs`, also through a link (exit code 2).
+pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()> {
+    match inputs.iter().find(|input| is_same_file(target, input)) {
+        None => Ok(()),
+        Some(input) => Err(Diagnostic::input(
+            place,
+            format!(
+                "'{}' is read here and would be overwritten",
+                input.display()
+            ),
+            "name another file",
+        )),
+    }
+}
+
 /// Finds out before the work whether there is a folder for a file.
 ///
 /// # Errors
@@ -236,26 +340,6 @@ pub fn refuse_to_replace(written: &[PathBuf], read: &[PathBuf]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Whether two names are those of one file. A device is none.
-fn is_same_file(one: &Path, other: &Path) -> bool {
-    let (Ok(a), Ok(b)) = (fs::metadata(one), fs::metadata(other)) else {
-        return false;
-    };
-    if !(a.is_file() && b.is_file()) {
-        return false;
-    }
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        (a.dev(), a.ino()) == (b.dev(), b.ino())
-    }
-    #[cfg(not(unix))]
-    {
-        let whole = [one, other].map(fs::canonicalize);
-        matches!(whole, [Ok(a), Ok(b)] if a == b)
-    }
 }
 
 /// Problem and remedy of a file whose folder is missing.
@@ -564,6 +648,53 @@ mod tests {
             std::os::unix::fs::symlink("cake.vtp", path("soft.vtp")).unwrap();
             assert!(refused("soft.vtp").is_err());
         }
+    }
+
+    #[test]
+    fn lines_pass_without_what_a_terminal_obeys_however_they_are_cut() {
+        let text = "a\u{1b}[2J é\u{202e}x\nsecond\r\n\nlast µ".as_bytes();
+        for at in 0..text.len() {
+            let mut shown = Vec::new();
+            let mut lines = VisibleLines {
+                out: &mut shown,
+                last: Vec::new(),
+            };
+            lines.write_all(&text[..at]).unwrap();
+            lines.write_all(&text[at..]).unwrap();
+            lines.flush().unwrap();
+            let wanted = "a\\u{1b}[2J é\\u{202e}x\nsecond\\u{d}\n\nlast µ";
+            assert_eq!(String::from_utf8(shown).unwrap(), wanted, "cut at {at}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_same_file_is_known_by_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("a"), "x").unwrap();
+        fs::write(path("b"), "x").unwrap();
+        std::os::unix::fs::symlink(path("a"), path("link")).unwrap();
+        fs::hard_link(path("a"), path("hard")).unwrap();
+        for other in ["a", "link", "hard", "../a"] {
+            let other = match other.strip_prefix("../") {
+                Some(name) => path(&format!(
+                    "../{}/{name}",
+                    folder.path().file_name().unwrap().display()
+                )),
+                None => path(other),
+            };
+            assert!(is_same_file(&path("a"), &other), "{}", other.display());
+            let said = refuse_input("here", &other, &[path("b"), path("a")]).unwrap_err();
+            assert_eq!(said.exit_code(), 2);
+            assert!(
+                said.problem
+                    .ends_with("a' is read here and would be overwritten"),
+                "{said}"
+            );
+        }
+        assert!(!is_same_file(&path("a"), &path("b")) && !is_same_file(&path("no"), &path("no")));
+        assert_eq!(refuse_input("here", &path("new"), &[path("a")]), Ok(()));
     }
 
     #[test]

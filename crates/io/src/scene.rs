@@ -12,6 +12,7 @@ mod direction;
 mod field;
 mod initial;
 mod inlet;
+mod inputs;
 mod load;
 mod material;
 mod measure;

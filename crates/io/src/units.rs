@@ -275,6 +275,30 @@ pub const NUMBER: Dimension = Dimension {
     example: "0.3",
 };
 
+/// All dimensions.
+pub const DIMENSIONS: [Dimension; 20] = [
+    NUMBER,
+    LENGTH,
+    AREA,
+    TIME,
+    MASS,
+    DENSITY,
+    ANGLE,
+    VELOCITY,
+    ANGULAR_VELOCITY,
+    ACCELERATION,
+    STRESS,
+    FORCE,
+    TORQUE,
+    STIFFNESS,
+    ENERGY,
+    ENERGY_PER_MASS,
+    MASS_RATE,
+    RATE,
+    VISCOUS_DAMPING,
+    ANGLE_DEG,
+];
+
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.
 ///
 /// # Errors
@@ -438,27 +462,7 @@ mod tests {
 
     #[test]
     fn every_unit_reads_its_size() {
-        for dimension in [
-            LENGTH,
-            DENSITY,
-            TIME,
-            ANGLE,
-            ANGLE_DEG,
-            VELOCITY,
-            ANGULAR_VELOCITY,
-            ACCELERATION,
-            STRESS,
-            FORCE,
-            TORQUE,
-            MASS,
-            STIFFNESS,
-            ENERGY,
-            ENERGY_PER_MASS,
-            MASS_RATE,
-            RATE,
-            VISCOUS_DAMPING,
-            NUMBER,
-        ] {
+        for dimension in DIMENSIONS {
             for (unit, size) in dimension.units {
                 let value = quantity(&format!("2 {unit}"), &dimension);
                 assert_eq!(value.ok(), Some(2.0 * size), "{unit}");
@@ -466,6 +470,20 @@ mod tests {
             assert!(quantity(dimension.example, &dimension).is_ok());
             assert!(quantity("2 parsec", &dimension).is_err());
         }
+    }
+
+    /// A dimension that is declared above is known to studies, too.
+    #[test]
+    fn all_dimensions_are_in_the_list() {
+        let declared = include_str!("units.rs")
+            .matches(": Dimension = Dimension {")
+            .count();
+        // This test names the words once itself.
+        assert_eq!(declared - 1, DIMENSIONS.len());
+        let mut names: Vec<&str> = DIMENSIONS.iter().map(|d| d.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), DIMENSIONS.len());
     }
 
     #[test]

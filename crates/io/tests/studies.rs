@@ -128,6 +128,17 @@ fn ranges_begin_and_end_where_they_say() {
 }
 
 #[test]
+fn areas_have_sizes() {
+    let study = study(&format!(
+        "[vary]\n\"test.area\" = [\"9 cm2\", \"400 mm2\", \"1e-4 m2\"]\n[measures.tip]\nreference = \"richardson\"\n"
+    ));
+    let sizes = study.axes[0].sizes().unwrap();
+    for (size, wanted) in sizes.iter().zip([9e-4, 4e-4, 1e-4]) {
+        assert!((size / wanted - 1.0).abs() < 1e-15, "{size}");
+    }
+}
+
+#[test]
 fn what_is_no_study() {
     for (rest, parts) in [
         (
@@ -161,7 +172,7 @@ fn what_is_no_study() {
         ),
         (
             "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n",
-            "count is 1, but must be from 2 to 1000000",
+            "count is 1, but must be from 2 to 100000",
         ),
         (
             "[vary]\n\"run.safety\" = { values = [1, 2], size = [1] }\n[measures.tip]\n",
@@ -228,6 +239,26 @@ fn what_is_no_study() {
             "at most 1024",
         ),
         (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1000000000000 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 1000000000000, but must be from 2 to 100000",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1e300 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 1e300",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 60000 }\n\"run.rest\" = { from = 1, to = 2, count = 60000 }\n[measures.tip]\n",
+            "study.toml:5: with run.rest the axes have 120000 values, more than 100000; vary less, or in several studies",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = -1e308, to = 1e308, count = 99999999999999999999 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 99999999999999999999",
+        ),
+        (
+            "repeats = 18446744073709551615\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeats is 18446744073709551615, but must be at most 1024",
+        ),
+        (
             "repeat = 3\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
             "unknown key repeat; did you mean 'repeats'?",
         ),
@@ -235,6 +266,14 @@ fn what_is_no_study() {
         let said = refused(&format!("{HEAD}{rest}"));
         assert!(said.contains(parts), "{rest}\n{said}\n{parts}");
     }
+    let axes: String = (0..101)
+        .map(|k| format!("\"run.safety{k}\" = [1]\n"))
+        .collect();
+    let said = refused(&format!("{HEAD}[vary]\n{axes}[measures.tip]\n"));
+    assert!(
+        said.starts_with("study.toml:104: with run.safety100 there are more than 100 axes; join"),
+        "{said}"
+    );
     assert!(refused("version = 2\n").contains("at most 1"));
     assert!(
         refused("version = 1\n[vary]\n\"run.safety\" = [1]\n[measures.tip]\n")

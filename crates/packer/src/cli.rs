@@ -12,7 +12,9 @@ use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
 use dem_io::program::{Shell, print_completions, print_man_page};
-use dem_io::safe_write::{need_folder_of, refuse_to_replace, write_standard_output};
+use dem_io::safe_write::{
+    need_folder_of, refuse_to_replace, write_standard_json, write_standard_output,
+};
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{density_kg_m3, length_m, length_unit_m, show_length, significant};
 use dem_io::{Diagnostic, Result, Surface};
@@ -304,10 +306,7 @@ fn pack_and_write(
 
     let text = summary_text(&surface, &made, output);
     if arguments.json {
-        return write_standard_output(|out| {
-            serde_json::to_writer_pretty(&mut *out, &made)?;
-            writeln!(out)
-        });
+        return write_standard_json(&made);
     }
     if arguments.output.is_some() && output != Path::new("-") {
         if arguments.quiet {
@@ -544,24 +543,16 @@ fn info(file: &Path, reading: &Reading, json: bool) -> Result<()> {
         .is_some_and(|e| e.eq_ignore_ascii_case("stl"))
     {
         let surface = read_surface(file, reading)?;
-        return write_standard_output(|out| {
-            if json {
-                serde_json::to_writer_pretty(&mut *out, &surface_summary(&surface))?;
-                writeln!(out)
-            } else {
-                out.write_all(surface_text(&surface).as_bytes())
-            }
-        });
+        if json {
+            return write_standard_json(&surface_summary(&surface));
+        }
+        return write_standard_output(|out| out.write_all(surface_text(&surface).as_bytes()));
     }
     let summary = body_summary(&read_body(file)?);
-    write_standard_output(|out| {
-        if json {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        } else {
-            write!(out, "{summary}")
-        }
-    })
+    if json {
+        return write_standard_json(&summary);
+    }
+    write_standard_output(|out| write!(out, "{summary}"))
 }
 
 fn progress_bar() -> ProgressBar {

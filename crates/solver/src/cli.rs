@@ -14,19 +14,20 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::program::{Shell, print_completions, print_man_page};
+use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder, write_json};
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_standard_json, write_standard_output};
 use dem_io::scene::{BodySource, Integrator, Scene};
+use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
 
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Unfinished;
 use crate::plan::plan;
-use crate::run::{RunSettings, run as run_plan, run_as_far_as_it_goes};
+use crate::run::{Finished, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
 use crate::snapshot::Snapshot;
 
 /// Runs scenes with bonded bodies.
@@ -66,6 +67,7 @@ enum Command {
     /// Run a scene with many settings: error against run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and against what. Every run is a process of its own.\n\
+                      Exit code 1, after the tables are written, where runs failed or are missing; also with --collect and --quiet.\n\
                       Examples:\n  \
                       dem-run sweep data/studies/cantilever-models.toml --want error=1% --write fast.toml\n  \
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
@@ -376,8 +378,11 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         let warnings = warnings.map(|warning| ("warning", warning));
         for (kind, text) in notes.chain(warnings) {
             // Nobody to read it is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{kind}: {text}");
+            let _ = writeln!(std::io::stderr(), "{kind}: {}", visible(text));
         }
+    }
+    if let Some((path, _)) = &folder {
+        refuse_inputs_among_results(path, &scene.input_files())?;
     }
     let folder = folder
         .map(|(path, existing)| ResultsFolder::create(&path, existing))
@@ -417,7 +422,10 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
             bar.set_prefix("");
         }
-        run_as_far_as_it_goes(prepared, &scene, settings, &progress)
+        if let Some(finished) = finish(&prepared, &scene, &settings)? {
+            return Ok(Err(finished));
+        }
+        run_as_far_as_it_goes(prepared, &scene, settings, &progress).map(Ok)
     });
     bar.finish_and_clear();
     let outcome = outcome.map_err(|problem| {
@@ -425,13 +433,17 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         // The problem itself is what the user has to hear of.
         let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
         if arguments.scene.json {
-            let _ = print_json(&unfinished);
+            let _ = write_standard_json(&unfinished);
         }
         problem
     })?;
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(finished) => return say_finished(arguments, &finished),
+    };
     let summary = &outcome.summary;
     if arguments.scene.json {
-        print_json(summary)?;
+        write_standard_json(summary)?;
     } else if !arguments.quiet && outcome.problem.is_none() {
         write_standard_output(|out| {
             write!(out, "{summary}")?;
@@ -447,10 +459,20 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     outcome.problem.map_or(Ok(()), Err)
 }
 
-fn print_json(value: &impl Serialize) -> Result<()> {
+/// Says what was missing of a run that had come to its end.
+fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
+    if arguments.scene.json {
+        return write_standard_json(&finished.summary);
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
     write_standard_output(|out| {
-        serde_json::to_writer_pretty(&mut *out, value)?;
-        writeln!(out)
+        writeln!(
+            out,
+            "this run had come to its end; what was missing has been written: {}",
+            visible(&finished.missing.join(", "))
+        )
     })
 }
 
@@ -486,12 +508,8 @@ fn body_information(arguments: &SceneArguments) -> Result<()> {
         )
     })?;
     let summary = body_summary(&read_body(path)?);
-    write_standard_output(|out| {
-        if arguments.json {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        } else {
-            write!(out, "{summary}")
-        }
-    })
+    if arguments.json {
+        return write_standard_json(&summary);
+    }
+    write_standard_output(|out| write!(out, "{summary}"))
 }

@@ -6,6 +6,7 @@ mod contacts;
 mod forecast;
 mod initial;
 mod measures;
+mod outputs;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -42,6 +43,7 @@ use self::forecast::forecast;
 pub use self::forecast::{Forecast, ToCome};
 use self::initial::start;
 use self::measures::refuse_valueless;
+use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
@@ -142,6 +144,9 @@ pub fn plan(
             StepChoice::none(scene.run.end_time_s)
         }
     };
+    if scene.run.integrator == Integrator::Leapfrog {
+        refuse_endless_output(scene, step.step_s)?;
+    }
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;

@@ -1,6 +1,7 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod finish;
 mod fragments;
 mod limits;
 mod pictures;
@@ -22,9 +23,8 @@ use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::machine::{machine, processor_time_s};
 use crate::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
-use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
+use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
-use crate::output::plots::write_plots;
 use crate::output::series;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::plan::Plan;
@@ -38,6 +38,8 @@ use crate::step::{act, find_pieces_now, move_on};
 use self::events::{
     change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
 };
+use self::finish::End;
+pub use self::finish::{Finished, finish};
 use self::fragments::write_fragments;
 use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
@@ -122,13 +124,13 @@ pub struct Outcome {
 }
 
 /// What ends the loop over steps.
-struct End {
+struct Ended {
     by: &'static str,
     balance: Balance,
     problem: Option<Diagnostic>,
 }
 
-impl End {
+impl Ended {
     /// Before the end, with what has happened.
     fn before_the_end(state: &mut State, by: &'static str, problem: Diagnostic) -> Self {
         Self {
@@ -249,11 +251,11 @@ pub fn run_as_far_as_it_goes(
     let clock = Instant::now();
     let processor_before_s = processor_time_s();
     let mut saved = clock;
-    let end = loop {
+    let ended = loop {
         act(&mut state);
         if let Some(problem) = went_through(&state, scene, &bodies) {
             let problem = with_checkpoint(problem, files.as_ref());
-            break End::before_the_end(&mut state, "instability", problem);
+            break Ended::before_the_end(&mut state, "instability", problem);
         }
         progress.seen.note_breaks(&state);
         if state.steps.is_multiple_of(LOOKS_EVERY) {
@@ -295,7 +297,7 @@ pub fn run_as_far_as_it_goes(
         if row_due || checkpoint_due || watchdog_due {
             let balance = balance(&mut state);
             if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
-                break End {
+                break Ended {
                     by: "instability",
                     balance,
                     problem: Some(with_checkpoint(problem, files.as_ref())),
@@ -345,7 +347,7 @@ pub fn run_as_far_as_it_goes(
                 (false, true, None) => "end time",
                 (false, false, _) => "rest",
             };
-            break End {
+            break Ended {
                 by: why,
                 balance,
                 problem: None,
@@ -380,7 +382,7 @@ pub fn run_as_far_as_it_goes(
         state.clock.book_checks(since);
         if let Err(problem) = followed {
             let problem = with_checkpoint(problem, files.as_ref());
-            break End::before_the_end(&mut state, "instability", problem);
+            break Ended::before_the_end(&mut state, "instability", problem);
         }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
@@ -397,10 +399,10 @@ pub fn run_as_far_as_it_goes(
         }
         if interrupted {
             let problem = interruption(&state, files.as_ref());
-            break End::before_the_end(&mut state, "interruption", problem);
+            break Ended::before_the_end(&mut state, "interruption", problem);
         }
     };
-    let last = end.balance;
+    let last = ended.balance;
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
     let processor_s = processor_time_s().zip(processor_before_s);
@@ -418,8 +420,8 @@ pub fn run_as_far_as_it_goes(
     let mut summary = Summary {
         scene: scene.source.clone(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
-        ended_by: end.by.to_owned(),
-        problem: end.problem.as_ref().map(Diagnostic::to_string),
+        ended_by: ended.by.to_owned(),
+        problem: ended.problem.as_ref().map(Diagnostic::to_string),
         inputs,
         simulated_s: state.time_s,
         wall_s,
@@ -476,7 +478,7 @@ pub fn run_as_far_as_it_goes(
         equilibrium: None,
     };
     summary.judge(warnings);
-    if let (Some(files), Some(problem)) = (&files, &end.problem) {
+    if let (Some(files), Some(problem)) = (&files, &ended.problem) {
         write_json(&files.folder.summary(), &summary)?;
         return Ok(Outcome {
             summary,
@@ -487,6 +489,8 @@ pub fn run_as_far_as_it_goes(
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
         write_sleep(&state, files)?;
+        let end = End::of(&summary)?;
+        progress.end = Some(end.clone());
         save(
             &state,
             &bodies,
@@ -496,19 +500,11 @@ pub fn run_as_far_as_it_goes(
             &mut progress,
             files,
         )?;
-        write_json(&files.folder.summary(), &summary)?;
-        write_plots(files.folder, &gauges)?;
-        if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
-            write_tree(files.folder, clusters)?;
-            write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
-        }
-        if let Some(pictures) = &files.pictures {
-            pictures.finish()?;
-        }
+        end.write(files.folder, &state, &gauges, files.pictures.as_ref())?;
     }
     Ok(Outcome {
         summary,
-        problem: end.problem,
+        problem: ended.problem,
     })
 }
 

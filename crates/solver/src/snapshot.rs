@@ -1,7 +1,9 @@
 //! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say is read again when it goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
+use dem_io::body::files::body_files;
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -112,6 +114,22 @@ impl Snapshot {
             measures,
             progress,
         }
+    }
+
+    /// The files of bodies, walls and regions that its scene names.
+    pub fn files_of_scene(&self) -> Vec<PathBuf> {
+        let of_line = |line: &str| {
+            let (key, file) = line.split_once(' ')?;
+            let is_file = ["bodies.", "walls.", "regions."]
+                .iter()
+                .any(|kind| key.starts_with(kind))
+                && [".file", ".stl"].iter().any(|name| key.ends_with(name));
+            is_file.then(|| PathBuf::from(file.trim_start()))
+        };
+        let files = self.scene.lines().filter_map(of_line);
+        files
+            .flat_map(|file| body_files(&file).unwrap_or(vec![file]))
+            .collect()
     }
 
     /// As bytes.

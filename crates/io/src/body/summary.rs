@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::mass::{centre_text, moments_text, of_body, percent_text};
 use super::{About, Body};
+use crate::text::visible;
 use crate::units::{show_length, significant};
 
 /// What a body holds. SI units.
@@ -183,8 +184,11 @@ impl fmt::Display for BodySummary {
             about
                 .program
                 .as_ref()
-                .map(|program| format!("by {program}")),
-            about.source.as_ref().map(|source| format!("from {source}")),
+                .map(|program| format!("by {}", visible(program))),
+            about
+                .source
+                .as_ref()
+                .map(|source| format!("from {}", visible(source))),
             about.source_hash.map(|hash| format!("hash {hash:016x}")),
             about
                 .shape_volume_m3

@@ -15,6 +15,7 @@ use super::{
     BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Initial, Load, Material,
     Measure, Output, ParticleSet, Pick, Run, Scene, Support, WholeMass,
 };
+use crate::text::visible;
 
 /// Most items of a list that are written out.
 const LISTED: usize = 8;
@@ -104,7 +105,7 @@ impl Lines {
         let mut text = String::new();
         for (key, value) in &self.lines {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{key:width$}   {value}");
+            let _ = writeln!(text, "{key:width$}   {}", visible(value));
         }
         text
     }

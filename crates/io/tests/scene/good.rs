@@ -7,10 +7,7 @@ use dem_io::scene::{
     Formulation, Hold, Integrator, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search,
     StartOverlap, TestKind, Wall, WallMotion, WallShape,
 };
-use dem_io::units::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH,
-    MASS, MASS_RATE, NUMBER, RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
-};
+use dem_io::units::DIMENSIONS;
 use dem_io::{read_scene, scene_from_text};
 
 pub(crate) fn folder() -> PathBuf {
@@ -60,27 +57,7 @@ fn the_documentation() {
 #[test]
 fn the_documentation_lists_every_unit() {
     let text = include_str!("../../../../doc/scenes.md");
-    for dimension in [
-        LENGTH,
-        TIME,
-        MASS,
-        ANGLE,
-        VELOCITY,
-        ANGULAR_VELOCITY,
-        ACCELERATION,
-        FORCE,
-        TORQUE,
-        STRESS,
-        ENERGY,
-        ENERGY_PER_MASS,
-        MASS_RATE,
-        STIFFNESS,
-        VISCOUS_DAMPING,
-        DENSITY,
-        RATE,
-        AREA,
-        NUMBER,
-    ] {
+    for dimension in DIMENSIONS {
         let units: Vec<String> = dimension
             .units
             .iter()

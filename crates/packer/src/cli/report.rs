@@ -2,6 +2,7 @@
 
 use crate::make::Made;
 use dem_io::Surface;
+use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
 use std::path::Path;
 
@@ -30,7 +31,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     let parts = surface.parts();
     let mut text = format!(
         "{}\n  surface     {} triangles, {} corners, closed\n  size        {size}, from ({corner})\n  volume      {} mm3\n  parts       {parts}, cavities {}\n",
-        surface.source,
+        visible(&surface.source),
         surface.triangles.len(),
         surface.vertices.len(),
         significant(surface.volume_m3() * 1e9, 6),
@@ -66,7 +67,12 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
     } else {
         output.display().to_string()
     };
-    let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
+    let mut text = format!(
+        "{} -> {}\n{}",
+        visible(&surface.source),
+        visible(&name),
+        made.quality.text()
+    );
     if let Some(search) = &made.density_search {
         text += &format!(
             "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",

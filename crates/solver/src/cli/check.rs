@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use dem_io::Result;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use serde_json::{Value, json};
@@ -69,8 +69,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "memory_bytes": bytes,
                 "predicted_run_time_s": per_step_s.map(|s| steps * s),
             });
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            writeln!(out)
+            write_json_text(out, &value)
         } else {
             write!(
                 out,

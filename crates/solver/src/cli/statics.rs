@@ -1,7 +1,7 @@
 //! `dem-run check` of a scene that goes to its equilibrium at once.
 
 use dem_io::Result;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::Scene;
 use serde_json::json;
 
@@ -31,8 +31,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "notes": plan.notes,
                 "warnings": plan.warnings,
             });
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            return writeln!(out);
+            return write_json_text(out, &value);
         }
         writeln!(out, "{}", scene.describe())?;
         let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");

@@ -5,6 +5,7 @@ use std::fmt;
 
 use dem_io::Diagnostic;
 use dem_io::body::mass::BodyMass;
+use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
@@ -313,10 +314,10 @@ impl Summary {
     /// Those of the formatter.
     pub(crate) fn write_verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for note in &self.notes {
-            writeln!(f, "note         {note}")?;
+            writeln!(f, "note         {}", visible(note))?;
         }
         for warning in &self.verdict.warnings {
-            writeln!(f, "warning      {warning}")?;
+            writeln!(f, "warning      {}", visible(warning))?;
         }
         let verdict = match (self.verdict.warnings.len(), self.notes.len()) {
             (0, 0) => "sound: no warnings".to_owned(),
@@ -336,11 +337,11 @@ impl fmt::Display for Summary {
         let results = self
             .results
             .as_ref()
-            .map_or(String::new(), |r| format!(" -> {r}"));
+            .map_or(String::new(), |r| format!(" -> {}", visible(r)));
         writeln!(
             f,
             "{}: {} s simulated in {} s on {} thread{}{results}",
-            self.scene,
+            visible(&self.scene),
             significant(self.simulated_s, 6),
             significant(self.wall_s, 3),
             self.threads,

@@ -7,6 +7,7 @@ use dem_io::Result;
 use dem_io::body::mass::BodyMass;
 use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
+use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::Serialize;
 
@@ -102,10 +103,10 @@ impl EquilibriumSummary {
         writeln!(
             f,
             "{}: equilibrium at {} s in {} s{}",
-            summary.scene,
+            visible(&summary.scene),
             significant(summary.simulated_s, 6),
             significant(summary.wall_s, 3),
-            results.map_or(String::new(), |folder| format!(" -> {folder}")),
+            results.map_or(String::new(), |folder| format!(" -> {}", visible(folder))),
         )?;
         measure_lines(&summary.measures, f)?;
         let steps = |count: usize, what: &str| {
