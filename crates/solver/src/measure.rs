@@ -49,6 +49,7 @@ pub struct History {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measured {
     /// Its name in the scene.
+    #[serde(skip_serializing)]
     pub name: String,
     /// In `unit`.
     pub value: f64,
