@@ -82,6 +82,21 @@ impl Body {
         })
     }
 
+    /// Hash of its numbers (FNV-1a, 64 bit): the same for the same particles and bonds, whatever
+    /// file they come from.
+    pub fn hash(&self) -> u64 {
+        let places = self.positions.iter().flatten().chain(&self.radii);
+        let of_bonds = self.bond_radii.iter().chain(&self.bond_lengths);
+        let mut bytes = Vec::new();
+        for number in places.chain(of_bonds) {
+            bytes.extend(number.to_bits().to_le_bytes());
+        }
+        for end in self.bonds.iter().flatten() {
+            bytes.extend(end.to_le_bytes());
+        }
+        crate::hash::fnv1a(&bytes)
+    }
+
     /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,
     /// a bond is as thick as the smaller of its particles and as long as they are apart.
     ///

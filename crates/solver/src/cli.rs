@@ -13,17 +13,19 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
-use dem_io::results::{Existing, ResultsFolder};
+use dem_io::results::{Existing, ResultsFolder, write_json};
 use dem_io::safe_write::write_standard_output;
 use dem_io::scene::{BodySource, Integrator, Scene};
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
+use crate::output::summary::Unfinished;
 use crate::plan::plan;
-use crate::run::{RunSettings, run as run_plan};
+use crate::run::{RunSettings, run as run_plan, run_as_far_as_it_goes};
 use crate::snapshot::Snapshot;
 
 /// Runs scenes with bonded bodies.
@@ -131,7 +133,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
                 None => scene_data,
             };
-            let plan = plan(&scene_data, bodies, threads, scene.force_step)?;
+            let mut plan = plan(&scene_data, bodies, threads, scene.force_step)?;
+            plan.inputs.set.clone_from(&scene.overrides);
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
@@ -354,10 +357,13 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         None => scene,
     };
     let force_step = arguments.scene.force_step;
-    let prepared = plan(&scene, bodies, threads, force_step)?;
+    let mut prepared = plan(&scene, bodies, threads, force_step)?;
+    prepared.inputs.set.clone_from(&arguments.scene.overrides);
+    let inputs = prepared.inputs.clone();
     if !arguments.quiet {
         let notes = prepared.notes.iter().map(|note| ("note", note));
-        let warnings = prepared.warnings.iter().map(|warning| ("warning", warning));
+        let warnings = prepared.warnings.iter().chain(&prepared.forecast.warnings);
+        let warnings = warnings.map(|warning| ("warning", warning));
         for (kind, text) in notes.chain(warnings) {
             // Nobody to read it is no reason to stop.
             let _ = writeln!(std::io::stderr(), "{kind}: {text}");
@@ -380,7 +386,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         progress_bar()
     };
     let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
-    let summary = interrupt.heeded_by(|interrupted| {
+    let outcome = interrupt.heeded_by(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
             resume,
@@ -401,20 +407,41 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
             bar.set_prefix("");
         }
-        run_plan(prepared, &scene, settings, &progress)
+        run_as_far_as_it_goes(prepared, &scene, settings, &progress)
     });
     bar.finish_and_clear();
-    let summary = summary?;
+    let outcome = outcome.map_err(|problem| {
+        let unfinished = Unfinished::new(&scene.source, inputs, &problem);
+        // The problem itself is what the user has to hear of.
+        let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
+        if arguments.scene.json {
+            let _ = print_json(&unfinished);
+        }
+        problem
+    })?;
+    let summary = &outcome.summary;
     if arguments.scene.json {
+        print_json(summary)?;
+    } else if !arguments.quiet && outcome.problem.is_none() {
         write_standard_output(|out| {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        })
-    } else if arguments.quiet {
-        Ok(())
-    } else {
-        write_standard_output(|out| write!(out, "{summary}"))
+            write!(out, "{summary}")?;
+            match &summary.results {
+                None => writeln!(
+                    out,
+                    "no files written: add --out FOLDER to keep the results"
+                ),
+                Some(_) => Ok(()),
+            }
+        })?;
     }
+    outcome.problem.map_or(Ok(()), Err)
+}
+
+fn print_json(value: &impl Serialize) -> Result<()> {
+    write_standard_output(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        writeln!(out)
+    })
 }
 
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.

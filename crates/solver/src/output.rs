@@ -2,6 +2,7 @@
 
 pub mod fragments;
 pub mod frames;
+pub mod inputs;
 pub mod pictures;
 pub mod plots;
 pub mod series;

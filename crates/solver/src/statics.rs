@@ -37,6 +37,8 @@ use crate::run::RunSettings;
 use crate::state::State;
 use crate::state::particles::Motion;
 
+use crate::check::laws::strain_warning;
+
 use self::newton::{loads, six};
 use self::record::AtRest;
 
@@ -55,7 +57,8 @@ pub fn run(
         mut state,
         bodies,
         notes,
-        warnings,
+        mut warnings,
+        inputs,
         ..
     } = plan;
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
@@ -84,7 +87,8 @@ pub fn run(
         balance: &balance,
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
-    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), (notes, inputs));
+    warnings.extend(strain_warning(summary.largest_bond_strain, ""));
     summary.judge(warnings);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;

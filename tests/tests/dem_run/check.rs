@@ -99,3 +99,16 @@ fn only_scenes_can_be_checked() {
         assert!(said.contains("this is no scene (.toml)"), "{said}");
     }
 }
+
+/// The bonds of a clump that nothing replaces are not used, and need no kind.
+#[test]
+fn says_which_bonds_are_not_used() {
+    let bench = Bench::new();
+    bench.write("row.vtp", vtp_bytes(&super::row(5)));
+    let text = "version = 1\nrun.end_time = 1\nmaterials.any.density = 1000\n\
+                bodies.rock = { file = \"row.vtp\", material = \"any\", start_as = \"clump\" }\n";
+    bench.write("rigid.toml", text);
+    let said = check(&bench, &["rigid.toml"]);
+    let line = "\n               'rock' as a rigid clump; its 3 bonds are not used\n";
+    assert!(said.contains(line), "{said}");
+}

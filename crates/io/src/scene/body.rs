@@ -8,7 +8,7 @@ use super::field::Field;
 use super::names::meaning;
 use super::read::named_path;
 use super::table::Table;
-use super::{BodyEntry, BodySource, BondKind, Material, clump};
+use super::{BodyEntry, BodySource, BondKind, Material, StartAs, clump};
 use crate::Result;
 use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
@@ -70,9 +70,19 @@ fn read(
     let source = source(&table, folder)?;
     let material_field = table.need("material", "\"NAME\", a name in [materials]")?;
     let material = material_field.reference(materials.keys(), "materials")?;
+    if materials.get(&material).is_some_and(|found| found.rigid) {
+        let problem = format!(
+            "{} is \"{material}\", which is rigid, and only walls can be",
+            material_field.path
+        );
+        let remedy = "name another material, or give this one a density and a young_modulus";
+        return Err(material_field.refuse(problem, remedy));
+    }
     let bond_kind = table.read("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
+    let start_as = clump::read(&table)?;
     if let BodySource::Inline { bonds, .. } = &source {
-        if !bonds.is_empty() && bond_kind.is_none() {
+        // Of a clump: who replaces it needs them.
+        if !bonds.is_empty() && bond_kind.is_none() && start_as == StartAs::Bonded {
             table.need("bonds", "\"NAME\", a name in [bonds]")?;
         }
         let density = materials
@@ -103,7 +113,7 @@ fn read(
         angular_velocity_rad_s: table
             .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
             .unwrap_or_default(),
-        start_as: clump::read(&table)?,
+        start_as,
     })
 }
 

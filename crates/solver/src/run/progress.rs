@@ -5,6 +5,7 @@ use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;
+use super::seen::Seen;
 use crate::check::ledger::{Balance, over};
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
@@ -65,6 +66,8 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether that has ended because the body broke.
     pub(super) broke: bool,
+    /// What has been seen beside the measures.
+    pub(super) seen: Seen,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -108,7 +111,10 @@ fn last_change_s(state: &State) -> f64 {
             _ => f64::INFINITY,
         },
     });
-    let ends = loads.chain(supports).map(end).chain(of_walls);
+    let let_go = state.supports.iter().map(|support| support.end_s);
+    let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));
+    let let_go = let_go.filter(|end_s| end_s.is_finite());
+    let ends = loads.chain(supports).map(end).chain(of_walls).chain(let_go);
     ends.fold(0.0, f64::max)
 }
 
@@ -226,6 +232,7 @@ impl Progress {
             momentum * balance.momentum_error,
             angular_momentum * balance.angular_momentum_error,
         ];
+        self.seen.note_kinetic(balance.kinetic_j);
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }

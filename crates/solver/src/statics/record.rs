@@ -15,9 +15,12 @@ use crate::machine::machine;
 use crate::measure::Gauge;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
+use crate::output::inputs::Inputs;
 use crate::output::series;
 use crate::output::summary::{Summary, Verdict, measure_lines};
+use crate::physics::bond::failure::CauseCounts;
 use crate::run::RunSettings;
+use crate::stages::bonds::largest_strain;
 use crate::state::State;
 
 /// Residual over the largest bond force that is worth a word.
@@ -140,7 +143,7 @@ impl AtRest<'_> {
         settings: &RunSettings<'_>,
         found: EquilibriumSummary,
         (wall_s, processor_s): (f64, Option<f64>),
-        notes: Vec<String>,
+        (notes, inputs): (Vec<String>, Inputs),
     ) -> Summary {
         let state = self.state;
         let fragments = state.clusters.as_ref().map(|clusters| {
@@ -152,6 +155,8 @@ impl AtRest<'_> {
             scene: self.scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
             ended_by: "equilibrium".to_owned(),
+            problem: None,
+            inputs,
             simulated_s: state.time_s,
             wall_s,
             processor_s,
@@ -160,6 +165,9 @@ impl AtRest<'_> {
             particles: state.particles.len(),
             bonds: state.bonds.len(),
             broken_bonds: 0,
+            largest_bond_strain: largest_strain(&state.bonds, &state.particles.poses),
+            largest_overlap: 0.0,
+            broken_by_cause: CauseCounts::default(),
             fragments,
             population: None,
             sleep: None,
