@@ -26,6 +26,7 @@ mod stress;
 mod sweep;
 mod threads;
 mod unstable;
+mod verdict;
 
 use std::collections::BTreeMap;
 use std::fs;
