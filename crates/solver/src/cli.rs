@@ -356,9 +356,11 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     let force_step = arguments.scene.force_step;
     let prepared = plan(&scene, bodies, threads, force_step)?;
     if !arguments.quiet {
-        for note in &prepared.notes {
+        let notes = prepared.notes.iter().map(|note| ("note", note));
+        let warnings = prepared.warnings.iter().map(|warning| ("warning", warning));
+        for (kind, text) in notes.chain(warnings) {
             // Nobody to read it is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "note: {note}");
+            let _ = writeln!(std::io::stderr(), "{kind}: {text}");
         }
     }
     let folder = folder

@@ -55,6 +55,7 @@ pub struct Gauge {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measured {
     /// Its name in the scene.
+    #[serde(skip_serializing)]
     pub name: String,
     /// In `unit`.
     pub value: f64,

@@ -58,6 +58,8 @@ pub struct Plan {
     pub test: Option<Setup>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
+    /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
@@ -104,7 +106,7 @@ pub fn plan(
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     refuse_valueless(scene, &sets, &state)?;
-    notes.extend(doubts(scene, &state));
+    let warnings = doubts(scene, &state);
     state.ledger = Ledger::opened(&state);
     let step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
@@ -131,6 +133,7 @@ pub fn plan(
         stages,
         test,
         notes,
+        warnings,
     })
 }
 

@@ -25,7 +25,7 @@ use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree
 use crate::output::frames::FrameOrder;
 use crate::output::plots::write_plots;
 use crate::output::series;
-use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary};
+use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
@@ -137,6 +137,7 @@ pub fn run(
         step: choice,
         stages,
         notes,
+        warnings,
         ..
     } = plan;
     place_watches(&gauges, &mut state);
@@ -341,7 +342,7 @@ pub fn run(
         .as_ref()
         .map(|clusters| fragments_of(clusters, &state.particles, &state.clumps, None));
     let of_state = state.clusters.as_ref().zip(fragments.as_ref());
-    let summary = Summary {
+    let mut summary = Summary {
         scene: scene.source.clone(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
         ended_by: ended_by.to_owned(),
@@ -387,6 +388,7 @@ pub fn run(
             .map(|s| s.stage.name().to_owned())
             .collect(),
         notes,
+        verdict: Verdict::default(),
         results: settings
             .folder
             .map(|folder| folder.path().display().to_string()),
@@ -394,6 +396,7 @@ pub fn run(
         test,
         equilibrium: None,
     };
+    summary.judge(warnings);
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);

@@ -55,6 +55,7 @@ pub fn run(
         mut state,
         bodies,
         notes,
+        warnings,
         ..
     } = plan;
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
@@ -83,7 +84,8 @@ pub fn run(
         balance: &balance,
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
-    let summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    summary.judge(warnings);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;
     }

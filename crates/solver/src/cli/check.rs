@@ -54,6 +54,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "foreseen_limit_s": plan.step.foreseen_s,
                 "impact_speed_m_s": plan.step.impact_speed_m_s,
                 "notes": plan.notes,
+                "warnings": plan.warnings,
                 "limit_undamped_s": plan.step.limit.undamped_step_s,
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
                 "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
@@ -166,6 +167,9 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     }
     for note in &plan.notes {
         line("note", note.clone());
+    }
+    for warning in &plan.warnings {
+        line("warning", warning.clone());
     }
     line("memory", format!("about {}", size_text(bytes)));
     line(

@@ -27,6 +27,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "equilibrium": outlook,
                 "memory_bytes": bytes,
                 "notes": plan.notes,
+                "warnings": plan.warnings,
             });
             serde_json::to_writer_pretty(&mut *out, &value)?;
             return writeln!(out);
@@ -59,6 +60,9 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
         line("does not use", UNUSED)?;
         for note in &plan.notes {
             line("note", note)?;
+        }
+        for warning in &plan.warnings {
+            line("warning", warning)?;
         }
         line("memory", &format!("about {}", size_text(bytes)))
     })

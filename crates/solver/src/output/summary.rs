@@ -3,7 +3,7 @@
 use std::fmt;
 
 use dem_io::units::significant;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::fragments::FragmentSummary;
 use crate::check::ledger::{Balance, over};
@@ -74,14 +74,18 @@ pub struct Summary {
     pub angular_momentum_error: f64,
     /// The ledger at the end.
     pub ledger: Balance,
-    /// What was measured.
+    /// What was measured; by name in JSON.
+    #[serde(serialize_with = "by_name")]
     pub measures: Vec<Measured>,
-    /// Share of each stage in the time of a step.
+    /// Share of each stage in the time of a step; by name in JSON.
+    #[serde(serialize_with = "pairs_by_name")]
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub left_out: Vec<String>,
     /// What is odd about the scene but harmless.
     pub notes: Vec<String>,
+    /// Whether the result can be trusted.
+    pub verdict: Verdict,
     /// Folder of the results.
     pub results: Option<String>,
     /// The change of the time step, where it went on from a checkpoint with another one.
@@ -93,6 +97,15 @@ pub struct Summary {
     /// How the equilibrium was found, where the run went to it at once.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equilibrium: Option<EquilibriumSummary>,
+}
+
+/// Whether the result of a run can be trusted.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Verdict {
+    /// Nothing speaks against it.
+    pub sound: bool,
+    /// What speaks against it, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Which bodies came, went, and became others.
@@ -187,8 +200,18 @@ impl PopulationSummary {
 }
 
 impl Summary {
-    /// What speaks against trusting the result. Empty: nothing.
-    pub fn doubts(&self) -> Vec<String> {
+    /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks of.
+    pub(crate) fn judge(&mut self, warnings: Vec<String>) {
+        let mut warnings = warnings;
+        warnings.extend(self.doubts());
+        self.verdict = Verdict {
+            sound: warnings.is_empty(),
+            warnings,
+        };
+    }
+
+    /// What of the summary speaks against trusting the result.
+    fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
@@ -209,7 +232,8 @@ impl Summary {
             doubts.push("no clump was ever replaced: no trigger of [replacement] fired".to_owned());
         }
         doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
-        for measure in self.measures.iter().filter(|m| !m.is_good()) {
+        let off = |m: &&Measured| m.missing.is_none() && !m.is_good();
+        for measure in self.measures.iter().filter(off) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));
@@ -225,14 +249,14 @@ impl Summary {
         for note in &self.notes {
             writeln!(f, "note         {note}")?;
         }
-        let doubts = self.doubts();
-        let verdict = if doubts.is_empty() {
-            match self.notes.len() {
-                0 => "sound: nothing to mind".to_owned(),
-                _ => "sound, but mind what is noted".to_owned(),
-            }
-        } else {
-            doubts.join("; ")
+        for warning in &self.verdict.warnings {
+            writeln!(f, "warning      {warning}")?;
+        }
+        let verdict = match (self.verdict.warnings.len(), self.notes.len()) {
+            (0, 0) => "sound: no warnings".to_owned(),
+            (0, _) => "sound: no warnings, but see the notes".to_owned(),
+            (1, _) => "doubtful: 1 warning".to_owned(),
+            (many, _) => format!("doubtful: {many} warnings"),
         };
         writeln!(f, "verdict      {verdict}")
     }
@@ -356,6 +380,14 @@ impl fmt::Display for Summary {
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
         self.write_verdict(f)
     }
+}
+
+fn by_name<S: Serializer>(measures: &[Measured], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(measures.iter().map(|measure| (&measure.name, measure)))
+}
+
+fn pairs_by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
 }
 
 /// A line for each measure.

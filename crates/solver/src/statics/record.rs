@@ -16,7 +16,7 @@ use crate::measure::Gauge;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
-use crate::output::summary::{Summary, measure_lines};
+use crate::output::summary::{Summary, Verdict, measure_lines};
 use crate::run::RunSettings;
 use crate::state::State;
 
@@ -178,6 +178,7 @@ impl AtRest<'_> {
             time_by_stage: Vec::new(),
             left_out: Vec::new(),
             notes,
+            verdict: Verdict::default(),
             results: settings
                 .folder
                 .map(|folder| folder.path().display().to_string()),

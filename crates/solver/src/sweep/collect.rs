@@ -111,7 +111,7 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         masses_kg: Vec::new(),
         curve: Vec::new(),
     };
-    let (list, name, reference) = match of {
+    let (entry, name, reference) = match of {
         MeasureOf::Ledger(key) => {
             let value = summary[*key].as_f64().unwrap_or(f64::NAN);
             return Ok(plain(value));
@@ -133,14 +133,15 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
                 ..plain(largest_n)
             });
         }
-        MeasureOf::Measure(name) => (&summary["measures"], name, "reference"),
-        MeasureOf::Figure(name) => (&summary["test"]["figures"], name, "theory"),
+        MeasureOf::Measure(name) => (summary["measures"].get(name), name, "reference"),
+        MeasureOf::Figure(name) => {
+            let figures = summary["test"]["figures"].as_array();
+            let mut figures = figures.into_iter().flatten();
+            let found = figures.find(|entry| entry["name"].as_str() == Some(name));
+            (found, name, "theory")
+        }
     };
-    let found = list.as_array().into_iter().flatten();
-    let mut found = found.filter(|entry| entry["name"].as_str() == Some(name));
-    let entry = found
-        .next()
-        .ok_or_else(|| format!("nothing in its summary is called '{name}'"))?;
+    let entry = entry.ok_or_else(|| format!("nothing in its summary is called '{name}'"))?;
     Ok(Reading {
         unit: entry["unit"].as_str().unwrap_or_default().to_owned(),
         closed_form: entry[reference].as_f64(),
