@@ -41,7 +41,7 @@ pub struct Gauge {
     with: Option<Members>,
     /// The walls that it is of and that it is with, by number.
     walls: [Option<usize>; 2],
-    /// Where the bodies of the scene stood at the start.
+    /// Where the bodies of the scene stood at the start. Empty where nobody asks.
     starts: Arc<Starts>,
     /// Centre of mass of its particles at the start, m. No numbers where nobody asks.
     start: Vector3<f64>,
@@ -87,7 +87,18 @@ impl Measured {
 
 /// The gauges of a plan that has not been stepped.
 pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
-    let starts = Arc::new(starts(&plan.bodies, &plan.state));
+    let counts_from_start = |measure: &Measure| {
+        matches!(
+            measure.quantity,
+            Quantity::Displacement(_) | Quantity::DisplacementMagnitude | Quantity::Rotation(_)
+        )
+    };
+    let starts = if scene.measures.values().any(counts_from_start) {
+        starts(&plan.bodies, &plan.state)
+    } else {
+        Starts::new()
+    };
+    let starts = Arc::new(starts);
     let members = |name: &str| {
         let particles = plan.sets.get(name).cloned().unwrap_or_default();
         let mut members = Members::new(name, particles);

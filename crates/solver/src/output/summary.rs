@@ -289,7 +289,8 @@ impl Summary {
             ));
         }
         doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
-        for measure in self.measures.iter().filter(|m| !m.is_good()) {
+        let off = |m: &&Measured| m.missing.is_none() && !m.is_good();
+        for measure in self.measures.iter().filter(off) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));

@@ -78,8 +78,13 @@ const FACES: Lattice = Lattice {
     ..HEXAGONAL
 };
 
-/// A lattice that stands somehow in the cone. None: not six layers of 200 spheres.
-fn regular(lattice: &Lattice, cone: &Cone, random: &mut Random) -> Option<Vec<Sphere>> {
+/// A lattice that stands somehow in the cone. None: it has fewer layers or fewer than 200 spheres.
+fn regular(
+    lattice: &Lattice,
+    cone: &Cone,
+    fewest: usize,
+    random: &mut Random,
+) -> Option<Vec<Sphere>> {
     let shift = Vector3::new(random.within(0.0, 2.0), random.within(0.0, 2.0), 1.0);
     let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * random.within(0.0, 1.0));
     let reach = cone.radius() as i32 + 4;
@@ -104,10 +109,10 @@ fn regular(lattice: &Lattice, cone: &Cone, random: &mut Random) -> Option<Vec<Sp
         }
         layers += usize::from(spheres.len() > before);
     }
-    (layers >= 6 && spheres.len() >= 200).then_some(spheres)
+    (layers >= fewest && spheres.len() >= 200).then_some(spheres)
 }
 
-/// Spheres dropped one by one until 60 in succession find no place in the cone. Radii are `1 -
+/// Spheres dropped one by one until 600 in succession find no place in the cone. Radii are `1 -
 /// spread` to `1 + spread`.
 fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
     let cell = 2.0 * (1.0 + spread);
@@ -115,7 +120,7 @@ fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
     let mut cells: BTreeMap<(i32, i32), Vec<Sphere>> = BTreeMap::new();
     let mut all = Vec::new();
     let mut failed = 0;
-    while failed < 60 {
+    while failed < 600 {
         let radius = random.within(1.0 - spread, 1.0 + spread);
         let mut lowest: Option<Sphere> = None;
         for _ in 0..8 {
@@ -184,13 +189,15 @@ fn lattices_cut_to_a_cone_have_its_slope() {
     let mut layers = [CUBIC, CENTRED, HEXAGONAL, FACES].into_iter().cycle();
     for degrees in [10.0, 16.0, 22.0, 28.0, 34.0, 40.0] {
         for lattice in layers.by_ref().take(4) {
+            // A steep cone of six layers is of 200 spheres, few enough to depend on where each is.
+            let fewest = if degrees > 25.0 { 8 } else { 6 };
             let spheres = loop {
-                let top = lattice.layer * random.within(5.2, 9.0);
+                let top = lattice.layer * (fewest as f64 + random.within(-0.8, 3.0));
                 let cone = Cone::of(
                     top + 1.0 + 1.0 / f64::cos(f64::to_radians(degrees)),
                     degrees,
                 );
-                if let Some(spheres) = regular(&lattice, &cone, &mut random) {
+                if let Some(spheres) = regular(&lattice, &cone, fewest, &mut random) {
                     break spheres;
                 }
             };

@@ -95,13 +95,14 @@ fn a_clump_that_is_replaced_in_flight_shows_the_same_before_and_after() {
     let (velocity, gravity) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.0, 1.0, -9.81));
     let moved = velocity * time_s + gravity * (0.5 * time_s * time_s);
     for values in [&before, &after] {
-        assert_near((vector(values, "displacement") - moved).norm(), 0.0, 1e-15);
+        // Each of the steps rounds a place of 0.3 m.
+        assert_near((vector(values, "displacement") - moved).norm(), 0.0, 2e-14);
         let place = vector(&start, "position") + moved;
-        assert_near((vector(values, "position") - place).norm(), 0.0, 1e-15);
+        assert_near((vector(values, "position") - place).norm(), 0.0, 2e-14);
         let now = velocity + gravity * time_s;
         assert_near((vector(values, "velocity") - now).norm(), 0.0, 1e-12);
         assert_near(values["velocity"], now.norm(), 1e-12);
-        assert_near(values["displacement"], moved.norm(), 1e-15);
+        assert_near(values["displacement"], moved.norm(), 2e-14);
         // The rotation since the start is that of the spin, which hardly changes meanwhile.
         let turned = Vector3::new(40.0, -50.0, 60.0) * time_s;
         assert_near(
