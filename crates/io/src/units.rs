@@ -276,7 +276,7 @@ pub const NUMBER: Dimension = Dimension {
 };
 
 /// All dimensions.
-pub const DIMENSIONS: [Dimension; 20] = [
+pub const DIMENSIONS: [Dimension; 19] = [
     NUMBER,
     LENGTH,
     AREA,
@@ -296,7 +296,6 @@ pub const DIMENSIONS: [Dimension; 20] = [
     MASS_RATE,
     RATE,
     VISCOUS_DAMPING,
-    ANGLE_DEG,
 ];
 
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.

@@ -104,7 +104,7 @@ fn bodies_are_told_apart_by_their_hashes() {
     bench.write("longer.vtp", super::vtp_bytes(&super::row(6)));
     let scene = bench.write(
         "scene.toml",
-        "version = 1\nrun.end_time = \"1 us\"\nmaterials.m.density = 1000\nbonds.b.young_modulus = \"1 MPa\"\nbodies.row = { file = \"row.vtp\", material = \"m\", bonds = \"b\" }\n",
+        "version = 1\nrun.end_time = \"1 us\"\nmaterials.m.density = 1000\nbonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3 }\nbodies.row = { file = \"row.vtp\", material = \"m\", bonds = \"b\" }\n",
     );
     let hash = |options: &[&str]| {
         let all = [&["--json", "--quiet"], options].concat();
@@ -123,7 +123,7 @@ fn the_end_of_a_run_looks_for_pieces() {
     let bench = Bench::new();
     let scene = bench.write(
         "burst.toml",
-        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", failure = { tension = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
+        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tension = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
     );
     let summary = json(&bench, &scene, &["--json", "--quiet", "--out", "out"]);
     assert_eq!(summary["broken_bonds"], 1);
@@ -166,6 +166,7 @@ stone-stone = { restitution = 0.5 }
 steel-stone = { restitution = 0.5 }
 [bonds.glue]
 young_modulus = "50 MPa"
+poisson_ratio = 0.3
 [bodies.pair]
 particles = [[0, 0, 0, 0.01], [0.02, 0, 0, 0.01]]
 bond_list = [[0, 1]]
@@ -177,12 +178,12 @@ material = "stone"
 [regions.gate]
 box = { min = [-0.2, -0.2, 0.1], max = [0.2, 0.2, 0.2] }
 [inlets.pairs]
-body = "pair"
+bodies = ["pair"]
 region = "gate"
 rate = "40 /s"
 velocity = [0, 0, -2]
 [inlets.pebbles]
-body = "pebble"
+bodies = ["pebble"]
 region = "gate"
 rate = "40 /s"
 velocity = [0, 0, -2]

@@ -62,8 +62,9 @@ pub fn can_meet(state: &State, scene: &Scene) -> bool {
     state.contacts.is_some() && (!state.walls.is_empty() || others)
 }
 
-/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep.
-pub fn flyers(state: &State, bodies: &[PlacedBody]) -> Vec<Flyer> {
+/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their velocities
+/// stand `ahead_s` after their places.
+pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> {
     let held = state.supports.iter().flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
     let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
@@ -77,7 +78,11 @@ pub fn flyers(state: &State, bodies: &[PlacedBody]) -> Vec<Flyer> {
     });
     let awake = state.clumps.all.iter().filter(|clump| !clump.asleep);
     let of_clumps = awake.map(|clump| Flyer::of_clump(state, clump));
-    of_bodies.chain(of_clumps).collect()
+    let mut flyers: Vec<Flyer> = of_bodies.chain(of_clumps).collect();
+    for flyer in &mut flyers {
+        flyer.velocity_m_s -= ahead_s * flyer.gravity_m_s2;
+    }
+    flyers
 }
 
 impl Flyer {

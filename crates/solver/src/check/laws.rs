@@ -35,14 +35,17 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each.
-pub fn foreseen(state: &State, impact_speed_m_s: f64) -> Vec<String> {
+/// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each. None:
+/// nothing can meet anything.
+pub fn foreseen(state: &State, impact_speed_m_s: Option<f64>) -> Vec<String> {
     let mut warnings = Vec::new();
     let softest = softest_bond(state);
     if let Some((modulus_pa, density_kg_m3)) = softest {
         let modulus = format!("a Young's modulus of {} Pa", significant(modulus_pa, 3));
         let wave_m_s = (modulus_pa / density_kg_m3).sqrt();
-        if impact_speed_m_s > LARGEST_STRAIN * wave_m_s && state.contacts.is_some() {
+        if let Some(impact_speed_m_s) = impact_speed_m_s
+            && impact_speed_m_s > LARGEST_STRAIN * wave_m_s
+        {
             warnings.push(format!(
                 "an impact at {} m/s strains bonds of {modulus} by about {} %: bonds are linear elastic, which holds up to about {} %; check the modulus and its unit",
                 significant(impact_speed_m_s, 3),
@@ -63,8 +66,10 @@ pub fn foreseen(state: &State, impact_speed_m_s: f64) -> Vec<String> {
         }
     }
     warnings.extend(by_loads(state));
-    let overlap = overlap_at_impact(state, impact_speed_m_s);
-    if overlap > LARGEST_OVERLAP {
+    if let Some(impact_speed_m_s) = impact_speed_m_s
+        && let overlap = overlap_at_impact(state, impact_speed_m_s)
+        && overlap > LARGEST_OVERLAP
+    {
         warnings.push(format!(
             "an impact at {} m/s presses a single particle in by about {} of its radius: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials and their units",
             significant(impact_speed_m_s, 3),

@@ -52,19 +52,20 @@ pub(super) fn forecast(
     impact_speed_m_s: f64,
     arriving: Option<&State>,
 ) -> Forecast {
+    let meets = can_meet(state, scene);
     let mut forecast = Forecast {
-        warnings: foreseen(state, impact_speed_m_s),
+        warnings: foreseen(state, meets.then_some(impact_speed_m_s)),
         to_come: to_come(scene, state, arriving),
         ..Forecast::default()
     };
-    if scene.test.is_none() && can_meet(state, scene) {
+    if scene.test.is_none() && meets {
         meetings(scene, state, bodies, &mut forecast);
     }
     forecast
 }
 
 fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut Forecast) {
-    let flying = flyers(state, bodies);
+    let flying = flyers(state, bodies, 0.0);
     let end_s = scene.run.end_time_s;
     let end = significant(end_s, 4);
     let mut seen: Vec<&str> = Vec::new();
@@ -77,11 +78,10 @@ fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut 
         let meets_after_s = match flyer.first_meeting(&state.walls, &flying) {
             Meeting::Unknown => continue,
             Meeting::Never => {
-                let fed = !scene.inlets.is_empty();
-                let line = format!("'{name}' never meets a wall in free flight");
-                if !fed {
+                let line = format!("'{name}' never meets anything in free flight");
+                if scene.inlets.is_empty() {
                     forecast.warnings.push(format!(
-                        "{line}, nor another body: check its position and velocity, gravity and the walls"
+                        "{line}: check its position and velocity, gravity and the walls"
                     ));
                 }
                 forecast.first_contacts.push(line);

@@ -255,7 +255,8 @@ impl Seen {
         if !can_meet(state, scene) {
             return Vec::new();
         }
-        let flying = flyers(state, bodies);
+        // Between a kick and the drift after it.
+        let flying = flyers(state, bodies, 0.5 * state.time_step_s);
         let mut warnings = Vec::new();
         let mut unnamed = 0;
         for name in scene
