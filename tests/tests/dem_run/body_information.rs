@@ -13,7 +13,7 @@ bonds      8, 0.8 per particle
 pieces     2, the largest of 5 particles; 0 particles without a bond
 box        from -1 mm, -1 mm, -1 mm to 19 mm, 1 mm, 1 mm
 mass       8.587e-5 kg, particles of 2050 kg/m3
-centre     9 mm, 0 mm, 0 mm; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2
+centre     9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2
 made       seed 7
 ";
 

@@ -45,8 +45,8 @@ fn json(bench: &Bench, arguments: &[&str]) -> Value {
 #[test]
 fn mass_of_spheres_and_of_the_shape() {
     let bench = bench(&[], Some(SHAPE_M3));
-    let mass = "row 8.587e-5 kg; its shape filled with 2050 kg/m3 would weigh 1.025e-4 kg (-16 %)";
-    let centre = "  centre 9 mm, 0 mm, 0 mm; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2";
+    let mass = "row 8.587e-5 kg; its shape filled with 2050 kg/m3 would weigh 0.0001025 kg (-16 %)";
+    let centre = "  centre 9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2";
     let [text, _] = said(&bench, &["check", "scene.toml"]);
     let lines = format!("mass           {mass}\n               {centre}\n");
     assert!(text.contains(&lines), "{text}");
@@ -58,9 +58,9 @@ fn mass_of_spheres_and_of_the_shape() {
     let [info, _] = said(&bench, &["row.vtp"]);
     assert!(
         info.contains(
-            "\n           its shape filled with 2050 kg/m3 would weigh 1.025e-4 kg (-16 %)\n"
+            "\n           its shape filled with 2050 kg/m3 would weigh 0.0001025 kg (-16 %)\n"
         ) && info.contains(
-            "\ncentre     9 mm, 0 mm, 0 mm; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2\n"
+            "\ncentre     9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2\n"
         ),
         "{info}"
     );
