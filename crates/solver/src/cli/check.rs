@@ -102,7 +102,10 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     for (name, bonds) in &plan.unused_bonds {
         line(
             "",
-            format!("'{name}' as a rigid clump; its {bonds} bonds are not used"),
+            format!(
+                "'{name}' as a rigid clump; its {} not used",
+                bonds_are(*bonds)
+            ),
         );
     }
     for fed in &plan.forecast.to_come {
@@ -251,6 +254,13 @@ fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> Str
         text += &format!(" ({what}{})", costs.join(", "));
     }
     text
+}
+
+fn bonds_are(count: usize) -> String {
+    match count {
+        1 => "bond is".to_owned(),
+        _ => format!("{count} bonds are"),
+    }
 }
 
 fn time_text(ns: f64) -> String {
