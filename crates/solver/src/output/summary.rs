@@ -283,9 +283,12 @@ impl Summary {
             doubts.push("the step is above the largest stable one".to_owned());
         }
         if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
+            let waiting = match population.waiting {
+                1 => "1 body still waits".to_owned(),
+                many => format!("{many} bodies still wait"),
+            };
             doubts.push(format!(
-                "{} bodies still wait for a place at their inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller",
-                population.waiting
+                "{waiting} for a place at an inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller"
             ));
         }
         doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));

@@ -15,6 +15,7 @@ use crate::stages::bonds::most_strained;
 use crate::stages::population::GONE;
 use crate::stages::replacement::{Happened, STARTS_BONDED};
 use crate::state::State;
+use crate::state::rules::Inlet;
 
 /// Share of the run at its end in which a breaking bond says that breakage is not over.
 const LATE: f64 = 0.05;
@@ -266,8 +267,9 @@ impl Seen {
         {
             let own = flying.iter().find(|flyer| flyer.name == *name);
             let is_there = own.is_some() || !is_present(state, bodies, name);
-            // One that is held or loaded is not there to touch anything.
-            if !is_there {
+            // One that is held or loaded is not there to touch anything; one that no inlet has fed
+            // was not there at all.
+            if !is_there || never_came(state, name) {
                 continue;
             }
             if warnings.len() == NAMED {
@@ -326,6 +328,16 @@ fn is_present(state: &State, bodies: &[PlacedBody], name: &str) -> bool {
     let mut clumps = state.clumps.all.iter();
     bodies.iter().any(|body| body.name == name)
         || clumps.any(|clump| state.clumps.template(clump).body == name)
+}
+
+/// Whether inlets could have fed a body and did not.
+fn never_came(state: &State, name: &str) -> bool {
+    let feeds = |inlet: &&Inlet| {
+        let mut own = inlet.templates.iter();
+        own.any(|(t, _)| state.clumps.templates[*t as usize].body == name)
+    };
+    let mut feeding = state.rules.inlets.iter().filter(feeds).peekable();
+    feeding.peek().is_some() && feeding.all(|inlet| inlet.come.bodies == 0)
 }
 
 /// What will become of a body in flight, in words.
