@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
+use dem_io::diagnostic::Kind;
 use dem_io::program::{Shell, print_completions, print_man_page};
 use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder, write_json};
@@ -430,10 +431,12 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     bar.finish_and_clear();
     let outcome = outcome.map_err(|problem| {
         let unfinished = Unfinished::new(&scene.source, inputs, &problem);
-        // The problem itself is what the user has to hear of.
-        let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
-        if arguments.scene.json {
-            let _ = write_standard_json(&unfinished);
+        // The problem itself is what the user has to hear of. Bad input has run nothing.
+        if problem.kind != Kind::Input {
+            let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
+            if arguments.scene.json {
+                let _ = write_standard_json(&unfinished);
+            }
         }
         problem
     })?;

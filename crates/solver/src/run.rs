@@ -490,7 +490,7 @@ pub fn run_as_far_as_it_goes(
         move_on(&mut state);
         write_sleep(&state, files)?;
         let end = End::of(&summary)?;
-        progress.end = Some(end.clone());
+        write_json(&files.folder.ended(), &end)?;
         save(
             &state,
             &bodies,

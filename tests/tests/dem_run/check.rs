@@ -28,7 +28,8 @@ fn says_the_step_and_why_stages_memory_and_time() {
         "leaves out     gravity: no gravity",
         "memory         about ",
         "run time       about ",
-        "loads.tip.force                          [0, -100000, 0] N",
+        "\nloads.tip.force ",
+        "[0, -100000, 0] N\n",
     ] {
         assert!(said.contains(part), "'{part}' is not in\n{said}");
     }

@@ -69,6 +69,7 @@ fn every_doubtful_scene_is_called_so() {
 #[test]
 fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
     let bench = Bench::new();
+    let scene = bench.write("scene.toml", super::unstable::uneven());
     let options = [
         "--set",
         "run.time_step=20 us",
@@ -77,7 +78,7 @@ fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
         "--out",
         "out",
     ];
-    let output = bench.run(&super::good("bodies.toml"), &options);
+    let output = bench.run(&scene, &options);
     assert_eq!(output.status.code(), Some(3));
     let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
     let written = std::fs::read(bench.path("out/summary.json")).unwrap();
@@ -93,7 +94,7 @@ fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
     assert_eq!(inputs["scene"]["run.time_step"], "2e-5 s");
     assert_eq!(inputs["seed"], 0);
     // It is no result of a run that came to its end.
-    let said = bench.bad(&super::good("bodies.toml"), &["--out", "out"], 2);
+    let said = bench.bad(&scene, &["--out", "out"], 2);
     assert!(said.contains("--force"), "{said}");
 }
 
@@ -142,15 +143,12 @@ fn the_end_of_a_run_looks_for_pieces() {
 #[test]
 fn without_a_folder_the_last_line_says_so() {
     let bench = Bench::new();
-    let scene = super::good("alone.toml");
-    let said = bench.good(&scene, &[]);
+    let scene = super::scene_of_data("cantilever.toml");
+    let said = bench.good(&scene, &["--set", "run.end_time=1 ms"]);
     let last = "no files written: add --out FOLDER to keep the results";
     assert_eq!(said.lines().last(), Some(last));
-    assert!(
-        !bench
-            .good(&scene, &["--out", "out"])
-            .contains("no files written")
-    );
+    let short = ["--set", "run.end_time=1 ms", "--out", "out"];
+    assert!(!bench.good(&scene, &short).contains("no files written"));
 }
 
 /// Pebbles and bonded pairs, fed into a box.

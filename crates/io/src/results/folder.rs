@@ -25,9 +25,10 @@ const SUMMARY: &str = "summary.json";
 const TEST_PAGE: &str = "test.html";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
+const ENDED: &str = ".ended.json";
 const LOCK: &str = ".lock";
 /// Files of which a run writes one each.
-const SINGLE_FILES: [&str; 11] = [
+const SINGLE_FILES: [&str; 12] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -39,6 +40,7 @@ const SINGLE_FILES: [&str; 11] = [
     FILM_STRIP,
     FILM,
     CHECKPOINT,
+    ENDED,
 ];
 
 /// What to do with a folder that holds something already.
@@ -153,6 +155,11 @@ impl ResultsFolder {
     /// Summary: `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
+    }
+
+    /// What is written at the end of a run, kept until it all is: `.ended.json`.
+    pub fn ended(&self) -> PathBuf {
+        self.path.join(ENDED)
     }
 
     /// The latest state of the run: `checkpoint.dem`.

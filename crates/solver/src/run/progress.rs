@@ -4,7 +4,6 @@ use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use super::finish::End;
 use super::pictures::Taken;
 use super::seen::Seen;
 use crate::check::ledger::{Balance, over};
@@ -69,8 +68,6 @@ pub struct Progress {
     pub(super) broke: bool,
     /// What has been seen beside the measures.
     pub(super) seen: Seen,
-    /// What is written at the end, once it has come.
-    pub(super) end: Option<End>,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -229,7 +226,6 @@ impl Progress {
         if rhythm.rest != self.rhythm.rest {
             self.calm_since_s = None;
         }
-        self.end = None;
         self.rested = false;
         if rhythm != self.rhythm {
             self.next_row = first_after(before_s, rhythm.row_s);
