@@ -636,7 +636,7 @@ fn values_in_words() {
         "measures.bending.reference 0.0015 m",
         "measures.bending.tolerance_absolute none",
         "measures.hit.with punch",
-        "measures.hit.tolerance_absolute 0.00001 m",
+        "measures.hit.tolerance_absolute 1e-5 m",
         "output.frames 0.005 s",
         "output.pictures 0.01 s",
         "output.view.from [0.6, -0.8, 0]",
