@@ -132,7 +132,7 @@ fn the_end_of_a_run_looks_for_pieces() {
     let events = std::fs::read_to_string(bench.path("out/events.csv")).unwrap();
     assert_eq!(
         events.lines().filter(|line| line.contains("split")).count(),
-        2,
+        1,
         "{events}"
     );
     let (_, rows) = super::table(&bench.path("out/fragments.csv"));
