@@ -15,7 +15,7 @@ use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder};
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
 use dem_io::scene::{BodySource, Integrator, Scene};
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
@@ -429,7 +429,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
 /// Says what was missing of a run that had come to its end.
 fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
     if arguments.scene.json {
-        return write_standard_json(&finished.summary);
+        return write_standard_output(|out| write_visible_json(out, &finished.summary));
     }
     if arguments.quiet {
         return Ok(());
