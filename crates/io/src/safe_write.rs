@@ -192,8 +192,16 @@ pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
 /// Those of `out`; `value` cannot be put as JSON.
 pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     let json = serde_json::to_string_pretty(value)?;
-    out.write_all(visible_json(&json).as_bytes())?;
+    write_visible_json(out, &json)?;
     out.write_all(b"\n")
+}
+
+/// Writes a text that is JSON for a terminal, without what that would obey; it means the same.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
+    out.write_all(visible_json(json).as_bytes())
 }
 
 /// Writes to standard output what is no text, and is written as it is.

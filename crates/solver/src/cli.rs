@@ -17,7 +17,7 @@ use dem_io::diagnostic::Kind;
 use dem_io::program::{Shell, print_completions, print_man_page};
 use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder, write_json};
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
 use dem_io::scene::{BodySource, Integrator, Scene};
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
@@ -465,7 +465,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
 /// Says what was missing of a run that had come to its end.
 fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
     if arguments.scene.json {
-        return write_standard_json(&finished.summary);
+        return write_standard_output(|out| write_visible_json(out, &finished.summary));
     }
     if arguments.quiet {
         return Ok(());

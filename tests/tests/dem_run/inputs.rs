@@ -68,7 +68,10 @@ fn results_do_not_take_the_place_of_inputs() {
     fs::copy(&kept, bench.path("own.vtp")).unwrap();
     scene(&bench, "own.vtp", PLANE);
     let text = fs::read(bench.path("scene.toml")).unwrap();
-    bench.good(Path::new("scene.toml"), &["--out", ".", "--force"]);
+    bench.good(
+        Path::new("scene.toml"),
+        &["--out", ".", "--force", "--quiet"],
+    );
     assert_eq!(fs::read(bench.path("own.vtp")).unwrap(), body);
     assert_eq!(fs::read(bench.path("scene.toml")).unwrap(), text);
     assert_eq!(fs::read(&kept).unwrap(), body);
@@ -80,7 +83,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     bench.write("row.vtp", vtp_bytes(&row(5)));
     bench.write("other.vtp", vtp_bytes(&row(4)));
     scene(&bench, "row.vtp", PLANE);
-    bench.good(Path::new("scene.toml"), &["--out", "out"]);
+    bench.good(Path::new("scene.toml"), &["--out", "out", "--quiet"]);
     let frame = names_in(&bench.path("out/frames")).remove(0);
     let frame = format!("out/frames/{frame}");
     std::os::unix::fs::symlink(bench.path(&frame), bench.path("link.vtp")).unwrap();
@@ -117,7 +120,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     // The body that was named on the command line is known from the checkpoint.
     bench.good(
         Path::new("scene.toml"),
-        &["--out", "other", "--body", "other.vtp"],
+        &["--out", "other", "--body", "other.vtp", "--quiet"],
     );
     assert!(fragment("other", "other.vtp").contains("'other.vtp' is read here"));
     // Others may be written, and written again.

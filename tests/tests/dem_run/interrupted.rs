@@ -120,6 +120,10 @@ fn a_folder_is_written_to_by_one_run_at_a_time() {
         "run.end_time=1000 s",
         "--set",
         "output.series=1e-3 s",
+        "--set",
+        "output.frames=1 s",
+        "--set",
+        "output.checkpoint=1 s",
         "--out",
         "out",
     ];

@@ -321,9 +321,8 @@ fn what_is_missing_at_the_end_is_written() {
         assert_eq!(go(&["--resume", "--quiet"]), "");
         assert!(whole == bytes_of(&bench), "{name} as a whole");
         fs::remove_file(bench.path("out/summary.json")).unwrap();
-        let said: serde_json::Value = serde_json::from_str(&go(&["--resume", "--json"])).unwrap();
-        let summary: serde_json::Value = serde_json::from_slice(&whole["summary.json"]).unwrap();
-        assert_eq!(said, summary);
+        let said = go(&["--resume", "--json"]);
+        assert!(said.as_bytes() == whole["summary.json"], "{said}");
         // Nothing is missing now.
         let said = bench.bad(&scene, &["--out", "out", "--resume"], 2);
         assert!(said.contains("nothing is left to be done"), "{said}");

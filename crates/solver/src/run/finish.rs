@@ -68,8 +68,8 @@ impl End {
 pub struct Finished {
     /// The files that were missing, by their names in the folder of results.
     pub missing: Vec<String>,
-    /// The summary of the run.
-    pub summary: serde_json::Value,
+    /// The summary of the run, as JSON.
+    pub summary: String,
 }
 
 /// Writes the files that a run has not written that had come to its end when it was killed, or that have been removed since.
@@ -125,7 +125,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
     end.write(folder, &state, &gauges, pictures.as_ref())?;
-    let summary = serde_json::from_str(&end.summary).unwrap_or_default();
+    let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
 }
 

@@ -108,7 +108,7 @@ impl SweepFolder {
             }
             if is_plain_file(&path) {
                 fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
-            } else if path.is_dir() {
+            } else if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
                 ResultsFolder::create(&path, Existing::Replace)?.remove()?;
             }
         }
