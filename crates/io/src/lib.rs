@@ -7,7 +7,8 @@
 pub mod body;
 pub mod checkpoint;
 pub mod diagnostic;
-mod hash;
+pub mod hash;
+pub mod program;
 pub mod results;
 pub mod safe_write;
 pub mod scene;

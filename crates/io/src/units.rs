@@ -23,7 +23,7 @@ pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t
 pub struct Dimension {
     /// What a value of it is called.
     pub name: &'static str,
-    /// Its SI unit; empty for plain numbers.
+    /// The unit of its values, which is that of SI but for [`ANGLE_DEG`]; empty for plain numbers.
     pub si: &'static str,
     /// Units and their size in the SI unit.
     pub units: &'static [(&'static str, f64)],
@@ -89,6 +89,19 @@ pub const ANGLE: Dimension = Dimension {
         ("°", PI / 180.0),
     ],
     example: "45 deg",
+};
+
+/// An angle that is given and told in degrees.
+pub const ANGLE_DEG: Dimension = Dimension {
+    name: "angle",
+    si: "deg",
+    units: &[
+        ("deg", 1.0),
+        ("°", 1.0),
+        ("rad", 180.0 / PI),
+        ("mrad", 0.18 / PI),
+    ],
+    example: "30 deg",
 };
 
 /// Velocity, m/s.

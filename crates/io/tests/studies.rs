@@ -4,7 +4,9 @@
 
 use std::path::Path;
 
-use dem_io::study::{Combine, MeasureOf, Reference, Study, rewritten, scene_with, study_from_text};
+use dem_io::study::{
+    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with, study_from_text,
+};
 
 const HEAD: &str = "version = 1\nscene = \"bar.toml\"\n";
 const TIP: &str = "[measures.tip]\n";
@@ -372,4 +374,34 @@ fn a_scene_is_written_with_its_values() {
         text.contains("file = ") && !text.contains("bond_list"),
         "{text}"
     );
+}
+
+/// An angle of repose is in degrees, in a study too; contacts have references of their own kinds.
+#[test]
+fn references_are_in_the_unit_of_the_measure() {
+    let scene = format!(
+        "{SCENE}
+[measures.slope]
+quantity = \"angle_of_repose\"
+reference = \"0.5 rad\"
+
+[walls.floor]
+plane = {{ point = [0, 0, -1], normal = [0, 0, 1] }}
+material = \"steel\"
+
+[measures.hit]
+of = \"bar\"
+with = \"floor\"
+quantity = \"contact_duration\"
+"
+    );
+    let study = study(
+        "[vary]\n\"run.safety\" = [0.9]\n[measures.slope]\n[measures.hit]\nreference = { value = \"2 ms\" }\n[measures.turn]\nmeasure = \"slope\"\nreference = { value = \"30 deg\" }\n",
+    );
+    let scene = scene_with(&study, &scene, std::iter::empty()).unwrap();
+    let values = reference_values(&study, &scene).unwrap();
+    let wanted = [0.5_f64.to_degrees(), 2e-3, 30.0];
+    for (value, wanted) in values.into_iter().zip(wanted) {
+        assert!((value.unwrap() / wanted - 1.0).abs() < 1e-14);
+    }
 }

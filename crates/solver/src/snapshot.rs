@@ -10,12 +10,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::ledger::Ledger;
 use crate::measure;
+use crate::physics::bond::failure::CauseCounts;
 use crate::physics::bond::incremental::History;
 use crate::plan::bodies::PlacedBody;
 use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
+use crate::state::watches::Seen;
 
 mod meetings;
 mod population;
@@ -37,6 +39,7 @@ pub struct Snapshot {
     time_step_s: f64,
     previous_time_step_s: f64,
     broken_count: u64,
+    broken_by_cause: CauseCounts,
     particles: Vec<PlaceAndMotion>,
     broken: Vec<u32>,
     histories: Vec<[f64; 6]>,
@@ -44,6 +47,8 @@ pub struct Snapshot {
     meetings: Meetings,
     /// None: bodies neither come nor go, and what stands above is enough.
     population: Option<Population>,
+    /// What has been seen of forces and contacts in every step.
+    watches: Vec<Seen>,
     /// What the gauges have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
@@ -71,6 +76,7 @@ impl Snapshot {
             time_step_s: state.time_step_s,
             previous_time_step_s: state.previous_time_step_s,
             broken_count: state.broken_count,
+            broken_by_cause: state.broken_by_cause,
             particles: p
                 .poses
                 .iter()
@@ -104,6 +110,7 @@ impl Snapshot {
             ledger: state.ledger,
             meetings: Meetings::taken(state),
             population,
+            watches: state.watches.iter().map(|watch| watch.seen).collect(),
             measures,
             progress,
         }
@@ -213,11 +220,15 @@ impl Snapshot {
         }
         state.ledger = self.ledger;
         self.meetings.restore(state)?;
+        for (watch, seen) in state.watches.iter_mut().zip(&self.watches) {
+            watch.seen = *seen;
+        }
         state.steps = self.steps;
         state.time_s = self.time_s;
         state.time_step_s = self.time_step_s;
         state.previous_time_step_s = self.previous_time_step_s;
         state.broken_count = self.broken_count;
+        state.broken_by_cause = self.broken_by_cause;
         let there = (0..state.bonds.len()).filter(|&at| state.bonds.is_broken(at));
         state.broken_gone = self.broken_count.saturating_sub(there.count() as u64);
         Ok(())

@@ -11,10 +11,12 @@ pub mod rules;
 pub mod shares;
 pub mod sleep;
 pub mod walls;
+pub mod watches;
 
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
 use crate::clusters::{Clusters, Split, Triggers};
+use crate::physics::bond::failure::CauseCounts;
 use crate::stages::breakage::Break;
 use crate::stages::loads::SetLoad;
 use crate::stages::supports::SetSupport;
@@ -27,6 +29,7 @@ use self::rules::Rules;
 use self::shares::{Share, divide};
 use self::sleep::Sleep;
 use self::walls::Wall;
+use self::watches::Watch;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
 #[derive(Debug, Clone)]
@@ -57,6 +60,8 @@ pub struct State {
     pub sleep: Option<Sleep>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
+    /// Forces and contacts that measures follow in every step. Empty: none.
+    pub watches: Vec<Watch>,
     /// Loads.
     pub loads: Vec<SetLoad>,
     /// Supports.
@@ -83,6 +88,8 @@ pub struct State {
     pub broken: Vec<Break>,
     /// Bonds broken so far.
     pub broken_count: u64,
+    /// The same by what they failed by.
+    pub broken_by_cause: CauseCounts,
     /// Those of them that have gone with their bodies.
     pub broken_gone: u64,
     /// Energy and momentum that went in and out.
@@ -116,6 +123,7 @@ impl State {
             contacts: None,
             sleep: None,
             walls: Vec::new(),
+            watches: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
             gravity_m_s2: [0.0; 3],
@@ -128,6 +136,7 @@ impl State {
             fastest_m_s: 0.0,
             broken: Vec::new(),
             broken_count: 0,
+            broken_by_cause: CauseCounts::default(),
             broken_gone: 0,
             clock: StageClock::default(),
         };
@@ -174,5 +183,10 @@ impl State {
     /// Length of the kick of this step: half of the step before and half of the step to come, s.
     pub fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
+    }
+
+    /// The step before and the one to come, s.
+    pub fn steps_s(&self) -> [f64; 2] {
+        [self.previous_time_step_s, self.time_step_s]
     }
 }

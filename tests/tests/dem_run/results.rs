@@ -68,6 +68,10 @@ fn events_tell_every_bond_that_broke() {
         .collect();
     assert!(rows.len() >= 4);
     assert_eq!(summary["broken_bonds"], rows.len());
+    for cause in ["tension", "compression", "shear", "von_mises"] {
+        let counted = rows.iter().filter(|row| row[9] == cause).count();
+        assert_eq!(summary["broken_by_cause"][cause], counted, "{cause}");
+    }
     let bonds = [
         [0, 1],
         [1, 2],
@@ -165,7 +169,7 @@ fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     ] {
         assert!(plots.contains(&name.to_owned()), "{name} in {plots:?}");
     }
-    assert_eq!(plots.len(), 3 + 31 + 2);
+    assert_eq!(plots.len(), 3 + 33 + 2);
     for name in plots {
         let text = fs::read_to_string(bench.path("out/plots").join(&name)).unwrap();
         assert!(text.starts_with("<!-- dem-run plot -->\n<svg "), "{name}");

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plots;
-use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, is_same_file, write_file};
+use crate::safe_write::{
+    PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
+};
 use crate::{Diagnostic, Result};
 
 const FRAMES: &str = "frames";
@@ -23,9 +25,10 @@ const SUMMARY: &str = "summary.json";
 const TEST_PAGE: &str = "test.html";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
+const ENDED: &str = ".ended.json";
 const LOCK: &str = ".lock";
 /// Files of which a run writes one each.
-const SINGLE_FILES: [&str; 11] = [
+const SINGLE_FILES: [&str; 12] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -37,6 +40,7 @@ const SINGLE_FILES: [&str; 11] = [
     FILM_STRIP,
     FILM,
     CHECKPOINT,
+    ENDED,
 ];
 
 /// What to do with a folder that holds something already.
@@ -151,6 +155,11 @@ impl ResultsFolder {
     /// Summary: `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
+    }
+
+    /// What is written at the end of a run, kept until it all is: `.ended.json`.
+    pub fn ended(&self) -> PathBuf {
+        self.path.join(ENDED)
     }
 
     /// The latest state of the run: `checkpoint.dem`.
@@ -300,13 +309,18 @@ impl ResultsFolder {
         }
         for entry in entries(&folder)? {
             let path = entry.map_err(|error| explain(&folder, &error))?;
-            let is_ours = path
-                .file_name()
-                .and_then(|name| name.to_str())
-                .is_some_and(|name| ours(name) || name.starts_with(UNFINISHED_PREFIX));
-            if is_ours && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                fs::remove_file(&path).map_err(|error| explain(&path, &error))?;
-            }
+            let name = path.file_name().and_then(|name| name.to_str());
+            let name = name.unwrap_or_default();
+            let removed = if name.starts_with(UNFINISHED_PREFIX) {
+                remove_if_abandoned(&path)
+            } else if ours(name)
+                && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file())
+            {
+                fs::remove_file(&path)
+            } else {
+                Ok(())
+            };
+            removed.map_err(|error| explain(&path, &error))?;
         }
         Ok(())
     }

@@ -125,8 +125,8 @@ impl Default for BondFailure {
     fn default() -> Self {
         Self {
             tension_pa: None,
+            compression_pa: None,
             shear_pa: None,
-            compressive: true,
             von_mises_pa: None,
             rate_strengthening_from_1_s: None,
             rate_of: RateOf::default(),
@@ -136,10 +136,15 @@ impl Default for BondFailure {
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
+    if let Some(old) = field.any_table()?.get("compressive") {
+        let problem = format!("{} is no more: tension breaks pulled edges only", old.path);
+        let remedy = "write compression = \"15 MPa\" for a strength of its own under pressure, or leave it out";
+        return Err(old.refuse(problem, remedy));
+    }
     let table = field.table(&[
         "tension",
+        "compression",
         "shear",
-        "compressive",
         "von_mises",
         "rate_strengthening",
         "rate_of",
@@ -148,10 +153,8 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
     let strength = |key| table.read(key, |field: Field<'_>| field.not_negative(&STRESS));
     let failure = BondFailure {
         tension_pa: strength("tension")?,
+        compression_pa: strength("compression")?,
         shear_pa: strength("shear")?,
-        compressive: table
-            .read("compressive", |field| field.boolean())?
-            .unwrap_or(true),
         von_mises_pa: strength("von_mises")?,
         rate_strengthening_from_1_s: match table.get("rate_strengthening") {
             Some(field) => rate_strengthening(&field)?,
@@ -162,9 +165,11 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
             .unwrap_or_default(),
         weibull_modulus: table.read("weibull_modulus", |field| field.positive(&NUMBER))?,
     };
-    let criteria = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
-    if criteria.iter().all(Option::is_none) {
-        let remedy = "add tension, shear or von_mises, such as von_mises = \"0.185 MPa\"";
+    let by_rate = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
+    let has_none = by_rate.iter().all(Option::is_none);
+    if has_none && failure.compression_pa.is_none() {
+        let remedy =
+            "add tension, compression, shear or von_mises, such as von_mises = \"0.185 MPa\"";
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
         let problem = format!("{} stands without a strength to exceed", field.path);
         return Err(field.refuse(problem, remedy));
@@ -176,9 +181,17 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         );
         return Err(field.refuse(problem, "add rate_strengthening = true, or remove rate_of"));
     }
-    if let (Some(field), None) = (table.get("compressive"), failure.tension_pa) {
-        let problem = format!("{} stands without tension, on which it acts", field.path);
-        return Err(field.refuse(problem, "add tension = \"1 MPa\", or remove compressive"));
+    let strengthens = table.get("rate_strengthening");
+    let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
+    if let (Some(field), true) = (strengthens, has_none) {
+        let problem = format!(
+            "{} stands without tension, shear or von_mises, which it raises; compression it does not",
+            field.path
+        );
+        return Err(field.refuse(
+            problem,
+            "add tension = \"1 MPa\", or remove rate_strengthening",
+        ));
     }
     Ok(failure)
 }

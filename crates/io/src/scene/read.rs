@@ -10,15 +10,15 @@ use super::table::Table;
 use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
-    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material,
-    measure, outlet, output, region, relaxation, replacement, run, search, set, sleep, statics,
-    support, test, wall,
+    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, initial, inlet, load,
+    material, measure, outlet, output, region, relaxation, replacement, run, search, set, sleep,
+    statics, support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 21] = [
+const KEYS: [&str; 22] = [
     "version",
     "run",
     "materials",
@@ -27,6 +27,7 @@ const KEYS: [&str; 21] = [
     "bodies",
     "walls",
     "sets",
+    "initial",
     "supports",
     "loads",
     "regions",
@@ -149,6 +150,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         materials,
         bonds,
         supports,
+        initial: each(&root, "initial", |field| initial::read(field, &targets))?,
         loads: each(&root, "loads", |field| load::read(field, &targets))?,
         measures: each(&root, "measures", |field| measure::read(field, &targets))?,
         clusters: root

@@ -43,6 +43,22 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     text
 }
 
+/// What the body weighs, beside what its shape would, and where its centre is.
+fn mass_text(made: &Made) -> String {
+    let [mass, centre] = match &made.mass {
+        Some(mass) => mass.lines(),
+        None => [
+            format!(
+                "{} of its shape filled with the density of the particles",
+                significant(made.mass_over_shape, 4)
+            ),
+            format!("centre {}", made.centre_m.map(show_length).join(", ")),
+        ],
+    };
+    let centre = centre.trim_start_matches("centre ");
+    format!("mass             {mass}\ncentre           {centre}\n")
+}
+
 /// What a person wants to know: how good the body is, what to mind, where the time went.
 pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
@@ -68,6 +84,7 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
             search.packings
         );
     }
+    text += &mass_text(made);
     let history = &made.history;
     text += &format!(
         "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",

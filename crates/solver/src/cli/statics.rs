@@ -6,6 +6,7 @@ use dem_io::scene::Scene;
 use serde_json::json;
 
 use super::check::size_text;
+use crate::output::masses;
 use crate::plan::Plan;
 use crate::statics::Outlook;
 
@@ -24,6 +25,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "scene": scene.source,
                 "particles": state.particles.len(),
                 "bonds": state.bonds.len(),
+                "bodies": plan.masses,
                 "equilibrium": outlook,
                 "memory_bytes": bytes,
                 "notes": plan.notes,
@@ -41,6 +43,9 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 state.bonds.len()
             ),
         )?;
+        for (name, mass) in masses::lines(&plan.masses) {
+            line(name, &mass)?;
+        }
         line(
             "solves",
             &format!(

@@ -96,6 +96,8 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
             .iter()
             .zip(column(series, name))
             .map(|(&t, &v)| [t, v])
+            // What has no value yet has no point.
+            .filter(|[_, v]| !v.is_nan())
             .collect(),
         dashed: false,
     };

@@ -1,18 +1,28 @@
 //! The summary of a run: what came of it, how far to trust it, where the time went.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
+use dem_io::Diagnostic;
+use dem_io::body::mass::BodyMass;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
 use super::fragments::FragmentSummary;
+use super::inputs::Inputs;
+use super::masses;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
+use crate::physics::bond::failure::CauseCounts;
 use crate::state::State;
+use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;
 use crate::statics::EquilibriumSummary;
+
+/// Program and version.
+const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
 
 /// Energy errors above this share are worth a word.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
@@ -26,6 +36,11 @@ pub struct Summary {
     pub program: String,
     /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
     pub ended_by: String,
+    /// What happened, where it did not come to its end: `ended_by` is "instability" or "interruption".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// What was run.
+    pub inputs: Inputs,
     /// Simulated, s.
     pub simulated_s: f64,
     /// Needed for it, s; of the part since the last checkpoint for a run that was resumed.
@@ -41,8 +56,16 @@ pub struct Summary {
     pub particles: usize,
     /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
     pub bonds: usize,
+    /// What each body weighed at the start, by its name.
+    pub bodies: BTreeMap<String, BodyMass>,
     /// Bonds that broke.
     pub broken_bonds: u64,
+    /// Largest elongation of a bond over its length, of either sign.
+    pub largest_bond_strain: f64,
+    /// Largest overlap of a contact over the radius of its smaller sphere.
+    pub largest_overlap: f64,
+    /// The same by what they failed by.
+    pub broken_by_cause: CauseCounts,
     /// What the bodies broke into, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
@@ -100,6 +123,40 @@ pub struct Summary {
     pub equilibrium: Option<EquilibriumSummary>,
 }
 
+/// What is left of a run that ended before there was anything to sum up.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unfinished {
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Always "failure".
+    pub ended_by: String,
+    /// What happened.
+    pub problem: String,
+    /// What was run.
+    pub inputs: Inputs,
+    /// Not sound, because of the problem.
+    pub verdict: Verdict,
+}
+
+impl Unfinished {
+    /// Of a scene that came to nothing because of this.
+    pub fn new(scene: &str, inputs: Inputs, problem: &Diagnostic) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            program: PROGRAM.to_owned(),
+            ended_by: "failure".to_owned(),
+            problem: problem.to_string(),
+            inputs,
+            verdict: Verdict {
+                sound: false,
+                warnings: vec![problem.to_string()],
+            },
+        }
+    }
+}
+
 /// Whether the result of a run can be trusted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Verdict {
@@ -112,8 +169,10 @@ pub struct Verdict {
 /// Which bodies came, went, and became others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PopulationSummary {
-    /// Rigid clumps at the end.
+    /// Rigid clumps at the end, of two spheres and more.
     pub clumps: usize,
+    /// Single loose spheres of clumps and inlets at the end.
+    pub single_spheres: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
     /// Clusters and fragments that became rigid clumps again.
@@ -126,8 +185,6 @@ pub struct PopulationSummary {
     pub delayed: u32,
     /// Bodies that an inlet still owes at the end.
     pub waiting: u32,
-    /// Clumps could be replaced, and none was.
-    pub never_replaced: bool,
     /// Bodies and fragments that went through outlets.
     pub left: u32,
     /// Their mass, kg.
@@ -176,13 +233,16 @@ impl PopulationSummary {
         if clumps.templates.is_empty() && rules.are_none() {
             return None;
         }
+        let is_single = |clump: &&Clump| clumps.template(clump).spheres.len() == 1;
+        let single = clumps.all.iter().filter(is_single).count();
         let [done, left_out] = rules.bond_steps.map(|count| count as f64);
         let inner = clumps.templates.iter();
         let inner: f64 = inner
             .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
             .sum();
         Some(Self {
-            clumps: clumps.all.len(),
+            clumps: clumps.all.len() - single,
+            single_spheres: single,
             replaced: rules.replaced,
             restored: rules.restored,
             came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
@@ -191,7 +251,6 @@ impl PopulationSummary {
             waiting: (rules.inlets.iter())
                 .map(|inlet| inlet.owed(state.time_s))
                 .sum(),
-            never_replaced: rules.replaced == 0 && rules.triggers.iter().any(Option::is_some),
             left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
             left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
             bonds_left_out: over(left_out, done + left_out),
@@ -213,7 +272,7 @@ impl Summary {
 
     /// What of the summary speaks against trusting the result.
     fn doubts(&self) -> Vec<String> {
-        let mut doubts = Vec::new();
+        let mut doubts: Vec<String> = self.problem.iter().cloned().collect();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
                 "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
@@ -224,20 +283,33 @@ impl Summary {
             doubts.push("the step is above the largest stable one".to_owned());
         }
         if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
+            let waiting = match population.waiting {
+                1 => "1 body still waits".to_owned(),
+                many => format!("{many} bodies still wait"),
+            };
             doubts.push(format!(
-                "{} bodies still wait for a place at their inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller",
-                population.waiting
+                "{waiting} for a place at an inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller"
             ));
         }
-        if self.population.as_ref().is_some_and(|p| p.never_replaced) {
-            doubts.push("no clump was ever replaced: no trigger of [replacement] fired".to_owned());
-        }
-        for measure in self.measures.iter().filter(|m| !m.is_good()) {
+        doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
+        let off = |m: &&Measured| m.missing.is_none() && !m.is_good();
+        for measure in self.measures.iter().filter(off) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));
         doubts.extend((self.equilibrium.iter()).flat_map(EquilibriumSummary::doubts));
         doubts
+    }
+
+    /// Two lines for each body: what it weighs.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub(crate) fn write_masses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, line) in masses::lines(&self.bodies) {
+            writeln!(f, "{name:12} {line}")?;
+        }
+        Ok(())
     }
 
     /// Notes, and what the result is worth.
@@ -327,19 +399,23 @@ impl fmt::Display for Summary {
             .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
             .collect();
         writeln!(f, "time         {}", shares.join("   "))?;
+        let causes = match self.broken_bonds {
+            0 => String::new(),
+            _ => format!(": {}", self.broken_by_cause),
+        };
         if self.population.is_some() {
-            writeln!(f, "broken       {} bonds", self.broken_bonds)?;
+            writeln!(f, "broken       {} bonds{causes}", self.broken_bonds)?;
         } else if self.bonds > 0 {
             writeln!(
                 f,
-                "broken       {} of {} bonds",
+                "broken       {} of {} bonds{causes}",
                 self.broken_bonds, self.bonds
             )?;
         }
         if let Some(p) = &self.population {
             writeln!(
                 f,
-                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps at the end",
+                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps{} at the end",
                 p.came,
                 significant(p.came_kg, 4),
                 p.replaced,
@@ -347,6 +423,10 @@ impl fmt::Display for Summary {
                 p.left,
                 significant(p.left_kg, 4),
                 p.clumps,
+                match p.single_spheres {
+                    0 => String::new(),
+                    count => format!(" and {count} single spheres"),
+                },
             )?;
             let hidden = match 100.0 * p.inner_spheres {
                 share if share >= 0.5 => {
@@ -368,6 +448,16 @@ impl fmt::Display for Summary {
                 100.0 * sleep.left_out,
             )?;
         }
+        let strained = [
+            ("bonds", self.largest_bond_strain, "of their length"),
+            ("contacts", self.largest_overlap, "of the smaller radius"),
+        ];
+        let strained: Vec<String> = (strained.iter().filter(|(_, largest, _)| *largest > 0.0))
+            .map(|(what, largest, of)| format!("{what} {} {of}", significant(*largest, 3)))
+            .collect();
+        if !strained.is_empty() {
+            writeln!(f, "deformed     {} at most", strained.join("   "))?;
+        }
         if let Some(fragments) = &self.fragments {
             writeln!(
                 f,
@@ -376,6 +466,7 @@ impl fmt::Display for Summary {
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
+        self.write_masses(f)?;
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
         self.write_verdict(f)
     }

@@ -1,10 +1,15 @@
 //! Numbers that look random and depend on nothing but names: no state has to be kept, and they are the same in whatever order they are asked for.
 
+/// A hash of a seed and words, in their order.
+pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
+    words
+        .into_iter()
+        .fold(mixed(seed), |hash, word| mixed(hash ^ word))
+}
+
 /// A number in (0, 1), uniform over all seeds and words.
 pub fn uniform(seed: u64, words: &[u64]) -> f64 {
-    let hash = words
-        .iter()
-        .fold(mixed(seed), |hash, &word| mixed(hash ^ word));
+    let hash = hash(seed, words.iter().copied());
     // 53 bits, in the middle of their interval: neither 0 nor 1.
     ((hash >> 11) as f64 + 0.5) * (0.5 * f64::EPSILON)
 }

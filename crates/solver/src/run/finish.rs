@@ -18,7 +18,8 @@ use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::state::State;
 
-/// What the last checkpoint of a run keeps besides its state.
+/// What a run that has come to its end leaves beside its last checkpoint, before it writes plots,
+/// film and summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct End {
     /// `summary.json`.
@@ -81,7 +82,9 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         return Ok(None);
     };
     let progress = &snapshot.progress;
-    let Some(end) = &progress.end else {
+    let ended = std::fs::read(folder.ended()).ok();
+    let ended = ended.and_then(|bytes| serde_json::from_slice::<End>(&bytes).ok());
+    let Some(end) = &ended else {
         return Ok(None);
     };
     let (mut state, mut bodies) = (plan.state.clone(), plan.bodies.clone());

@@ -4,8 +4,8 @@ use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use super::finish::End;
 use super::pictures::Taken;
+use super::seen::Seen;
 use crate::check::ledger::{Balance, over};
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
@@ -66,8 +66,8 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether that has ended because the body broke.
     pub(super) broke: bool,
-    /// What is written at the end, once it has come.
-    pub(super) end: Option<End>,
+    /// What has been seen beside the measures.
+    pub(super) seen: Seen,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -111,7 +111,10 @@ fn last_change_s(state: &State) -> f64 {
             _ => f64::INFINITY,
         },
     });
-    let ends = loads.chain(supports).map(end).chain(of_walls);
+    let let_go = state.supports.iter().map(|support| support.end_s);
+    let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));
+    let let_go = let_go.filter(|end_s| end_s.is_finite());
+    let ends = loads.chain(supports).map(end).chain(of_walls).chain(let_go);
     ends.fold(0.0, f64::max)
 }
 
@@ -223,7 +226,6 @@ impl Progress {
         if rhythm.rest != self.rhythm.rest {
             self.calm_since_s = None;
         }
-        self.end = None;
         self.rested = false;
         if rhythm != self.rhythm {
             self.next_row = first_after(before_s, rhythm.row_s);
@@ -241,6 +243,7 @@ impl Progress {
             momentum * balance.momentum_error,
             angular_momentum * balance.angular_momentum_error,
         ];
+        self.seen.note_kinetic(balance.kinetic_j);
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }

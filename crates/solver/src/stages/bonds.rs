@@ -18,6 +18,9 @@ use crate::state::shares::{Batch, Computed, Share, Which};
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
+/// 1, and some more for the rounding of differences from which weak bonds are found.
+const ROUNDED_UP: f64 = 1.0 + 1e-14;
+
 /// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
     for_each_share(shares, wrenches, &|share, wrenches| {
@@ -32,18 +35,24 @@ pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrench
 
 /// Largest change of length over initial length of the bonds that are not broken.
 pub fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
+    most_strained(bonds, poses).map_or(0.0, |(strain, _)| strain)
+}
+
+/// The bond that is strained most, and its strain. None: no bond is whole.
+pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     let strain = |at: usize| {
-        if bonds.is_broken(at) {
-            return 0.0;
-        }
         let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
-        ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs()
+        (
+            ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs(),
+            at,
+        )
     };
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)
+        .filter(|&at| !bonds.is_broken(at))
         .map(strain)
-        .reduce(|| 0.0, f64::max)
+        .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
 /// The work on one share.
@@ -216,7 +225,7 @@ fn list_failing(
         let at = four.numbers[i];
         let strengthened = bonds.strength_factors.get(at).map_or(0.0, |factor| {
             let volume = PI * numbers.radii_m[i].powi(3);
-            NEARLY * volume * volume * (factor * factor - 1.0)
+            NEARLY * volume * volume * (factor * factor - ROUNDED_UP)
         });
         if *beyond >= strengthened && four.wanted.contains(&i) {
             failing.push(at as u32);
@@ -227,7 +236,7 @@ fn list_failing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::bond::failure::Criteria;
+    use crate::physics::bond::failure::{Criteria, Factors, stresses, utilisation};
     use crate::state::bonds::BondRule;
     use crate::state::particles::Particles;
     use crate::state::shares::divide;
@@ -243,8 +252,8 @@ mod tests {
         }
     }
 
-    #[test]
-    fn as_many_lanes_as_there_are_give_the_bits_of_one() {
+    /// Forty particles in a row with bonds of these strengths, scattered or not.
+    fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
         let mut any = scattered(7);
         let mut particles = Particles::default();
         for i in 0..40 {
@@ -257,12 +266,7 @@ mod tests {
             rules: vec![BondRule {
                 incremental: false,
                 damped: false,
-                criteria: Some(Criteria {
-                    tension_pa: 1.5,
-                    shear_pa: f64::INFINITY,
-                    von_mises_pa: 1.5,
-                    compressive: false,
-                }),
+                criteria: Some(criteria),
                 strengthening_from_1_s: None,
                 rate_of: dem_io::scene::RateOf::Elongation,
             }],
@@ -279,18 +283,74 @@ mod tests {
             };
             bonds.push([a, b], [1.0, 0.0, 0.0], 1.0, &stiffness, 0);
         }
+        if is_scattered {
+            let factors = (0..40).map(|at| 10.0_f64.powf(0.1 * f64::from(at) - 3.0));
+            bonds.strength_factors = factors.collect();
+        }
+        (particles, bonds)
+    }
+
+    /// Bonds that have reached their strength, one by one.
+    fn reached(bonds: &Bonds, particles: &Particles) -> Vec<u32> {
+        let is_reached = |at: &u32| {
+            let at = *at as usize;
+            let load = bonds.forces(at, &particles.poses).load;
+            let criteria = bonds.rules[0].criteria.unwrap_or(NEVER);
+            let factors = Factors::scattered(bonds.strength_factor(at));
+            utilisation(&criteria, &stresses(&load, bonds.radius_m(at)), factors) >= 1.0
+        };
+        (0..bonds.len() as u32).filter(is_reached).collect()
+    }
+
+    const NEVER: Criteria = Criteria {
+        tension_pa: f64::INFINITY,
+        compression_pa: f64::INFINITY,
+        shear_pa: f64::INFINITY,
+        von_mises_pa: f64::INFINITY,
+    };
+
+    #[test]
+    fn as_many_lanes_as_there_are_give_the_bits_of_one() {
+        let tension = Criteria {
+            tension_pa: 1.5,
+            ..NEVER
+        };
+        let compression = Criteria {
+            compression_pa: 0.7,
+            ..NEVER
+        };
+        let shear = Criteria {
+            shear_pa: 0.6,
+            ..NEVER
+        };
+        let all = Criteria {
+            tension_pa: 2.0,
+            compression_pa: 2.0,
+            shear_pa: 2.0,
+            von_mises_pa: 3.0,
+        };
+        for criteria in [tension, compression, shear, all] {
+            for is_scattered in [false, true] {
+                let (particles, bonds) = chain(criteria, is_scattered);
+                lanes_agree(&particles, &bonds);
+            }
+        }
+    }
+
+    /// Several lanes give the forces of one lane, and list the bonds that have reached their strength.
+    fn lanes_agree(particles: &Particles, bonds: &Bonds) {
         for shares in [1, 3] {
             let results = [false, true].map(|several| {
-                let mut shares = divide(&bonds, particles.len(), shares);
+                let mut shares = divide(bonds, particles.len(), shares);
                 if several {
                     let mut wrenches = particles.wrenches.clone();
-                    bond_wrenches(&bonds, &particles.poses, &mut shares, &mut wrenches);
+                    bond_wrenches(bonds, &particles.poses, &mut shares, &mut wrenches);
                     (wrenches, shares)
                 } else {
                     let mut wrenches = particles.wrenches.clone();
                     for_each_share(&mut shares, &mut wrenches, &|share, wrenches| {
                         let work = ShareWork {
-                            bonds: &bonds,
+                            bonds,
                             poses: &particles.poses,
                             share,
                             wrenches,
@@ -306,7 +366,10 @@ mod tests {
                 assert_eq!(one.torque_n_m[..3], many.torque_n_m[..3]);
             }
             assert_eq!(one.1, many.1);
-            let failing: usize = one.1.iter().map(|share| share.failing.len()).sum();
+            let mut listed: Vec<u32> = one.1.iter().flat_map(|s| s.failing.clone()).collect();
+            listed.sort_unstable();
+            assert_eq!(listed, reached(bonds, particles));
+            let failing = listed.len();
             assert!(failing > 0 && failing < bonds.len(), "{failing} failing");
         }
     }

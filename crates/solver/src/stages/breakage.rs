@@ -3,7 +3,7 @@
 use dem_io::scene::RateOf;
 use nalgebra::Vector3;
 
-use crate::physics::bond::failure::{Cause, cause, stresses, utilisation};
+use crate::physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::total::BondForces;
 use crate::state::bonds::Bonds;
@@ -63,19 +63,21 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
     let rule = &bonds.rules[bonds.rule_of(at)];
     let criteria = rule.criteria?;
     let stresses = stresses(&forces.load, bonds.radius_m(at));
-    let strengthening = rule.strengthening_from_1_s.map_or(1.0, |from| {
+    let rate = rule.strengthening_from_1_s.map_or(1.0, |from| {
         let [a, b] = bonds.ends[at].map(|end| end as usize);
         let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
         let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
         let length_m = bonds.initial_length_m(at);
-        let rate = match rule.rate_of {
+        let rate_1_s = match rule.rate_of {
             RateOf::Elongation => elongation_rate(&c, &velocities, length_m),
             RateOf::RelativeVelocity => (velocities[1] - velocities[0]).norm() / length_m,
         };
-        dynamic_increase_factor(rate, from)
+        dynamic_increase_factor(rate_1_s, from)
     });
-    let factor = bonds.strength_factor(at) * strengthening;
-    (utilisation(&criteria, &stresses, factor) >= 1.0).then(|| cause(&criteria, &stresses))
+    let scatter = bonds.strength_factor(at);
+    let factors = Factors { scatter, rate };
+    (utilisation(&criteria, &stresses, factors) >= 1.0)
+        .then(|| cause(&criteria, &stresses, factors))
 }
 
 fn remove(

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use crate::physics::bond::failure::{stresses, utilisation};
+use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::physics::bond::incremental::{Step, advance, bond_forces};
 use crate::stages::blocks::for_each_share;
 use crate::state::bonds::Bonds;
@@ -77,7 +77,8 @@ fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wr
                 wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
                 if let Some(criteria) = &rule.criteria {
                     let stresses = stresses(&forces.load, bonds.radius_m(at));
-                    if utilisation(criteria, &stresses, bonds.strength_factor(at)) >= 1.0 {
+                    let factors = Factors::scattered(bonds.strength_factor(at));
+                    if utilisation(criteria, &stresses, factors) >= 1.0 {
                         failing.push(at as u32);
                     }
                 }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::clusters::{Cluster, Clusters};
-use crate::physics::bond::scatter::strength_factor;
+use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::stages::sleep::{count_sleepers, prepare_change};
@@ -294,9 +294,9 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<
         let first = born.first_particle as u32;
         for (at, ends) in template.bonds.ends.iter().enumerate() {
             let factor = template.scatter.map_or(1.0, |scatter| {
-                let number = scatter.body | u64::from(born.clump.instance) << 32;
+                let body = body_key(&template.body, born.clump.instance);
                 let pair = ends.map(|end| u64::from(template.file_number[end as usize]));
-                strength_factor(scatter.seed, number, pair, scatter.modulus)
+                strength_factor(scatter.seed, body, pair, scatter.modulus)
             });
             let ends = ends.map(|end| first + end);
             state.bonds.push_copy(&template.bonds, at, ends, factor);

@@ -54,8 +54,6 @@ pub fn reach_m(spheres: &[SubSphere]) -> f64 {
 pub struct Scatter {
     /// Of the scene.
     pub seed: u64,
-    /// Number of the body in the scene.
-    pub body: u64,
     /// Weibull modulus.
     pub modulus: f64,
 }

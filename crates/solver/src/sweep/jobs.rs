@@ -204,8 +204,7 @@ pub fn work(
     let mut done = 0;
     loop {
         if interrupted.load(Ordering::Relaxed) {
-            return Err(Diagnostic::failed(
-                "",
+            return Err(Diagnostic::interrupted(
                 format!("interrupted after {done} of {} runs", todo.len()),
                 "go on with --resume",
             ));

@@ -36,6 +36,7 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
                 if let Some(&first) = state.broken.first() {
                     assert_eq!(state.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
+                    assert_eq!(state.broken_by_cause.tension, 1);
                     // The bond as it was: with the increments of this step, which need the forces to be found once more without strength.
                     let mut whole = before;
                     whole.bonds.rules[0].criteria = None;
@@ -145,7 +146,8 @@ fn taking_bonds_from_an_unloaded_body_breaks_nothing() {
             }
             let mut weak = ALL;
             let strength = 1e-8 * YOUNG_PA;
-            (weak.tension_pa, weak.shear_pa, weak.von_mises_pa) = (strength, strength, strength);
+            (weak.tension_pa, weak.compression_pa) = (strength, strength);
+            (weak.shear_pa, weak.von_mises_pa) = (strength, strength);
             let mut state = bonded(particles, &pairs, weak, incremental);
             let start = state.particles.poses.clone();
             for at in (0..pairs.len()).step_by(2) {

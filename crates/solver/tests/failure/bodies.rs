@@ -27,13 +27,18 @@ pub(crate) const YOUNG_PA: f64 = 1e13;
 /// Strengths that do not matter.
 pub(crate) const NONE: Criteria = Criteria {
     tension_pa: f64::INFINITY,
+    compression_pa: f64::INFINITY,
     shear_pa: f64::INFINITY,
     von_mises_pa: f64::INFINITY,
-    compressive: true,
 };
-/// MUSEN's normal strength.
+/// Strength at the tensile edge.
 pub(crate) const NORMAL: Criteria = Criteria {
     tension_pa: STRENGTH_PA,
+    ..NONE
+};
+/// Strength at the pressed edge.
+pub(crate) const PRESSED: Criteria = Criteria {
+    compression_pa: 1.3 * STRENGTH_PA,
     ..NONE
 };
 /// MUSEN's shear strength.
@@ -46,12 +51,12 @@ pub(crate) const VON_MISES: Criteria = Criteria {
     von_mises_pa: 1.1 * STRENGTH_PA,
     ..NONE
 };
-/// All three.
+/// All four.
 pub(crate) const ALL: Criteria = Criteria {
     tension_pa: NORMAL.tension_pa,
+    compression_pa: PRESSED.compression_pa,
     shear_pa: SHEAR.shear_pa,
     von_mises_pa: VON_MISES.von_mises_pa,
-    compressive: true,
 };
 
 /// Cross-section of a bond, m2.
@@ -113,6 +118,7 @@ pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, spee
         ..Held::default()
     };
     state.supports.push(SetSupport {
+        end_s: f64::INFINITY,
         holds,
         factor: Factor::One,
         held: particles.map(held).collect(),
@@ -138,6 +144,7 @@ pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n
     let points =
         (0..=3 * SOFT_STEPS).map(|step| [f64::from(step) * state.time_step_s, factor(step)]);
     state.loads.push(SetLoad {
+        end_s: f64::INFINITY,
         particles: vec![particle],
         force_n,
         torque_n_m,

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use dem_io::scene::Factor;
 use dem_run::check::ledger::{Balance, Ledger, balance};
+use dem_run::physics::bond::failure::Criteria;
 use dem_run::stages::loads::SetLoad;
 use dem_run::state::State;
 use dem_run::step::{act, move_on};
@@ -23,7 +24,11 @@ enum Besides {
 
 /// A rod that is shaken so that its bonds break one after another, or is torn.
 fn shaken(incremental: bool, besides: Besides) -> State {
-    let mut state = rod(6, NORMAL, incremental);
+    let both_edges = Criteria {
+        compression_pa: STRENGTH_PA,
+        ..NORMAL
+    };
+    let mut state = rod(6, both_edges, incremental);
     let m = 1.0 / state.particles.motions[0].inverse_mass;
     let speed = STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
     for (i, motion) in state.particles.motions.iter_mut().enumerate() {
@@ -39,6 +44,7 @@ fn shaken(incremental: bool, besides: Besides) -> State {
     match besides {
         Besides::Nothing => {}
         Besides::Load => state.loads.push(SetLoad {
+            end_s: f64::INFINITY,
             particles: vec![6],
             force_n: [
                 0.5 * STRENGTH_PA * area_m2(),

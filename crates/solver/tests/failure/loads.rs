@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use dem_run::physics::bond::failure::{Cause, Criteria, stresses, utilisation};
+use dem_run::physics::bond::failure::{Cause, Criteria, Factors, stresses, utilisation};
 use dem_run::stages::loads::factor_at;
 use dem_run::state::State;
 use dem_run::step::{act, move_on};
 
 use crate::bodies::{
-    ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES, area_m2, hold,
-    on_one_thread, push, rod,
+    ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES,
+    area_m2, hold, on_one_thread, push, rod,
 };
 
 /// A load at the free end of a rod whose other end is held: force and torque, N and N m, in some proportion.
@@ -33,17 +33,13 @@ fn closed_form(end: &End, to_contact_m: f64) -> [f64; 4] {
     ]
 }
 
-/// How much of its strengths such a bond uses (normal, shear, equivalent).
-fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 3] {
-    let normal = if criteria.compressive || axial > 0.0 {
-        axial.abs() + bending
-    } else {
-        0.0
-    };
+/// How much of its strengths such a bond uses (tension, compression, shear, equivalent).
+fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 4] {
     let pulled = axial.max(0.0) + bending;
     let sheared = shear + torsion;
     [
-        normal / criteria.tension_pa,
+        (bending + axial).max(0.0) / criteria.tension_pa,
+        (bending - axial).max(0.0) / criteria.compression_pa,
         sheared / criteria.shear_pa,
         pulled.hypot(3.0_f64.sqrt() * sheared) / criteria.von_mises_pa,
     ]
@@ -68,7 +64,8 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
         let forces = state.bonds.forces(at, &state.particles.poses);
         let criteria = state.bonds.rules[0].criteria.unwrap();
         let stresses = stresses(&forces.load, state.bonds.radius_m(at));
-        utilisation(&criteria, &stresses, state.bonds.strength_factor(at))
+        let factors = Factors::scattered(state.bonds.strength_factor(at));
+        utilisation(&criteria, &stresses, factors)
     };
     let mut before = vec![0.0; state.bonds.len()];
     while beyond(state) < 100.0 {
@@ -137,7 +134,7 @@ fn ends(length_m: f64) -> [End; 8] {
 fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
     let length = LENGTH_M * bonds as f64;
     let mut rods = 0;
-    for criteria in [NORMAL, SHEAR, VON_MISES, ALL] {
+    for criteria in [NORMAL, PRESSED, SHEAR, VON_MISES, ALL] {
         for end in ends(length) {
             let factors: Vec<f64> = (0..bonds)
                 .map(|at| if at == weakest { 0.9 } else { 1.2 })
@@ -167,22 +164,16 @@ fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
                 assert!((-0.1..1.1).contains(&late), "{what}: {late} steps late");
                 assert_eq!(bond, wanted_bond, "{what}");
                 let stresses = closed_form(&end, length - LENGTH_M * (bond as f64 + 0.5));
-                let [normal, shear, von_mises] = used(&criteria, stresses);
-                let wanted = if normal >= shear.max(von_mises) {
-                    if stresses[0] < 0.0 {
-                        vec![Cause::Compression]
-                    } else if stresses[0] > 0.0 {
-                        vec![Cause::Tension]
-                    } else {
-                        // Neither pulled nor pressed: what rounding makes of it.
-                        vec![Cause::Tension, Cause::Compression]
-                    }
-                } else if shear >= von_mises {
-                    vec![Cause::Shear]
-                } else {
-                    vec![Cause::VonMises]
-                };
-                assert!(wanted.contains(&cause), "{what}: {cause:?}");
+                let shares = used(&criteria, stresses);
+                let largest = shares.iter().copied().fold(0.0, f64::max);
+                let causes = [
+                    Cause::Tension,
+                    Cause::Compression,
+                    Cause::Shear,
+                    Cause::VonMises,
+                ];
+                let worst = shares.iter().position(|&share| share == largest);
+                assert_eq!(Some(cause), worst.map(|worst| causes[worst]), "{what}");
                 rods += 1;
             }
         }
@@ -200,37 +191,52 @@ fn a_chain_breaks_at_the_closed_form() {
     on_one_thread(|| breaks_at_the_closed_form(5, 2));
 }
 
-/// With `compressive = false` normal strength holds while the bond is pulled only, whatever bends it. The equivalent stress always counts
-/// bending, and pressure never.
+/// Tension breaks at the pulled edge, also while a small push acts on the bond; compression at the
+/// pressed edge, if there is a strength for it. The equivalent stress always counts bending, and
+/// pressure never.
 #[test]
-fn pressure_breaks_only_where_it_is_asked_to() {
-    let force = 0.1 * STRENGTH_PA * area_m2();
-    let moment = 0.9 * STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
-    let end = |name, force, moment| End {
+fn each_edge_breaks_at_its_own_strength() {
+    let force = STRENGTH_PA * area_m2();
+    let moment = STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
+    let end = |name, axial, bending| End {
         name,
-        force: [force, 0.0, 0.0],
-        torque: [0.0, moment, 0.0],
+        force: [axial * force, 0.0, 0.0],
+        torque: [0.0, bending * moment, 0.0],
     };
-    let pressed = end("pressed", -10.0 * force, 0.0);
-    let pressed_and_bent = end("pressed and bent", -force, moment);
-    let pulled_and_bent = end("pulled and bent", force, moment);
-    let tension_only = Criteria {
-        compressive: false,
-        ..NORMAL
-    };
-    let equivalent = Criteria {
-        von_mises_pa: 0.9 * STRENGTH_PA,
+    let of = |tension, compression| Criteria {
+        tension_pa: tension * STRENGTH_PA,
+        compression_pa: compression * STRENGTH_PA,
         ..NONE
     };
+    let never = f64::INFINITY;
+    let equivalent = Criteria {
+        von_mises_pa: STRENGTH_PA,
+        ..NONE
+    };
+    let pulled = end("pulled", 1.0, 0.0);
+    let pressed = end("pressed", -10.0, 0.0);
+    let bent = end("bent", 0.0, 1.0);
+    let bent_and_pushed = end("bent and pushed a little", -0.1, 1.1);
+    let bent_and_pulled = end("bent and pulled a little", 0.1, 0.9);
+    let pushed_and_bent = end("pushed and bent a little", -0.9, 0.6);
+    let (tension, compression) = (Some(Cause::Tension), Some(Cause::Compression));
     let cases = [
-        (pressed, NORMAL, Some(Cause::Compression)),
-        (pressed, tension_only, None),
+        (pulled, of(1.0, never), tension),
+        (pulled, of(never, 0.1), None),
+        (pressed, of(1.0, never), None),
+        (pressed, of(1.0, 10.0), compression),
         (pressed, equivalent, None),
-        (pressed_and_bent, NORMAL, Some(Cause::Compression)),
-        (pressed_and_bent, tension_only, None),
-        (pressed_and_bent, equivalent, Some(Cause::VonMises)),
-        (pulled_and_bent, NORMAL, Some(Cause::Tension)),
-        (pulled_and_bent, tension_only, Some(Cause::Tension)),
+        (bent, of(1.0, never), tension),
+        (bent, of(1.0, 1.2), tension),
+        (bent, of(1.2, 1.0), compression),
+        (bent_and_pushed, of(1.0, never), tension),
+        (bent_and_pushed, of(1.0, 1.3), tension),
+        (bent_and_pushed, of(never, 1.2), compression),
+        (bent_and_pulled, of(1.0, never), tension),
+        (bent_and_pulled, of(never, 0.8), compression),
+        (pushed_and_bent, of(0.1, never), None),
+        (pushed_and_bent, of(0.1, 1.5), compression),
+        (end("bent", -0.1, 1.0), equivalent, Some(Cause::VonMises)),
     ];
     on_one_thread(|| {
         for (end, criteria, wanted) in cases {

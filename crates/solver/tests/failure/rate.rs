@@ -5,7 +5,7 @@ use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{act, move_on};
 
 use crate::bodies::{
-    LENGTH_M, NORMAL, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
+    LENGTH_M, NORMAL, PRESSED, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
 };
 
 /// Steps until the strain of the static strength is reached.
@@ -19,8 +19,26 @@ fn pulled(
     from_1_s: Option<f64>,
     incremental: bool,
 ) -> Option<(f64, Cause)> {
+    pulled_by(
+        rate_1_s,
+        criteria,
+        from_1_s,
+        incremental,
+        RateOf::Elongation,
+    )
+}
+
+/// The same with strengths that depend on this rate.
+fn pulled_by(
+    rate_1_s: f64,
+    criteria: Criteria,
+    from_1_s: Option<f64>,
+    incremental: bool,
+    rate_of: RateOf,
+) -> Option<(f64, Cause)> {
     let mut state = rod(1, criteria, incremental);
     state.bonds.rules[0].strengthening_from_1_s = from_1_s;
+    state.bonds.rules[0].rate_of = rate_of;
     let half = 0.5 * rate_1_s * LENGTH_M;
     hold(&mut state, std::iter::once(0), -half);
     hold(&mut state, std::iter::once(1), half);
@@ -98,8 +116,14 @@ fn below_the_rate_that_is_set_nothing_is_strengthened() {
 fn pressed_bonds_are_not_strengthened() {
     on_one_thread(|| {
         for rate in [-1e-3, -1.0, -10.0] {
-            let found = pulled(rate, NORMAL, Some(0.0), false);
-            assert_breaks_at(found, 1.0, Cause::Compression, &format!("{rate}/s"));
+            for rate_of in [RateOf::Elongation, RateOf::RelativeVelocity] {
+                for incremental in [false, true] {
+                    let found = pulled_by(rate, PRESSED, Some(0.0), incremental, rate_of);
+                    let what = format!("{rate}/s, {rate_of:?}");
+                    assert_breaks_at(found, 1.3, Cause::Compression, &what);
+                }
+            }
+            assert_eq!(pulled(rate, NORMAL, Some(0.0), false), None);
         }
         assert_eq!(pulled(1.0, SHEAR, Some(0.0), false), None);
     });

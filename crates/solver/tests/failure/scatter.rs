@@ -1,7 +1,15 @@
 //! Strength that varies from bond to bond.
 
+use std::collections::BTreeMap;
+
+use dem_io::body::{read_body, write_body};
+use dem_io::{Body, scene_from_text};
 use dem_run::physics::bond::scatter::strength_factor;
+use dem_run::plan::bodies::PlacedBody;
+use dem_run::plan::{Plan, plan};
 use dem_run::stages::loads::factor_at;
+use dem_run::stages::replacement::replace;
+use dem_run::state::State;
 use dem_run::state::particles::Particles;
 use dem_run::step::{act, move_on};
 
@@ -99,4 +107,132 @@ fn strengths_are_those_of_weibull() {
                 .max((share - after).abs())
         });
     assert!(largest < 1.63 / (COUNT as f64).sqrt(), "off by {largest}");
+}
+
+/// Bonds of a lump, which touch neighbours in several directions.
+const BONDS: [[u32; 2]; 9] = [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [0, 4],
+    [1, 4],
+    [1, 5],
+    [2, 5],
+    [3, 5],
+    [4, 5],
+];
+
+/// A lump of six spheres with these bonds.
+fn lump(bonds: &[[u32; 2]]) -> Body {
+    let places = [
+        [0.0, 0.0, 0.0],
+        [9.0, 1.0, 0.0],
+        [18.0, 0.0, 1.0],
+        [27.0, 1.0, 2.0],
+        [4.0, 9.0, 0.5],
+        [14.0, 8.0, -1.0],
+    ];
+    let spheres = places.map(|[x, y, z]: [f64; 3]| [1e-3 * x, 1e-3 * y, 1e-3 * z, 5e-3]);
+    Body::from_spheres(&spheres, bonds).unwrap()
+}
+
+/// A scene of lumps of these names; `more` stands in the table of the one called lump.
+fn scene_of(names: &[&str], more: &str) -> String {
+    let mut text = "version = 1\nrun = { end_time = 1, seed = 12 }\n\
+        materials.stuff = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }\n\
+        contacts.stuff-stuff = { restitution = 0.5, friction = 0.5 }\n\
+        bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25, \
+        failure = { tension = 1e6, weibull_modulus = 5 } }\n"
+        .to_owned();
+    for (x, name) in names.iter().enumerate() {
+        let own = if *name == "lump" { more } else { "" };
+        text += &format!(
+            "[bodies.{name}]\nfile = \"{name}.vtp\"\nmaterial = \"stuff\"\nbonds = \"stiff\"\n\
+             position = [{x}, 0, 0]\n{own}\n"
+        );
+    }
+    text
+}
+
+/// Strengths of the bonds of a placed body, by the numbers of their particles in its file.
+fn strengths(state: &State, body: &PlacedBody) -> BTreeMap<[u32; 2], f64> {
+    (0..body.bonds.len())
+        .map(|n| {
+            let at = body.first_bond + n;
+            let mut pair = state.bonds.ends[at].map(|end| body.number_of(end).unwrap());
+            pair.sort_unstable();
+            (pair, state.bonds.strength_factor(at))
+        })
+        .collect()
+}
+
+/// Strengths of the body called lump in a scene of these lumps, which are as `body`.
+fn planned_strengths(text: &str, body: &Body) -> BTreeMap<[u32; 2], f64> {
+    let scene = scene_from_text(text, "lumps.toml", &[]).unwrap();
+    let bodies = (scene.bodies.keys())
+        .map(|name| (name.clone(), body.clone()))
+        .collect();
+    let Plan {
+        mut state, bodies, ..
+    } = plan(&scene, bodies, 1, true).unwrap();
+    if let Some(body) = bodies.iter().find(|body| body.name == "lump") {
+        return strengths(&state, body);
+    }
+    act(&mut state);
+    let (renumbered, _) = replace(&mut state).unwrap();
+    let body = PlacedBody::born(&renumbered[0].born[0]);
+    strengths(&state, &body)
+}
+
+#[test]
+fn strengths_do_not_depend_on_the_order_of_bonds_or_on_other_bodies() {
+    let alone = scene_of(&["lump"], "");
+    let wanted = planned_strengths(&alone, &lump(&BONDS));
+    assert_eq!(wanted.len(), BONDS.len());
+    let mut turned = BONDS;
+    turned.rotate_left(4);
+    turned.reverse();
+    let reversed = turned.map(|[a, b]| [b, a]);
+    assert_eq!(planned_strengths(&alone, &lump(&turned)), wanted);
+    assert_eq!(planned_strengths(&alone, &lump(&reversed)), wanted);
+
+    // Written and read in every format that keeps both particles and bonds.
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["lump.vtp", "lump.csv", "lump.txt", "lump.data"] {
+        let path = folder.path().join(name);
+        write_body(&lump(&reversed), &path).unwrap();
+        let body = read_body(&path).unwrap();
+        assert_eq!(planned_strengths(&alone, &body), wanted, "{name}");
+    }
+
+    // Placed elsewhere, among others, and replaced as a clump.
+    let placed = "rotation = { axis = [1, 2, 3], angle = 2 }\nvelocity = [1, 0, 0]";
+    let clump = "start_as = \"clump\"\n[replacement.lump]\nwhen = { time = 0 }";
+    for (names, more) in [
+        (&["lump"][..], placed),
+        (&["lump"], clump),
+        (&["a", "lump"], ""),
+        (&["another-name", "b", "lump", "z"], ""),
+        (&["another-name", "b", "lump", "z"], clump),
+    ] {
+        let text = scene_of(names, more);
+        assert_eq!(planned_strengths(&text, &lump(&turned)), wanted, "{text}");
+    }
+}
+
+/// Two bodies of one file are not the same body twice.
+#[test]
+fn bodies_of_one_file_have_strengths_of_their_own() {
+    let wanted = planned_strengths(&scene_of(&["lump"], ""), &lump(&BONDS));
+    let text = scene_of(&["lump", "twin"], "");
+    let scene = scene_from_text(&text, "lumps.toml", &[]).unwrap();
+    let bodies = (scene.bodies.keys())
+        .map(|name| (name.clone(), lump(&BONDS)))
+        .collect();
+    let Plan { state, bodies, .. } = plan(&scene, bodies, 1, true).unwrap();
+    let twin = strengths(&state, &bodies[1]);
+    assert!(
+        twin.iter()
+            .all(|(pair, strength)| wanted[pair] != *strength)
+    );
 }

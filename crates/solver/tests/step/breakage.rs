@@ -13,9 +13,9 @@ fn breaking(tension_pa: f64, incremental: bool) -> BondRule {
         incremental,
         criteria: Some(Criteria {
             tension_pa,
+            compression_pa: f64::INFINITY,
             shear_pa: f64::INFINITY,
             von_mises_pa: f64::INFINITY,
-            compressive: false,
         }),
         ..ELASTIC
     }
