@@ -19,6 +19,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
     assert_eq!(
         names_in(&bench.path("out")),
         [
+            ".ended.json",
             ".lock",
             "checkpoint.dem",
             "events.csv",
