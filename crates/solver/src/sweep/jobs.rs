@@ -11,6 +11,7 @@ use std::time::Duration;
 use dem_io::results::folder::{is_locked, is_written_to};
 use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
+use serde_json::Value;
 
 use super::collect::Outcome;
 use super::expand::Run;
@@ -61,7 +62,11 @@ impl Job {
     /// Whether it has come to its end.
     pub fn is_done(&self, runs: &Path) -> bool {
         let summary = fs::read(self.folder(runs).join("summary.json"));
-        summary.is_ok_and(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).is_ok())
+        let summary = summary
+            .ok()
+            .and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok());
+        // A run that fails leaves a summary, too, which says why.
+        summary.is_some_and(|summary| summary["problem"].is_null())
     }
 }
 

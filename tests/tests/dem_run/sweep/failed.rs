@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{STEPS, bad, bench, csv, json, partly};
+use super::{STEPS, bad, bench, csv, good, json, partly};
 use crate::Bench;
 
 #[test]
@@ -129,6 +129,12 @@ fn steps_above_the_limit_are_for_trials() {
     assert!(said.contains("1.05: unstable at step"), "{said}");
     let table = json(&forced);
     assert!(table["runs"][0]["failed"].is_null() && table["runs"][1]["failed"].is_string());
+    // What failed is tried again.
+    let failed = (table["runs"].as_array().unwrap().iter())
+        .filter(|run| run["failed"].is_string())
+        .count();
+    let list = good(&forced, &["--list", "--resume"]);
+    assert_eq!(list.lines().count(), failed, "{list}");
     let refused = bench(&study);
     let (said, _) = partly(&refused, &[]);
     assert!(
