@@ -129,9 +129,9 @@ fn ranges_begin_and_end_where_they_say() {
 
 #[test]
 fn areas_have_sizes() {
-    let study = study(&format!(
-        "[vary]\n\"test.area\" = [\"9 cm2\", \"400 mm2\", \"1e-4 m2\"]\n[measures.tip]\nreference = \"richardson\"\n"
-    ));
+    let study = study(
+        "[vary]\n\"test.area\" = [\"9 cm2\", \"400 mm2\", \"1e-4 m2\"]\n[measures.tip]\nreference = \"richardson\"\n",
+    );
     let sizes = study.axes[0].sizes().unwrap();
     for (size, wanted) in sizes.iter().zip([9e-4, 4e-4, 1e-4]) {
         assert!((size / wanted - 1.0).abs() < 1e-15, "{size}");

@@ -429,8 +429,8 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         run_as_far_as_it_goes(prepared, &scene, settings, &progress).map(Ok)
     });
     bar.finish_and_clear();
-    let outcome = outcome.map_err(|problem| {
-        let unfinished = Unfinished::new(&scene.source, inputs, &problem);
+    let outcome = outcome.inspect_err(|problem| {
+        let unfinished = Unfinished::new(&scene.source, inputs, problem);
         // The problem itself is what the user has to hear of. Bad input has run nothing.
         if problem.kind != Kind::Input {
             let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
@@ -438,7 +438,6 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
                 let _ = write_standard_json(&unfinished);
             }
         }
-        problem
     })?;
     let outcome = match outcome {
         Ok(outcome) => outcome,

@@ -193,10 +193,9 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
 /// Lets the gauges, and what the state follows for them, count particles as they are counted now.
 pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], state: &mut State) {
     for gauge in &mut *gauges {
-        for members in [Some(&mut gauge.members), gauge.with.as_mut()] {
-            if let Some(members) = members {
-                members.renumber(by, bodies, state);
-            }
+        let members = [Some(&mut gauge.members), gauge.with.as_mut()];
+        for members in members.into_iter().flatten() {
+            members.renumber(by, bodies, state);
         }
         gauge.count_anew(bodies, state);
     }

@@ -339,22 +339,20 @@ pub fn is_locked(path: &Path) -> bool {
 /// The first of `files` that stands in the folder `path` under a name of results, also through a link: a run that writes
 /// there would remove or overwrite it. None: there is none of them, or no such folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
-    let is_frame = |name: &str| frame_number(name).is_some();
-    let is_picture = |name: &str| picture_number(name).is_some();
-    let parts: [(&str, &dyn Fn(&str) -> bool); 4] = [
-        ("", &|name| SINGLE_FILES.contains(&name)),
-        (FRAMES, &is_frame),
-        (PICTURES, &is_picture),
-        (PLOTS, &|name| name.ends_with(".svg")),
-    ];
-    for (part, is_ours) in parts {
+    let is_ours = |part: &str, name: &str| match part {
+        FRAMES => frame_number(name).is_some(),
+        PICTURES => picture_number(name).is_some(),
+        PLOTS => name.ends_with(".svg"),
+        _ => SINGLE_FILES.contains(&name),
+    };
+    for part in ["", FRAMES, PICTURES, PLOTS] {
         let Ok(entries) = fs::read_dir(path.join(part)) else {
             continue;
         };
         for entry in entries.flatten() {
             let name = entry.file_name();
             let is_result = (name.to_str())
-                .is_some_and(|name| is_ours(name) || name.starts_with(UNFINISHED_PREFIX));
+                .is_some_and(|name| is_ours(part, name) || name.starts_with(UNFINISHED_PREFIX));
             if !is_result {
                 continue;
             }

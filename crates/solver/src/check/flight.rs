@@ -341,7 +341,10 @@ mod tests {
         let plate = Wall::standing(Shape::Box(plate), Frame::default());
         let g = [0.0, 0.0, -9.81];
         let beside = ball([1.2, 0.0, 1.0], [0.0; 3], g);
-        assert_eq!(beside.first_meeting(&[plate.clone()], &[]), Meeting::Never);
+        assert_eq!(
+            beside.first_meeting(std::slice::from_ref(&plate), &[]),
+            Meeting::Never
+        );
         let over = ball([1.05, 0.0, 1.0], [0.0; 3], g);
         let at = over.first_meeting(&[plate], &[]);
         assert!(matches!(at, Meeting::At { .. }), "{at:?}");
