@@ -100,6 +100,7 @@ fn commands_run_as_pasted() {
         "again.vtp",
         "rock.vtp",
         "dem-pack.1",
+        "dem-run.1",
     ] {
         assert!(
             fs::metadata(folder.path().join(made)).unwrap().len() > 1000,

@@ -1,12 +1,14 @@
 //! A body: spheres, the bonds between them, and what is known of both.
 //!
 //! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending of the file's name,
-//! [`summary`] says what a body holds.
+//! [`summary`] says what a body holds, [`mass`] what it weighs.
 
 pub mod check;
 pub mod csv;
 pub mod files;
+pub mod inertia;
 pub mod lammps;
+pub mod mass;
 pub mod summary;
 pub(crate) mod table;
 pub mod txt;
@@ -38,6 +40,8 @@ pub struct About {
     pub bonding_radius: Option<f64>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
+    /// What the program that made it warned of, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Spheres joined by bonds. SI units.
@@ -80,6 +84,21 @@ impl Body {
             bonds: bonds.to_vec(),
             ..Parts::default()
         })
+    }
+
+    /// Hash of its numbers (FNV-1a, 64 bit): the same for the same particles and bonds, whatever
+    /// file they come from.
+    pub fn hash(&self) -> u64 {
+        let places = self.positions.iter().flatten().chain(&self.radii);
+        let of_bonds = self.bond_radii.iter().chain(&self.bond_lengths);
+        let mut bytes = Vec::new();
+        for number in places.chain(of_bonds) {
+            bytes.extend(number.to_bits().to_le_bytes());
+        }
+        for end in self.bonds.iter().flatten() {
+            bytes.extend(end.to_le_bytes());
+        }
+        crate::hash::fnv1a(&bytes)
     }
 
     /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,

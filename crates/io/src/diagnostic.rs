@@ -2,13 +2,17 @@
 
 use std::fmt;
 
+use crate::text::visible;
+
 /// Whose fault it is, which decides the exit code of the programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Bad input: exit code 2.
     Input,
-    /// The program could not do its work (disk full, interrupted): exit code 1.
+    /// The program could not do its work (disk full): exit code 1.
     Failed,
+    /// The user stopped it (Ctrl-C): exit code 130.
+    Interrupted,
     /// A check stopped the run because it went unstable: exit code 3.
     Unstable,
 }
@@ -58,6 +62,16 @@ impl Diagnostic {
         }
     }
 
+    /// The user stopped the work.
+    pub fn interrupted(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            kind: Kind::Interrupted,
+            place: String::new(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
+    }
+
     /// A check stopped the run at `place`.
     pub fn unstable(
         place: impl Into<String>,
@@ -83,24 +97,27 @@ impl Diagnostic {
         self
     }
 
-    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable.
+    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable, 130 for one that was
+    /// interrupted.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             Kind::Input => 2,
             Kind::Failed => 1,
+            Kind::Interrupted => 130,
             Kind::Unstable => 3,
         }
     }
 }
 
+/// On one line: names of files and what they say are shown as by [`visible`].
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.place.is_empty() {
-            write!(f, "{}: ", self.place)?;
+            write!(f, "{}: ", visible(&self.place))?;
         }
-        f.write_str(&self.problem)?;
+        f.write_str(&visible(&self.problem))?;
         if !self.remedy.is_empty() {
-            write!(f, "; {}", self.remedy)?;
+            write!(f, "; {}", visible(&self.remedy))?;
         }
         Ok(())
     }

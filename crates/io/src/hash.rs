@@ -17,3 +17,8 @@ pub(crate) fn fnv1a_of_parts(parts: &[&[u8]]) -> u64 {
             (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
         })
 }
+
+/// Hash of the bytes of a file. None: it cannot be read.
+pub fn file_hash(path: &std::path::Path) -> Option<u64> {
+    std::fs::read(path).ok().map(|bytes| fnv1a(&bytes))
+}

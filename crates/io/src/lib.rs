@@ -7,12 +7,14 @@
 pub mod body;
 pub mod checkpoint;
 pub mod diagnostic;
-mod hash;
+pub mod hash;
+pub mod program;
 pub mod results;
 pub mod safe_write;
 pub mod scene;
 pub mod stl;
 pub mod surface;
+pub mod text;
 pub mod units;
 pub mod vtk;
 mod xml;

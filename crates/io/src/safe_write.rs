@@ -1,12 +1,18 @@
 //! Files that appear whole or not at all: written under a temporary name in the same folder, then renamed.
+//!
+//! A temporary file is locked as long as its writer lives. What a killed writer has left is therefore known by its name and by being
+//! free, and the next writer in the folder removes it.
 
-use std::fs::{self, File, Metadata, Permissions};
+use std::collections::BTreeSet;
+use std::fs::{self, File, Metadata, Permissions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use serde::Serialize;
 use tempfile::NamedTempFile;
 
+use crate::text::{visible_json, visible_lines};
 use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
@@ -14,8 +20,16 @@ const BUFFER_BYTES: usize = 1 << 16;
 /// How the names of temporary files begin.
 pub(crate) const UNFINISHED_PREFIX: &str = ".unfinished-";
 
+/// Letters and digits after it.
+const RANDOM: usize = 6;
+/// A new temporary file may be taken for an abandoned one before it is locked: it is made again, at most so often.
+const TRIES: usize = 16;
+
 /// Temporary files that exist at this moment.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Folders in which this process has looked for abandoned files.
+static CLEANED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// A file written in full under a temporary name. Dropped without [`PendingFile::publish`], it vanishes.
 #[derive(Debug)]
@@ -121,11 +135,82 @@ pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     PendingFile::write(path, write)?.publish()
 }
 
-/// Writes to standard output. A reader that closes the pipe early has what it wanted: no error.
+/// Writes lines of text to standard output, without what a terminal would obey ([`crate::text`]). A reader that closes
+/// the pipe early has what it wanted: no error.
 ///
 /// # Errors
 /// Standard output cannot be written to, such as a full disk behind it (exit code 1).
 pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    write_standard_bytes(|out| {
+        let mut lines = VisibleLines {
+            out,
+            last: Vec::new(),
+        };
+        write(&mut lines)?;
+        lines.flush()
+    })
+}
+
+/// Passes lines on once they are whole, without what a terminal would obey.
+struct VisibleLines<'a> {
+    out: &'a mut dyn Write,
+    last: Vec<u8>,
+}
+
+impl Write for VisibleLines<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.last.extend_from_slice(bytes);
+        if bytes.contains(&b'\n') {
+            let end = self.last.iter().rposition(|byte| *byte == b'\n');
+            let rest = self.last.split_off(end.map_or(0, |at| at + 1));
+            let whole = std::mem::replace(&mut self.last, rest);
+            let text = String::from_utf8_lossy(&whole);
+            self.out.write_all(visible_lines(&text).as_bytes())?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let text = String::from_utf8_lossy(&self.last);
+        self.out.write_all(visible_lines(&text).as_bytes())?;
+        self.last.clear();
+        self.out.flush()
+    }
+}
+
+/// Writes `value` to standard output as indented JSON. Numbers that are not finite become `null`.
+///
+/// # Errors
+/// As [`write_standard_output`]; `value` cannot be put as JSON (exit code 1).
+pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
+    write_standard_output(|out| write_json_text(out, value))
+}
+
+/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are not finite become `null`.
+///
+/// # Errors
+/// Those of `out`; `value` cannot be put as JSON.
+pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    let json = serde_json::to_string_pretty(value)?;
+    write_visible_json(out, &json)?;
+    out.write_all(b"\n")
+}
+
+/// Writes a text that is JSON for a terminal, without what that would obey; it means the same.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
+    out.write_all(visible_json(json).as_bytes())
+}
+
+/// Writes to standard output what is no text, and is written as it is.
+///
+/// # Errors
+/// As [`write_standard_output`].
+pub(crate) fn write_standard_bytes(
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
     quiet_when_closed(write_buffered(io::stdout().lock(), write))
         .map_err(|error| explain(Path::new("standard output"), &error))
 }
@@ -185,6 +270,45 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
     Ok(())
 }
 
+/// Whether two names are those of one file, also through links of both kinds. A device is none, and
+/// so is what is not there.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let (Ok(a), Ok(b)) = (fs::metadata(one), fs::metadata(other)) else {
+        return false;
+    };
+    if !(a.is_file() && b.is_file()) {
+        return false;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        (a.dev(), a.ino()) == (b.dev(), b.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let whole = [one, other].map(fs::canonicalize);
+        matches!(whole, [Ok(a), Ok(b)] if a == b)
+    }
+}
+
+/// Refuses to write `target`, an option or a file as messages name it by `place`, where it is one of the files that are read.
+///
+/// # Errors
+/// It is the same file as one of `inputs`, also through a link (exit code 2).
+pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()> {
+    match inputs.iter().find(|input| is_same_file(target, input)) {
+        None => Ok(()),
+        Some(input) => Err(Diagnostic::input(
+            place,
+            format!(
+                "'{}' is read here and would be overwritten",
+                input.display()
+            ),
+            "name another file",
+        )),
+    }
+}
+
 /// Finds out before the work whether there is a folder for a file.
 ///
 /// # Errors
@@ -199,6 +323,31 @@ pub fn need_folder_of(target: &Path) -> Result<()> {
         problem,
         remedy,
     ))
+}
+
+/// Refuses to write over files that are read, under whatever name.
+///
+/// # Errors
+/// One of `written` is one of `read` (bad input): the same path, or a link to it.
+pub fn refuse_to_replace(written: &[PathBuf], read: &[PathBuf]) -> Result<()> {
+    for target in written {
+        if let Some(input) = read.iter().find(|input| is_same_file(target, input)) {
+            let problem = if target == input {
+                "it would replace the file that it is made from".to_owned()
+            } else {
+                format!(
+                    "it would replace '{}', which it is made from",
+                    input.display()
+                )
+            };
+            return Err(Diagnostic::input(
+                target.display().to_string(),
+                problem,
+                "write to another name",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Problem and remedy of a file whose folder is missing.
@@ -219,14 +368,67 @@ fn folder_of(path: &Path) -> &Path {
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED_PREFIX);
+    builder.prefix(UNFINISHED_PREFIX).rand_bytes(RANDOM);
     if let Some(permissions) = usual_permissions() {
         builder.permissions(permissions);
     }
+    let folder = folder_of(target);
+    remove_abandoned_files(folder);
     let mut unfinished = unfinished();
-    let temporary = builder.tempfile_in(folder_of(target))?;
-    unfinished.push(temporary.path().to_owned());
-    Ok(temporary)
+    for _ in 0..TRIES {
+        let temporary = builder.tempfile_in(folder)?;
+        if is_ours(&temporary) {
+            unfinished.push(temporary.path().to_owned());
+            return Ok(temporary);
+        }
+    }
+    Err(io::Error::other("temporary files vanish"))
+}
+
+/// Locks a new temporary file. False if another process has taken it for abandoned in between.
+fn is_ours(temporary: &NamedTempFile) -> bool {
+    match temporary.as_file().try_lock() {
+        Ok(()) => fs::symlink_metadata(temporary.path()).is_ok(),
+        Err(TryLockError::WouldBlock) => false,
+        // This disk knows no locks: nobody removes files from it.
+        Err(TryLockError::Error(_)) => true,
+    }
+}
+
+/// Removes what killed writers have left in a folder, once per process. What cannot be removed stays.
+fn remove_abandoned_files(folder: &Path) {
+    let mut cleaned = CLEANED.lock().unwrap_or_else(PoisonError::into_inner);
+    if !cleaned.insert(folder.to_owned()) {
+        return;
+    }
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries {
+        let name = entry.file_name();
+        let random = name
+            .to_str()
+            .and_then(|name| name.strip_prefix(UNFINISHED_PREFIX));
+        let is_temporary = random.is_some_and(|random| {
+            random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        });
+        if is_temporary {
+            let _ = remove_if_abandoned(&entry.path());
+        }
+    }
+}
+
+/// Removes a temporary file unless its writer lives.
+///
+/// # Errors
+/// Those of removing it. A file that cannot be opened or locked stays, without an error.
+pub(crate) fn remove_if_abandoned(path: &Path) -> io::Result<()> {
+    if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
+        return Ok(());
+    }
+    match File::open(path) {
+        // The lock is held until the file is gone, see `is_ours`.
+        Ok(file) if file.try_lock().is_ok() => fs::remove_file(path),
+        _ => Ok(()),
+    }
 }
 
 /// Readable by others as far as the user's own settings allow, as for any new file.
@@ -254,7 +456,11 @@ pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
             format!("the disk of '{folder}' is read-only"),
             "write elsewhere",
         ),
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => (
+        ErrorKind::FileTooLarge => (
+            format!("a limit on the size of files is reached: {error}"),
+            "raise it (ulimit -f), or write elsewhere",
+        ),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => (
             format!("no space left: {error}"),
             "free some space, or write elsewhere",
         ),
@@ -376,6 +582,127 @@ mod tests {
                 .file_type()
                 .is_char_device()
         );
+    }
+
+    /// Remnants are looked for once per folder and process: each part of the test has its own folder.
+    #[test]
+    fn the_next_write_removes_what_a_killed_one_left() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            ".unfinished-a1B2c3",
+            ".unfinished-notes",
+            ".unfinished-a1B2c34",
+            "a1B2c3",
+        ] {
+            fs::write(folder.path().join(name), "half").unwrap();
+        }
+        fs::create_dir(folder.path().join(".unfinished-Folder")).unwrap();
+        write_file(&folder.path().join("cake.vtp"), |_| Ok(())).unwrap();
+        let kept = [
+            ".unfinished-Folder",
+            ".unfinished-a1B2c34",
+            ".unfinished-notes",
+            "a1B2c3",
+            "cake.vtp",
+        ];
+        assert_eq!(names(folder.path()), kept);
+    }
+
+    #[test]
+    fn a_write_that_is_under_way_elsewhere_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let live = folder.path().join(".unfinished-a1B2c3");
+        let writer = File::create(&live).unwrap();
+        writer.lock().unwrap();
+        write_file(&folder.path().join("cake.vtp"), |_| Ok(())).unwrap();
+        assert!(live.exists());
+        remove_if_abandoned(&live).unwrap();
+        assert!(live.exists());
+        drop(writer);
+        remove_if_abandoned(&live).unwrap();
+        assert!(!live.exists());
+        // Our own are locked until they have their name.
+        let pending = PendingFile::write(&folder.path().join("b.csv"), |_| Ok(())).unwrap();
+        let temporary = pending.temporary.as_ref().unwrap().path().to_owned();
+        remove_if_abandoned(&temporary).unwrap();
+        assert!(temporary.exists());
+        pending.publish().unwrap();
+        assert_eq!(names(folder.path()), ["b.csv", "cake.vtp"]);
+    }
+
+    #[test]
+    fn a_file_is_not_written_over_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("cake.vtp"), "").unwrap();
+        fs::hard_link(path("cake.vtp"), path("hard.vtp")).unwrap();
+        fs::write(path("other.vtp"), "").unwrap();
+        let refused = |name: &str| refuse_to_replace(&[path(name)], &[path("cake.vtp")]);
+        assert!(refused("new.vtp").is_ok() && refused("other.vtp").is_ok());
+        let said = refused("cake.vtp").unwrap_err();
+        assert_eq!(said.exit_code(), 2);
+        assert!(
+            said.problem.contains("the file that it is made from"),
+            "{said}"
+        );
+        assert!(
+            refused("hard.vtp")
+                .unwrap_err()
+                .problem
+                .contains("cake.vtp")
+        );
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("cake.vtp", path("soft.vtp")).unwrap();
+            assert!(refused("soft.vtp").is_err());
+        }
+    }
+
+    #[test]
+    fn lines_pass_without_what_a_terminal_obeys_however_they_are_cut() {
+        let text = "a\u{1b}[2J é\u{202e}x\nsecond\r\n\nlast µ".as_bytes();
+        for at in 0..text.len() {
+            let mut shown = Vec::new();
+            let mut lines = VisibleLines {
+                out: &mut shown,
+                last: Vec::new(),
+            };
+            lines.write_all(&text[..at]).unwrap();
+            lines.write_all(&text[at..]).unwrap();
+            lines.flush().unwrap();
+            let wanted = "a\\u{1b}[2J é\\u{202e}x\nsecond\\u{d}\n\nlast µ";
+            assert_eq!(String::from_utf8(shown).unwrap(), wanted, "cut at {at}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_same_file_is_known_by_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("a"), "x").unwrap();
+        fs::write(path("b"), "x").unwrap();
+        std::os::unix::fs::symlink(path("a"), path("link")).unwrap();
+        fs::hard_link(path("a"), path("hard")).unwrap();
+        for other in ["a", "link", "hard", "../a"] {
+            let other = match other.strip_prefix("../") {
+                Some(name) => path(&format!(
+                    "../{}/{name}",
+                    folder.path().file_name().unwrap().display()
+                )),
+                None => path(other),
+            };
+            assert!(is_same_file(&path("a"), &other), "{}", other.display());
+            let said = refuse_input("here", &other, &[path("b"), path("a")]).unwrap_err();
+            assert_eq!(said.exit_code(), 2);
+            assert!(
+                said.problem
+                    .ends_with("a' is read here and would be overwritten"),
+                "{said}"
+            );
+        }
+        assert!(!is_same_file(&path("a"), &path("b")) && !is_same_file(&path("no"), &path("no")));
+        assert_eq!(refuse_input("here", &path("new"), &[path("a")]), Ok(()));
     }
 
     #[test]

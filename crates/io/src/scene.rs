@@ -10,7 +10,9 @@ mod contact;
 mod describe;
 mod direction;
 mod field;
+mod initial;
 mod inlet;
+mod inputs;
 mod load;
 mod material;
 mod measure;
@@ -43,6 +45,7 @@ use std::path::PathBuf;
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};
+pub use initial::Initial;
 pub use inlet::{FeedRate, Inlet};
 pub use outlet::Outlet;
 pub use read::{read_scene, scene_from_text, text_of};
@@ -77,6 +80,8 @@ pub struct Scene {
     pub walls: BTreeMap<String, Wall>,
     /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
     pub sets: BTreeMap<String, ParticleSet>,
+    /// `[initial.NAME]`
+    pub initial: BTreeMap<String, Initial>,
     /// `[supports.NAME]`
     pub supports: BTreeMap<String, Support>,
     /// `[loads.NAME]`
@@ -147,17 +152,21 @@ pub enum StartOverlap {
     Refuse,
     /// "relax": the overlap is the origin of their contact law.
     Relax,
+    /// "keep": contacts like all others, which press with the force of their overlap.
+    Keep,
 }
 
-/// What particles are made of.
+/// What particles and walls are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand in the scene has none.
     pub density_kg_m3: Option<f64>,
     /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
-    /// `poisson_ratio`, in (-1, 0.5). 0.3 unless given.
+    /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
     pub poisson_ratio: f64,
+    /// `rigid`: does not deform; of walls only, and without the values above. Not unless given.
+    pub rigid: bool,
 }
 
 /// Which beam a bond is taken for.
@@ -199,7 +208,7 @@ pub struct BondKind {
     pub formulation: Formulation,
     /// `young_modulus`, Pa.
     pub young_modulus_pa: f64,
-    /// `poisson_ratio`, in (-1, 0.5).
+    /// `poisson_ratio`, in (-1, 0.5].
     pub poisson_ratio: f64,
     /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
     pub radius_factor: Option<f64>,
@@ -287,6 +296,17 @@ pub struct BodyEntry {
     pub angular_velocity_rad_s: [f64; 3],
     /// `start_as`, "bonded" unless given, and `clump`.
     pub start_as: StartAs,
+    /// `body_density` or `mass`. None: its spheres have the density of the material.
+    pub whole_mass: Option<WholeMass>,
+}
+
+/// What a body weighs as a whole: the density of its spheres follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeMass {
+    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    Density(f64),
+    /// `mass`, kg.
+    Mass(f64),
 }
 
 /// Which particles are meant.
@@ -355,6 +375,9 @@ pub struct Support {
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,
+    /// `end`: from this time on the freedoms are free, s. Not before the factor's last change.
+    /// None: never.
+    pub end_s: Option<f64>,
 }
 
 /// A load on a set of particles, shared equally among them.
@@ -368,21 +391,27 @@ pub struct Load {
     pub torque_n_m: [f64; 3],
     /// `ramp` or `table`.
     pub factor: Factor,
+    /// `end`: from this time on it is zero, s. Not before the factor's last change. None: never.
+    pub end_s: Option<f64>,
 }
 
-/// What is measured. Of a set, positions and velocities are means, energies, forces and counts are sums. Walls have positions, forces and
-/// torques, fragments a count and masses, sets all else and positions.
+/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies, forces and counts are
+/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
     Position(u8),
-    /// "displacement_x", ... since the start, m.
+    /// "displacement_x", ... of the centre of mass since the start, m.
     Displacement(u8),
-    /// "velocity_x", ... m/s.
+    /// "displacement": its magnitude, m.
+    DisplacementMagnitude,
+    /// "velocity_x", ... of the centre of mass, m/s.
     Velocity(u8),
-    /// "rotation_x", ... since the start (rotation vector), rad.
+    /// "velocity": its magnitude, m/s.
+    VelocityMagnitude,
+    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
     Rotation(u8),
-    /// "angular_velocity_x", ... rad/s.
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum, rad/s.
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the set, N.
     Reaction(u8),
@@ -396,10 +425,20 @@ pub enum Quantity {
     BrokenBonds,
     /// "largest_utilisation": stress over strength of the bond nearest to failure.
     LargestUtilisation,
-    /// "angle_of_repose": slope of the heap that the particles form, rad.
+    /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
-    /// "force_x", ... force of particles on the wall, N.
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls on a set, N.
     Force(u8),
+    /// "force": its magnitude, N.
+    ForceMagnitude,
+    /// "contact_force_x", ... force of contacts with what `with` names on the set, N.
+    ContactForce(u8),
+    /// "contact_force": its magnitude, N.
+    ContactForceMagnitude,
+    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    ContactOverlap,
+    /// "contact_duration": how long the two have touched since the start, s.
+    ContactDuration,
     /// "torque_x", ... torque of particles on the wall about its pivot, N m.
     Torque(u8),
     /// "count" of fragments.
@@ -430,12 +469,16 @@ pub struct Measure {
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,
+    /// `with`: the body, set or wall that `of` touches. Only of contacts, which need it.
+    pub with: Option<String>,
     /// `at`, "end" unless given.
     pub at: At,
-    /// `reference`: what the result should be, in the quantity's SI unit. Not zero where there is a tolerance.
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a `tolerance`.
     pub reference: Option<f64>,
     /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
     pub tolerance: Option<f64>,
+    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's unit.
+    pub tolerance_absolute: Option<f64>,
 }
 
 /// What is written, and how often. Times are simulated seconds.

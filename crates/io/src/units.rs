@@ -23,7 +23,7 @@ pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t
 pub struct Dimension {
     /// What a value of it is called.
     pub name: &'static str,
-    /// Its SI unit; empty for plain numbers.
+    /// The unit of its values, which is that of SI but for [`ANGLE_DEG`]; empty for plain numbers.
     pub si: &'static str,
     /// Units and their size in the SI unit.
     pub units: &'static [(&'static str, f64)],
@@ -89,6 +89,19 @@ pub const ANGLE: Dimension = Dimension {
         ("°", PI / 180.0),
     ],
     example: "45 deg",
+};
+
+/// An angle that is given and told in degrees.
+pub const ANGLE_DEG: Dimension = Dimension {
+    name: "angle",
+    si: "deg",
+    units: &[
+        ("deg", 1.0),
+        ("°", 1.0),
+        ("rad", 180.0 / PI),
+        ("mrad", 0.18 / PI),
+    ],
+    example: "30 deg",
 };
 
 /// Velocity, m/s.
@@ -262,6 +275,29 @@ pub const NUMBER: Dimension = Dimension {
     example: "0.3",
 };
 
+/// All dimensions.
+pub const DIMENSIONS: [Dimension; 19] = [
+    NUMBER,
+    LENGTH,
+    AREA,
+    TIME,
+    MASS,
+    DENSITY,
+    ANGLE,
+    VELOCITY,
+    ANGULAR_VELOCITY,
+    ACCELERATION,
+    STRESS,
+    FORCE,
+    TORQUE,
+    STIFFNESS,
+    ENERGY,
+    ENERGY_PER_MASS,
+    MASS_RATE,
+    RATE,
+    VISCOUS_DAMPING,
+];
+
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.
 ///
 /// # Errors
@@ -425,26 +461,7 @@ mod tests {
 
     #[test]
     fn every_unit_reads_its_size() {
-        for dimension in [
-            LENGTH,
-            DENSITY,
-            TIME,
-            ANGLE,
-            VELOCITY,
-            ANGULAR_VELOCITY,
-            ACCELERATION,
-            STRESS,
-            FORCE,
-            TORQUE,
-            MASS,
-            STIFFNESS,
-            ENERGY,
-            ENERGY_PER_MASS,
-            MASS_RATE,
-            RATE,
-            VISCOUS_DAMPING,
-            NUMBER,
-        ] {
+        for dimension in DIMENSIONS {
             for (unit, size) in dimension.units {
                 let value = quantity(&format!("2 {unit}"), &dimension);
                 assert_eq!(value.ok(), Some(2.0 * size), "{unit}");
@@ -452,6 +469,20 @@ mod tests {
             assert!(quantity(dimension.example, &dimension).is_ok());
             assert!(quantity("2 parsec", &dimension).is_err());
         }
+    }
+
+    /// A dimension that is declared above is known to studies, too.
+    #[test]
+    fn all_dimensions_are_in_the_list() {
+        let declared = include_str!("units.rs")
+            .matches(": Dimension = Dimension {")
+            .count();
+        // This test names the words once itself.
+        assert_eq!(declared - 1, DIMENSIONS.len());
+        let mut names: Vec<&str> = DIMENSIONS.iter().map(|d| d.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), DIMENSIONS.len());
     }
 
     #[test]

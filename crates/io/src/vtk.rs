@@ -210,15 +210,30 @@ pub(crate) fn write_number(
 
 /// A field of text, unless it is not known: an array of signed bytes with a zero at its end.
 pub(crate) fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) -> io::Result<()> {
-    let Some(text) = text else { return Ok(()) };
+    text.map_or(Ok(()), |text| write_texts(out, name, &[text]))
+}
+
+/// A field of texts, unless there are none: each as signed bytes with a zero at its end.
+pub(crate) fn write_texts(
+    out: &mut dyn Write,
+    name: &str,
+    texts: &[impl AsRef<str>],
+) -> io::Result<()> {
+    let count = texts.len();
+    if count == 0 {
+        return Ok(());
+    }
     write!(
         out,
-        "      <Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">"
+        "      <Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\">"
     )?;
-    for byte in text.bytes() {
-        write!(out, "{} ", byte.cast_signed())?;
+    for (at, text) in texts.iter().enumerate() {
+        for byte in text.as_ref().bytes() {
+            write!(out, "{} ", byte.cast_signed())?;
+        }
+        write!(out, "0{}", if at + 1 < count { " " } else { "" })?;
     }
-    writeln!(out, "0</Array>")
+    writeln!(out, "</Array>")
 }
 
 /// Values that are gathered before they are written, and the most bytes that each may have.

@@ -5,6 +5,8 @@
 mod bodies;
 #[path = "body_files/damaged.rs"]
 mod damaged;
+#[path = "body_files/endless.rs"]
+mod endless;
 #[path = "body_files/every_reader.rs"]
 mod every_reader;
 #[path = "body_files/foreign.rs"]

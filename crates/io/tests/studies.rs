@@ -4,7 +4,9 @@
 
 use std::path::Path;
 
-use dem_io::study::{Combine, MeasureOf, Reference, Study, rewritten, scene_with, study_from_text};
+use dem_io::study::{
+    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with, study_from_text,
+};
 
 const HEAD: &str = "version = 1\nscene = \"bar.toml\"\n";
 const TIP: &str = "[measures.tip]\n";
@@ -126,6 +128,17 @@ fn ranges_begin_and_end_where_they_say() {
 }
 
 #[test]
+fn areas_have_sizes() {
+    let study = study(&format!(
+        "[vary]\n\"test.area\" = [\"9 cm2\", \"400 mm2\", \"1e-4 m2\"]\n[measures.tip]\nreference = \"richardson\"\n"
+    ));
+    let sizes = study.axes[0].sizes().unwrap();
+    for (size, wanted) in sizes.iter().zip([9e-4, 4e-4, 1e-4]) {
+        assert!((size / wanted - 1.0).abs() < 1e-15, "{size}");
+    }
+}
+
+#[test]
 fn what_is_no_study() {
     for (rest, parts) in [
         (
@@ -159,7 +172,7 @@ fn what_is_no_study() {
         ),
         (
             "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n",
-            "count is 1, but must be from 2 to 1000000",
+            "count is 1, but must be from 2 to 100000",
         ),
         (
             "[vary]\n\"run.safety\" = { values = [1, 2], size = [1] }\n[measures.tip]\n",
@@ -226,6 +239,26 @@ fn what_is_no_study() {
             "at most 1024",
         ),
         (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1000000000000 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 1000000000000, but must be from 2 to 100000",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1e300 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 1e300",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 60000 }\n\"run.rest\" = { from = 1, to = 2, count = 60000 }\n[measures.tip]\n",
+            "study.toml:5: with run.rest the axes have 120000 values, more than 100000; vary less, or in several studies",
+        ),
+        (
+            "[vary]\n\"run.safety\" = { from = -1e308, to = 1e308, count = 99999999999999999999 }\n[measures.tip]\n",
+            "vary.\"run.safety\".count is 99999999999999999999",
+        ),
+        (
+            "repeats = 18446744073709551615\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeats is 18446744073709551615, but must be at most 1024",
+        ),
+        (
             "repeat = 3\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
             "unknown key repeat; did you mean 'repeats'?",
         ),
@@ -233,6 +266,14 @@ fn what_is_no_study() {
         let said = refused(&format!("{HEAD}{rest}"));
         assert!(said.contains(parts), "{rest}\n{said}\n{parts}");
     }
+    let axes: String = (0..101)
+        .map(|k| format!("\"run.safety{k}\" = [1]\n"))
+        .collect();
+    let said = refused(&format!("{HEAD}[vary]\n{axes}[measures.tip]\n"));
+    assert!(
+        said.starts_with("study.toml:104: with run.safety100 there are more than 100 axes; join"),
+        "{said}"
+    );
     assert!(refused("version = 2\n").contains("at most 1"));
     assert!(
         refused("version = 1\n[vary]\n\"run.safety\" = [1]\n[measures.tip]\n")
@@ -333,4 +374,34 @@ fn a_scene_is_written_with_its_values() {
         text.contains("file = ") && !text.contains("bond_list"),
         "{text}"
     );
+}
+
+/// An angle of repose is in degrees, in a study too; contacts have references of their own kinds.
+#[test]
+fn references_are_in_the_unit_of_the_measure() {
+    let scene = format!(
+        "{SCENE}
+[measures.slope]
+quantity = \"angle_of_repose\"
+reference = \"0.5 rad\"
+
+[walls.floor]
+plane = {{ point = [0, 0, -1], normal = [0, 0, 1] }}
+material = \"steel\"
+
+[measures.hit]
+of = \"bar\"
+with = \"floor\"
+quantity = \"contact_duration\"
+"
+    );
+    let study = study(
+        "[vary]\n\"run.safety\" = [0.9]\n[measures.slope]\n[measures.hit]\nreference = { value = \"2 ms\" }\n[measures.turn]\nmeasure = \"slope\"\nreference = { value = \"30 deg\" }\n",
+    );
+    let scene = scene_with(&study, &scene, std::iter::empty()).unwrap();
+    let values = reference_values(&study, &scene).unwrap();
+    let wanted = [0.5_f64.to_degrees(), 2e-3, 30.0];
+    for (value, wanted) in values.into_iter().zip(wanted) {
+        assert!((value.unwrap() / wanted - 1.0).abs() < 1e-14);
+    }
 }

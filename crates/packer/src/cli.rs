@@ -11,7 +11,10 @@ use crate::sizes::{By, Sizes};
 use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
-use dem_io::safe_write::{need_folder_of, write_standard_output};
+use dem_io::program::{Shell, print_completions, print_man_page};
+use dem_io::safe_write::{
+    need_folder_of, refuse_to_replace, write_standard_json, write_standard_output,
+};
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{density_kg_m3, length_m, length_unit_m, show_length, significant};
 use dem_io::{Diagnostic, Result, Surface};
@@ -65,7 +68,7 @@ enum Command {
     /// Print a script that completes dem-pack's options in a shell
     Completions {
         /// Which shell
-        shell: clap_complete::Shell,
+        shell: Shell,
     },
     /// Print the man page
     Man,
@@ -213,16 +216,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             json,
         }) => info(file, reading, *json),
         Some(Command::Convert { from, to }) => {
-            body_files(to)?;
+            refuse_to_replace(&body_files(to)?, &body_files(from)?)?;
             write_body(&read_body(from)?, to)
         }
-        Some(Command::Completions { shell }) => write_standard_output(|mut out| {
-            clap_complete::generate(*shell, &mut Arguments::command(), "dem-pack", &mut out);
-            Ok(())
-        }),
-        Some(Command::Man) => write_standard_output(|mut out| {
-            clap_mangen::Man::new(Arguments::command()).render(&mut out)
-        }),
+        Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
+        Some(Command::Man) => print_man_page(Arguments::command()),
         None => pack_command(&arguments.pack),
     }
 }
@@ -260,7 +258,7 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         return Err(Diagnostic::input("", "no STL file was given", ""));
     };
     let output = arguments.output.as_deref().unwrap_or(Path::new("-"));
-    check_output(output)?;
+    check_output(output, stl, arguments.diameter.as_deref())?;
     if arguments.json && output == Path::new("-") {
         return Err(Diagnostic::input(
             "--json",
@@ -308,10 +306,7 @@ fn pack_and_write(
 
     let text = summary_text(&surface, &made, output);
     if arguments.json {
-        return write_standard_output(|out| {
-            serde_json::to_writer_pretty(&mut *out, &made)?;
-            writeln!(out)
-        });
+        return write_standard_json(&made);
     }
     if arguments.output.is_some() && output != Path::new("-") {
         if arguments.quiet {
@@ -482,10 +477,14 @@ fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
 }
 
 /// Finds out before the work whether the body can be written at all.
-fn check_output(output: &Path) -> Result<()> {
-    for file in body_files(output)? {
-        need_folder_of(&file)?;
+fn check_output(output: &Path, stl: &Path, diameter: Option<&str>) -> Result<()> {
+    let files = body_files(output)?;
+    for file in &files {
+        need_folder_of(file)?;
     }
+    let sieve = diameter.and_then(Sizes::file).map(PathBuf::from);
+    let read: Vec<PathBuf> = sieve.into_iter().chain([stl.to_owned()]).collect();
+    refuse_to_replace(&files, &read)?;
     if output == Path::new("-") && std::io::stdout().is_terminal() {
         return Err(Diagnostic::input(
             "standard output",
@@ -544,24 +543,16 @@ fn info(file: &Path, reading: &Reading, json: bool) -> Result<()> {
         .is_some_and(|e| e.eq_ignore_ascii_case("stl"))
     {
         let surface = read_surface(file, reading)?;
-        return write_standard_output(|out| {
-            if json {
-                serde_json::to_writer_pretty(&mut *out, &surface_summary(&surface))?;
-                writeln!(out)
-            } else {
-                out.write_all(surface_text(&surface).as_bytes())
-            }
-        });
+        if json {
+            return write_standard_json(&surface_summary(&surface));
+        }
+        return write_standard_output(|out| out.write_all(surface_text(&surface).as_bytes()));
     }
     let summary = body_summary(&read_body(file)?);
-    write_standard_output(|out| {
-        if json {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        } else {
-            write!(out, "{summary}")
-        }
-    })
+    if json {
+        return write_standard_json(&summary);
+    }
+    write_standard_output(|out| write!(out, "{summary}"))
 }
 
 fn progress_bar() -> ProgressBar {

@@ -9,6 +9,7 @@ use crate::pack::{PackHistory, PackSettings, Progress, can_fill_voids, pack, to_
 use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::sizes::Sizes;
 use dem_io::body::About;
+use dem_io::body::mass::{BodyMass, of_body, of_named_density, volume_m3};
 use dem_io::units::significant;
 use dem_io::{Body, Result, Surface};
 use rayon::prelude::*;
@@ -54,6 +55,12 @@ pub struct Seconds {
 pub struct Made {
     /// How good it is.
     pub quality: Report,
+    /// What it weighs, beside its shape filled with the density of the particles, if that is given.
+    pub mass: Option<BodyMass>,
+    /// Mass of the particles over that of the shape filled with their density, whatever it is.
+    pub mass_over_shape: f64,
+    /// Centre of mass, m. Length 3.
+    pub centre_m: [f64; 3],
     /// How it came about. Its seconds are those of all packings of a density search.
     pub history: PackHistory,
     /// The bonding radius that was used.
@@ -183,9 +190,14 @@ pub fn make_body(
             overlap: Some(packing_settings.overlap),
             bonding_radius: Some(bonding_radius),
             seed: Some(packing_settings.seed),
+            warnings: quality.warnings.clone(),
         },
     };
+    let spheres_m3: f64 = body.radii.iter().map(|radius| volume_m3(*radius)).sum();
     let made = Made {
+        mass: of_named_density(&body),
+        mass_over_shape: spheres_m3 / surface.volume_m3(),
+        centre_m: of_body(&body, 1.0).centre_m,
         quality,
         history: packing.history,
         bonding_radius,

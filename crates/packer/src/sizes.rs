@@ -55,6 +55,11 @@ pub struct Sizes {
 }
 
 impl Sizes {
+    /// The file of a sieve curve that `text` names, if it names one.
+    pub fn file(text: &str) -> Option<&str> {
+        parse::file(text)
+    }
+
     /// The sizes that `text` asks for, in one of the forms above; reads the file of a sieve curve.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! What a run checks of itself.
 
+pub mod flight;
+pub mod laws;
 pub mod ledger;
 pub mod limit;
 pub mod linear;

@@ -10,20 +10,25 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, files::body_files, read_body};
 use dem_io::checkpoint::read_checkpoint;
-use dem_io::results::{Existing, ResultsFolder};
-use dem_io::safe_write::write_standard_output;
+use dem_io::diagnostic::Kind;
+use dem_io::program::{Shell, print_completions, print_man_page};
+use dem_io::results::folder::refuse_inputs_among_results;
+use dem_io::results::{Existing, ResultsFolder, write_json};
+use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
 use dem_io::scene::{BodySource, Integrator, Scene};
+use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
+use crate::output::summary::Unfinished;
 use crate::plan::plan;
-use crate::run::{RunSettings, run as run_plan};
+use crate::run::{Finished, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
 use crate::snapshot::Snapshot;
 
 /// Runs scenes with bonded bodies.
@@ -33,7 +38,7 @@ use crate::snapshot::Snapshot;
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 failed while running or interrupted, 2 bad input, 3 unstable.\n\
+    after_help = "Exit codes: 0 done, 1 failed while running, 2 bad input, 3 unstable, 130 interrupted.\n\
                   Examples:\n  \
                   dem-run data/scenes/cantilever.toml\n  \
                   dem-run spinning-bar.toml --set run.end_time=0.5 --out spin\n  \
@@ -63,6 +68,7 @@ enum Command {
     /// Run a scene with many settings: error against run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and against what. Every run is a process of its own.\n\
+                      Exit code 1, after the tables are written, where runs failed or are missing; also with --collect and --quiet.\n\
                       Examples:\n  \
                       dem-run sweep data/studies/cantilever-models.toml --want error=1% --write fast.toml\n  \
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
@@ -72,6 +78,13 @@ enum Command {
     #[command(after_help = "Exit code 0 if all cases do as predicted, else 1.\n\
                       Example:\n  dem-run stress spin mass-ratio")]
     Stress(stress::StressArguments),
+    /// Print a script that completes dem-run's options in a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the man page
+    Man,
 }
 
 #[derive(Debug, Args)]
@@ -131,12 +144,15 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
                 None => scene_data,
             };
-            let plan = plan(&scene_data, bodies, threads, scene.force_step)?;
+            let mut plan = plan(&scene_data, bodies, threads, scene.force_step)?;
+            plan.inputs.set.clone_from(&scene.overrides);
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
+        Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
+        Some(Command::Man) => print_man_page(Arguments::command()),
         None if arguments.run.scene.names_a_scene() => {
             in_pool(arguments.run.scene.threads, |threads| {
                 run_scene(&arguments.run, threads, interrupt)
@@ -354,14 +370,20 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         None => scene,
     };
     let force_step = arguments.scene.force_step;
-    let prepared = plan(&scene, bodies, threads, force_step)?;
+    let mut prepared = plan(&scene, bodies, threads, force_step)?;
+    prepared.inputs.set.clone_from(&arguments.scene.overrides);
+    let inputs = prepared.inputs.clone();
     if !arguments.quiet {
         let notes = prepared.notes.iter().map(|note| ("note", note));
-        let warnings = prepared.warnings.iter().map(|warning| ("warning", warning));
+        let warnings = prepared.warnings.iter().chain(&prepared.forecast.warnings);
+        let warnings = warnings.map(|warning| ("warning", warning));
         for (kind, text) in notes.chain(warnings) {
             // Nobody to read it is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{kind}: {text}");
+            let _ = writeln!(std::io::stderr(), "{kind}: {}", visible(text));
         }
+    }
+    if let Some((path, _)) = &folder {
+        refuse_inputs_among_results(path, &scene.input_files())?;
     }
     let folder = folder
         .map(|(path, existing)| ResultsFolder::create(&path, existing))
@@ -380,7 +402,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         progress_bar()
     };
     let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
-    let summary = interrupt.heeded_by(|interrupted| {
+    let outcome = interrupt.heeded_by(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
             resume,
@@ -401,20 +423,60 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
             bar.set_prefix("");
         }
-        run_plan(prepared, &scene, settings, &progress)
+        if let Some(finished) = finish(&prepared, &scene, &settings)? {
+            return Ok(Err(finished));
+        }
+        run_as_far_as_it_goes(prepared, &scene, settings, &progress).map(Ok)
     });
     bar.finish_and_clear();
-    let summary = summary?;
+    let outcome = outcome.map_err(|problem| {
+        let unfinished = Unfinished::new(&scene.source, inputs, &problem);
+        // The problem itself is what the user has to hear of. Bad input has run nothing.
+        if problem.kind != Kind::Input {
+            let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
+            if arguments.scene.json {
+                let _ = write_standard_json(&unfinished);
+            }
+        }
+        problem
+    })?;
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(finished) => return say_finished(arguments, &finished),
+    };
+    let summary = &outcome.summary;
     if arguments.scene.json {
+        write_standard_json(summary)?;
+    } else if !arguments.quiet && outcome.problem.is_none() {
         write_standard_output(|out| {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        })
-    } else if arguments.quiet {
-        Ok(())
-    } else {
-        write_standard_output(|out| write!(out, "{summary}"))
+            write!(out, "{summary}")?;
+            match &summary.results {
+                None => writeln!(
+                    out,
+                    "no files written: add --out FOLDER to keep the results"
+                ),
+                Some(_) => Ok(()),
+            }
+        })?;
     }
+    outcome.problem.map_or(Ok(()), Err)
+}
+
+/// Says what was missing of a run that had come to its end.
+fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
+    if arguments.scene.json {
+        return write_standard_output(|out| write_visible_json(out, &finished.summary));
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
+    write_standard_output(|out| {
+        writeln!(
+            out,
+            "this run had come to its end; what was missing has been written: {}",
+            visible(&finished.missing.join(", "))
+        )
+    })
 }
 
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
@@ -449,12 +511,8 @@ fn body_information(arguments: &SceneArguments) -> Result<()> {
         )
     })?;
     let summary = body_summary(&read_body(path)?);
-    write_standard_output(|out| {
-        if arguments.json {
-            serde_json::to_writer_pretty(&mut *out, &summary)?;
-            writeln!(out)
-        } else {
-            write!(out, "{summary}")
-        }
-    })
+    if arguments.json {
+        return write_standard_json(&summary);
+    }
+    write_standard_output(|out| write!(out, "{summary}"))
 }

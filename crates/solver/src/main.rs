@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Parser;
 use dem_io::Diagnostic;
+use dem_io::program::take_size_limits_as_errors;
 use dem_io::safe_write::{remove_unfinished, write_standard_error};
 use dem_run::cli::{Arguments, run};
 use dem_run::interrupt::Interrupt;
@@ -16,11 +17,12 @@ fn main() -> ExitCode {
     let at_interrupt = move || {
         if !asked.ask() {
             remove_unfinished();
-            let problem = Diagnostic::failed("", "interrupted", "");
+            let problem = Diagnostic::interrupted("interrupted", "");
             write_standard_error(&problem);
             std::process::exit(i32::from(problem.exit_code()));
         }
     };
+    take_size_limits_as_errors();
     // Without the handler an interrupted run would leave no checkpoint, no more.
     let _ = ctrlc::set_handler(at_interrupt);
     match run(&arguments, &interrupt) {

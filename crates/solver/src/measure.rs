@@ -1,21 +1,33 @@
 //! Measures: named quantities of sets of particles, followed through a run.
 
 mod heap;
+mod members;
+mod whole;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use dem_io::scene::{At, Measure, Quantity};
-use serde::{Deserialize, Serialize};
+use nalgebra::{UnitQuaternion, Vector3};
+use serde::Serialize;
 
 use crate::check::ledger::Balance;
 use crate::check::totals::synchronous_motions;
 use crate::clusters::fragments;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
-use crate::physics::rigid::rotation_vector;
 use crate::plan::Plan;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::{GONE, Renumbered};
+use crate::stages::clumps::synchronous;
+use crate::stages::population::Renumbered;
 use crate::state::State;
-use crate::state::particles::Motion;
+use crate::state::watches::{Seen, Watch, Watched};
+
+use self::members::{Members, wall_number};
+use self::whole::{Motions, Starts, start_centre, starts, turned_before};
+
+pub use self::heap::FEWEST as FEWEST_IN_HEAP;
+pub use crate::state::watches::History;
 
 /// A measure and the particles that it is of.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,25 +36,19 @@ pub struct Gauge {
     pub name: String,
     /// What is asked.
     pub measure: Measure,
-    particles: Vec<u32>,
-    /// The wall that it is of, by number.
-    wall: Option<usize>,
-    /// Whether those are all there are.
-    of_all: bool,
-    /// Mean position at the start, m. Length 3.
-    start_m: [f64; 3],
+    members: Members,
+    /// The particles that it is with, if that is no wall.
+    with: Option<Members>,
+    /// The walls that it is of and that it is with, by number.
+    walls: [Option<usize>; 2],
+    /// Where the bodies of the scene stood at the start. Empty where nobody asks.
+    starts: Arc<Starts>,
+    /// Centre of mass of its particles at the start, m. No numbers where nobody asks.
+    start: Vector3<f64>,
+    /// How those of its particles were turned at the start that were. Empty where nobody asks.
+    turned_before: BTreeMap<u32, UnitQuaternion<f64>>,
     /// What it has shown.
     pub history: History,
-}
-
-/// What a measure has shown so far.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct History {
-    last: Option<(f64, f64)>,
-    largest: Option<f64>,
-    smallest: Option<f64>,
-    integral: f64,
-    duration_s: f64,
 }
 
 /// Result of a measure.
@@ -53,7 +59,7 @@ pub struct Measured {
     pub name: String,
     /// In `unit`.
     pub value: f64,
-    /// SI unit; empty for plain numbers.
+    /// SI unit, or degrees for an angle of repose; empty for plain numbers.
     pub unit: String,
     /// What it should be.
     pub reference: Option<f64>,
@@ -61,45 +67,76 @@ pub struct Measured {
     pub error: Option<f64>,
     /// Largest error for the run to be called good.
     pub tolerance: Option<f64>,
+    /// Largest difference from the reference for the run to be called good, in `unit`.
+    pub tolerance_absolute: Option<f64>,
+    /// Why there is no value. None: there is one.
+    pub missing: Option<String>,
 }
 
 impl Measured {
-    /// Whether the error is within the tolerance; true without one.
+    /// Whether the error is within each tolerance; true without one. An error that is no number is not.
     pub fn is_good(&self) -> bool {
-        match (self.error, self.tolerance) {
+        let off = self.reference.map(|reference| self.value - reference);
+        let within = |error: Option<f64>, tolerance: Option<f64>| match (error, tolerance) {
             (Some(error), Some(tolerance)) => error.abs() <= tolerance,
             _ => true,
-        }
+        };
+        within(self.error, self.tolerance) && within(off, self.tolerance_absolute)
     }
 }
 
 /// The gauges of a plan that has not been stepped.
 pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
-    let mut gauges: Vec<Gauge> = scene
-        .measures
-        .iter()
-        .map(|(name, measure)| {
-            let particles = plan.sets.get(&measure.of).cloned().unwrap_or_default();
-            let mut walls = scene.walls.keys();
-            Gauge {
-                wall: walls.position(|wall| *wall == measure.of),
-                name: name.clone(),
-                measure: measure.clone(),
-                of_all: particles.len() == plan.state.particles.len(),
-                start_m: mean_position(&plan.state, &particles),
-                particles,
-                history: History::default(),
-            }
-        })
-        .collect();
-    if !plan.state.clumps.templates.is_empty() {
+    let counts_from_start = |measure: &Measure| {
+        matches!(
+            measure.quantity,
+            Quantity::Displacement(_) | Quantity::DisplacementMagnitude | Quantity::Rotation(_)
+        )
+    };
+    let starts = if scene.measures.values().any(counts_from_start) {
+        starts(&plan.bodies, &plan.state)
+    } else {
+        Starts::new()
+    };
+    let starts = Arc::new(starts);
+    let members = |name: &str| {
+        let particles = plan.sets.get(name).cloned().unwrap_or_default();
+        let mut members = Members::new(name, particles);
         // The sets of a plan know no spheres of clumps.
-        renumber(&mut gauges, &[], &plan.bodies, &plan.state);
-        for gauge in &mut gauges {
-            gauge.start_m = mean_position(&plan.state, &gauge.particles);
-        }
-    }
-    gauges
+        members.renumber(&[], &plan.bodies, &plan.state);
+        members
+    };
+    let gauge = |(name, measure): (&String, &Measure)| {
+        let with = measure.with.as_deref();
+        let with_wall = with.and_then(|with| wall_number(scene, with));
+        let mut gauge = Gauge {
+            name: name.clone(),
+            measure: measure.clone(),
+            members: members(&measure.of),
+            with: with.filter(|_| with_wall.is_none()).map(members),
+            walls: [wall_number(scene, &measure.of), with_wall],
+            starts: Arc::clone(&starts),
+            start: Vector3::repeat(f64::NAN),
+            turned_before: BTreeMap::new(),
+            history: History::default(),
+        };
+        gauge.count_anew(&plan.bodies, &plan.state);
+        gauge
+    };
+    scene.measures.iter().map(gauge).collect()
+}
+
+/// Lets a state that is about to be stepped follow what the gauges need of every step.
+pub fn place_watches(gauges: &[Gauge], state: &mut State) {
+    let watch = |gauge: &Gauge| {
+        Some(Watch {
+            quantity: gauge.measure.quantity,
+            of: gauge.watched(state)?,
+            seen: Seen::default(),
+        })
+    };
+    let watches = gauges.iter().filter_map(watch).collect();
+    state.watches = watches;
 }
 
 /// Reads all gauges between a kick and the drift after it, and notes what they show. One value for each.
@@ -107,7 +144,10 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
     let needs_motions = |g: &Gauge| {
         matches!(
             g.measure.quantity,
-            Quantity::Velocity(_) | Quantity::AngularVelocity(_) | Quantity::KineticEnergy
+            Quantity::Velocity(_)
+                | Quantity::VelocityMagnitude
+                | Quantity::AngularVelocity(_)
+                | Quantity::KineticEnergy
         )
     };
     let counts_mass = |g: &Gauge| {
@@ -123,85 +163,124 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
         Vec::new()
     };
     let motions = if gauges.iter().any(needs_motions) {
-        synchronous_motions(state)
+        Motions {
+            particles: synchronous_motions(state),
+            clumps: synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s),
+        }
     } else {
-        Vec::new()
+        Motions::default()
     };
-    gauges
-        .iter_mut()
-        .map(|gauge| {
-            let value = gauge.read(state, &motions, &masses_kg, balance);
-            gauge.history.note(state.time_s, value);
-            value
-        })
-        .collect()
+    let mut watches = state.watches.iter();
+    let mut values = Vec::new();
+    for gauge in gauges {
+        let watch = gauge.is_watched().then(|| watches.next()).flatten();
+        let value = match watch {
+            Some(watch) => {
+                gauge.history = watch.seen.history;
+                watch.seen.value
+            }
+            None => {
+                let value = gauge.read(state, &motions, &masses_kg, balance);
+                gauge.history.note(state.time_s, value);
+                value
+            }
+        };
+        values.push(value);
+    }
+    values
 }
 
-/// Lets the gauges count particles as they are counted now: those of all, of bodies by their names, and of sets as far as their particles are there.
-pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], state: &State) {
-    for gauge in gauges {
-        let named = |name: &String| *name == gauge.measure.of;
-        let templates = &state.clumps.templates;
-        if gauge.measure.of == "all" {
-            gauge.particles = (0..state.particles.len() as u32).collect();
-        } else if templates.iter().any(|template| named(&template.body)) {
-            let own = bodies.iter().filter(|body| named(&body.name));
-            let own = own.flat_map(|body| body.particles.iter().copied().filter(|i| *i != GONE));
-            let clumps = state.clumps.all.iter();
-            let clumps = clumps.filter(|clump| named(&state.clumps.template(clump).body));
-            let carried = clumps.flat_map(|clump| state.clumps.spheres_of(clump));
-            let carried = carried.map(|i| i as u32);
-            gauge.particles = own.chain(carried).collect();
-            gauge.particles.sort_unstable();
-        } else {
-            for by in by {
-                gauge.particles.retain_mut(|particle| {
-                    *particle = by.particles[*particle as usize];
-                    *particle < by.free
-                });
+/// Lets the gauges, and what the state follows for them, count particles as they are counted now.
+pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], state: &mut State) {
+    for gauge in &mut *gauges {
+        for members in [Some(&mut gauge.members), gauge.with.as_mut()] {
+            if let Some(members) = members {
+                members.renumber(by, bodies, state);
             }
         }
-        gauge.of_all = gauge.particles.len() == state.particles.len();
+        gauge.count_anew(bodies, state);
+    }
+    let mut watched = Vec::new();
+    watched.extend(gauges.iter().filter_map(|gauge| gauge.watched(state)));
+    for (watch, of) in state.watches.iter_mut().zip(watched) {
+        watch.of = of;
     }
 }
 
 impl Gauge {
-    fn read(&self, state: &State, motions: &[Motion], masses_kg: &[f64], balance: &Balance) -> f64 {
-        let p = &state.particles;
-        let wall = self.wall.and_then(|wall| state.walls.get(wall));
-        let count = self.particles.len() as f64;
-        let mean = |of: &dyn Fn(usize) -> f64| {
-            self.particles.iter().map(|&i| of(i as usize)).sum::<f64>() / count
-        };
+    /// What follows from which particles it is of.
+    fn count_anew(&mut self, bodies: &[PlacedBody], state: &State) {
+        match self.measure.quantity {
+            Quantity::Displacement(_) | Quantity::DisplacementMagnitude => {
+                self.start = start_centre(&self.members, &self.starts, bodies, state);
+            }
+            Quantity::Rotation(_) => {
+                self.turned_before = turned_before(&self.members, &self.starts, bodies);
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether it is read in every step.
+    fn is_watched(&self) -> bool {
+        let quantity = self.measure.quantity;
+        let is_force = matches!(quantity, Quantity::Force(_) | Quantity::ForceMagnitude);
+        is_force || quantity.is_of_contact()
+    }
+
+    /// Whose forces and contacts it follows in every step. None: of none.
+    fn watched(&self, state: &State) -> Option<Watched> {
+        if !self.is_watched() {
+            return None;
+        }
+        let own = || self.members.marked(state);
+        Some(match (self.walls, &self.with) {
+            ([Some(wall), _], _) => Watched::Wall(wall),
+            ([None, Some(wall)], _) => Watched::WithWall(own(), wall),
+            (_, Some(with)) => Watched::Between([own(), with.marked(state)]),
+            (_, None) => Watched::Particles(own()),
+        })
+    }
+
+    fn read(&self, state: &State, motions: &Motions, masses_kg: &[f64], balance: &Balance) -> f64 {
+        let wall = self.walls[0].and_then(|wall| state.walls.get(wall));
+        let members = &self.members;
         let reactions = |k: usize| {
             let held = state.supports.iter().flat_map(|support| &support.held);
-            held.filter(|held| self.particles.binary_search(&held.particle).is_ok())
+            held.filter(|held| members.particles.binary_search(&held.particle).is_ok())
                 .map(|held| held.reactions[0][k])
                 .sum::<f64>()
         };
+        let at = usize::from;
         match self.measure.quantity {
-            Quantity::Position(k) if let Some(wall) = wall => wall.frame.position_m[k as usize],
-            Quantity::Position(k) => mean(&|i| p.poses[i].position_m[k as usize]),
-            Quantity::Displacement(k) => {
-                mean(&|i| p.poses[i].position_m[k as usize] - self.start_m[k as usize])
+            Quantity::Position(k) if let Some(wall) = wall => wall.frame.position_m[at(k)],
+            Quantity::Position(k) => whole::centre(members, state)[at(k)],
+            Quantity::Displacement(k) => whole::centre_from(members, state, self.start)[at(k)],
+            Quantity::DisplacementMagnitude => {
+                whole::centre_from(members, state, self.start).norm()
             }
-            Quantity::Velocity(k) => mean(&|i| motions[i].velocity_m_s[k as usize]),
-            Quantity::Rotation(k) => mean(&|i| rotation_vector(p.poses[i].turned)[k as usize]),
-            Quantity::AngularVelocity(k) => mean(&|i| motions[i].spin_rad_s[k as usize]),
-            Quantity::Reaction(k) => reactions(k as usize),
-            Quantity::ReactionTorque(k) => reactions(3 + k as usize),
-            Quantity::KineticEnergy if self.of_all => balance.kinetic_j,
-            Quantity::KineticEnergy => self
-                .particles
-                .iter()
-                .map(|&i| p.kinetic_j(i as usize, &motions[i as usize]))
-                .sum(),
-            Quantity::ElasticEnergy if self.of_all => balance.elastic_j(),
+            Quantity::Velocity(k) => whole::velocity(members, state, motions)[at(k)],
+            Quantity::VelocityMagnitude => whole::velocity(members, state, motions).norm(),
+            Quantity::Rotation(k) => {
+                whole::turn(members, state, &self.starts, &self.turned_before)[at(k)]
+            }
+            Quantity::AngularVelocity(k) => whole::spin(members, state, motions)[at(k)],
+            Quantity::Reaction(k) => reactions(at(k)),
+            Quantity::ReactionTorque(k) => reactions(3 + at(k)),
+            Quantity::KineticEnergy if members.are_all => balance.kinetic_j,
+            Quantity::KineticEnergy => whole::kinetic_j(members, state, motions),
+            Quantity::ElasticEnergy if members.are_all => balance.elastic_j(),
             Quantity::ElasticEnergy => self.over_bonds(state, 0.0, |sum, at, ends_in| {
                 if state.bonds.is_broken(at) {
                     return sum;
                 }
-                sum + 0.5 * ends_in * state.bonds.forces(at, &p.poses).energy.total()
+                sum + 0.5
+                    * ends_in
+                    * state
+                        .bonds
+                        .forces(at, &state.particles.poses)
+                        .energy
+                        .total()
             }),
             Quantity::BrokenBonds => self.over_bonds(state, 0.0, |sum, at, _| {
                 sum + f64::from(u8::from(state.bonds.is_broken(at)))
@@ -210,15 +289,12 @@ impl Gauge {
                 largest.max(bond_utilisation(state, at))
             }),
             Quantity::AngleOfRepose => {
-                let down = nalgebra::Vector3::from(state.gravity_m_s2);
-                let up = (-down)
-                    .try_normalize(0.0)
-                    .unwrap_or_else(nalgebra::Vector3::z);
-                heap::angle_of_repose_rad(p, &self.particles, up)
+                let down = Vector3::from(state.gravity_m_s2);
+                let up = (-down).try_normalize(0.0).unwrap_or_else(Vector3::z);
+                heap::angle_of_repose_deg(members, state, up)
             }
             // Of the particles on the wall.
-            Quantity::Force(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[0][k as usize]),
-            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[1][k as usize]),
+            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[1][at(k)]),
             Quantity::Count => {
                 let clusters = state.clusters.as_ref();
                 clusters.map_or(f64::NAN, |c| c.living().count() as f64)
@@ -227,15 +303,31 @@ impl Gauge {
             Quantity::MassFractionOfLargest => {
                 masses_kg.iter().copied().fold(0.0, f64::max) / masses_kg.iter().sum::<f64>()
             }
+            // Read in every step, where there are steps.
+            Quantity::Force(_)
+            | Quantity::ForceMagnitude
+            | Quantity::ContactForce(_)
+            | Quantity::ContactForceMagnitude
+            | Quantity::ContactOverlap
+            | Quantity::ContactDuration => f64::NAN,
         }
+    }
+
+    /// Why it has no value at the end. None: it has one.
+    fn missing(&self, value: f64) -> Option<String> {
+        (self.measure.quantity == Quantity::AngleOfRepose && value.is_nan()).then(|| {
+            format!(
+                "{} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{}\" has {}",
+                self.name,
+                self.measure.of,
+                self.members.particles.len()
+            )
+        })
     }
 
     /// Goes through the bonds that have an end in the set, with the number of ends in it.
     fn over_bonds(&self, state: &State, start: f64, next: impl Fn(f64, usize, f64) -> f64) -> f64 {
-        let mut is_in = vec![self.of_all; state.particles.len()];
-        for &i in &self.particles {
-            is_in[i as usize] = true;
-        }
+        let is_in = self.members.marked(state);
         let mut value = start;
         for (at, ends) in state.bonds.ends.iter().enumerate() {
             let ends_in = ends.iter().filter(|&&end| is_in[end as usize]).count();
@@ -266,30 +358,20 @@ impl Gauge {
             }
         });
         Measured {
+            missing: self.missing(value),
             name: self.name.clone(),
             value,
             unit: self.unit().to_owned(),
             reference: self.measure.reference,
             error,
             tolerance: self.measure.tolerance,
+            tolerance_absolute: self.measure.tolerance_absolute,
         }
     }
 
-    /// SI unit of its quantity; empty for plain numbers.
+    /// Unit of its quantity; empty for plain numbers.
     pub fn unit(&self) -> &'static str {
         self.measure.quantity.dimension().si
-    }
-}
-
-impl History {
-    fn note(&mut self, time_s: f64, value: f64) {
-        if let Some((before_s, before)) = self.last {
-            self.integral += 0.5 * (value + before) * (time_s - before_s);
-            self.duration_s += time_s - before_s;
-        }
-        self.last = Some((time_s, value));
-        self.largest = Some(self.largest.map_or(value, |l| l.max(value)));
-        self.smallest = Some(self.smallest.map_or(value, |s| s.min(value)));
     }
 }
 
@@ -326,14 +408,4 @@ pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
         }
         _ => 0.0,
     }
-}
-
-fn mean_position(state: &State, particles: &[u32]) -> [f64; 3] {
-    let count = particles.len().max(1) as f64;
-    [0, 1, 2].map(|k| {
-        let places = particles
-            .iter()
-            .map(|&i| state.particles.poses[i as usize].position_m[k]);
-        places.sum::<f64>() / count
-    })
 }

@@ -3,6 +3,10 @@
 pub mod bodies;
 mod clumps;
 mod contacts;
+mod forecast;
+mod initial;
+mod measures;
+mod outputs;
 mod rules;
 pub mod savings;
 pub mod sets;
@@ -12,12 +16,16 @@ mod walls;
 
 use std::collections::BTreeMap;
 
+use dem_io::body::About;
+use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
 use crate::check::ledger::Ledger;
 use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
+use crate::output::inputs::Inputs;
+use crate::output::masses;
 use crate::stages::loads::SetLoad;
 use crate::stages::population::{Changes, change};
 use crate::stages::supports::{Held, SetSupport};
@@ -27,12 +35,19 @@ use crate::state::sleep::Sleep;
 use crate::statics::held::refuse_loose;
 
 use self::bodies::{PlacedBody, place_bodies};
-use self::clumps::{ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of};
+use self::clumps::{
+    ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of, unused_bonds,
+};
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::forecast::forecast;
+pub use self::forecast::{Forecast, ToCome};
+use self::initial::start;
+use self::measures::refuse_valueless;
+use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
-use self::time_step::{StepChoice, choose_step};
+use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
 
 /// Particles and bonds that are worth a thread of their own.
 const WORTH_A_THREAD: usize = 5000;
@@ -54,10 +69,18 @@ pub struct Plan {
     pub stages: Vec<PlannedStage>,
     /// The laboratory test as it stands. None: the scene has none.
     pub test: Option<Setup>,
+    /// Bodies that stay rigid clumps all along, and how many bonds they have, which nobody uses.
+    pub unused_bonds: Vec<(String, usize)>,
+    /// What each body weighs, by its name.
+    pub masses: BTreeMap<String, BodyMass>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
     /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
     pub warnings: Vec<String>,
+    /// What will happen, as far as it can be told.
+    pub forecast: Forecast,
+    /// What is planned, for the results.
+    pub inputs: Inputs,
 }
 
 /// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
@@ -72,13 +95,19 @@ pub fn plan(
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
+    let inputs = Inputs::of(scene, &read);
     let mut read = read;
+    let about: BTreeMap<String, About> = (read.iter())
+        .map(|(name, body)| (name.clone(), body.about.clone()))
+        .collect();
     let ball_m = ball_m(scene, &read);
+    let unused_bonds = unused_bonds(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
     let tested = scene.test.as_ref().and_then(|test| read.get(&test.body));
     let tested_m3 = tested.and_then(|body| body.about.shape_volume_m3);
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
+    let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let sets = resolve_sets(scene, &bodies, &particles)?;
     let to_come = templates.iter();
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
@@ -90,8 +119,9 @@ pub fn plan(
         state.particle_resistance = vec![Wrench::default(); state.particles.len()];
     }
     state.supports = supports(scene, &sets)?;
+    start(scene, &sets, &bodies, &mut state)?;
     state.loads = loads(scene, &sets, &state.supports)?;
-    let mut notes = Vec::new();
+    let mut notes = masses::notes(scene, &masses);
     state.rules = rules(scene, &templates)?;
     state.clumps.templates = templates;
     state.clumps.ball_m = ball_m;
@@ -103,18 +133,32 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
-    let warnings = doubts(scene, &state);
+    refuse_valueless(scene, &sets, &state)?;
+    let mut warnings = masses::warnings(scene, &about);
+    warnings.extend(doubts(scene, &state));
     state.ledger = Ledger::opened(&state);
-    let step = match scene.run.integrator {
+    let mut step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
         Integrator::Static => {
             refuse_loose(&state, &bodies, &scene.source)?;
             StepChoice::none(scene.run.end_time_s)
         }
     };
+    if scene.run.integrator == Integrator::Leapfrog {
+        refuse_endless_output(scene, step.step_s)?;
+    }
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, &mut state);
     state.fastest_m_s = step.impact_speed_m_s;
+    step.rayleigh_s = rayleigh_s(scene, &state, &bodies);
+    let arriving = arriving_as_clusters(&state);
+    let forecast = forecast(
+        scene,
+        &state,
+        &bodies,
+        step.impact_speed_m_s,
+        arriving.as_ref(),
+    );
     let stages = stages::stages(&state, scene);
     let test = scene.test.as_ref().map(|test| {
         let particles = particles_of(&sets, &test.body);
@@ -129,8 +173,12 @@ pub fn plan(
         is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
         test,
+        unused_bonds,
+        masses,
         notes,
         warnings,
+        forecast,
+        inputs,
     })
 }
 
@@ -206,6 +254,7 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
         supports.push(SetSupport {
             holds: support.holds,
             factor: support.factor.clone(),
+            end_s: support.end_s.unwrap_or(f64::INFINITY),
             held: particles
                 .iter()
                 .map(|&particle| Held {
@@ -225,17 +274,11 @@ fn loads(
     sets: &BTreeMap<String, Vec<u32>>,
     supports: &[SetSupport],
 ) -> Result<Vec<SetLoad>> {
-    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
-    for support in supports {
-        for one in &support.held {
-            let entry = held.entry(one.particle).or_default();
-            for (held, hold) in entry.iter_mut().zip(&support.holds) {
-                *held |= hold.is_some();
-            }
-        }
-    }
     let mut loads = Vec::new();
     for (name, load) in &scene.loads {
+        // What is let go before the load ends can move with it.
+        let end_s = load.end_s.unwrap_or(f64::INFINITY);
+        let held = held_freedoms(supports.iter().filter(|support| support.end_s >= end_s));
         let particles = particles_of(sets, &load.of);
         let share = 1.0 / particles.len() as f64;
         let six: Vec<f64> = load.force_n.into_iter().chain(load.torque_n_m).collect();
@@ -269,9 +312,24 @@ fn loads(
             force_n: load.force_n.map(|f| f * share),
             torque_n_m: load.torque_n_m.map(|t| t * share),
             factor: load.factor.clone(),
+            end_s,
         });
     }
     Ok(loads)
+}
+
+/// Which freedoms of which particles these supports hold.
+fn held_freedoms<'a>(supports: impl Iterator<Item = &'a SetSupport>) -> BTreeMap<u32, [bool; 6]> {
+    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
+    for support in supports {
+        for one in &support.held {
+            let entry = held.entry(one.particle).or_default();
+            for (held, hold) in entry.iter_mut().zip(&support.holds) {
+                *held |= hold.is_some();
+            }
+        }
+    }
+    held
 }
 
 /// The particles of a set that the scene is known to have.

@@ -1,10 +1,12 @@
 //! A run: a plan is stepped to its end, watched, measured and written down.
 
 mod events;
+mod finish;
 mod fragments;
 mod limits;
 mod pictures;
 mod progress;
+mod seen;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -14,16 +16,15 @@ use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, Series
 use dem_io::scene::{Integrator, Scene};
 use dem_io::{Diagnostic, Result};
 
-use crate::check::ledger::balance;
+use crate::check::ledger::{Balance, balance};
 use crate::check::watchdog::Watchdog;
 use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::machine::{machine, processor_time_s};
-use crate::measure::{Gauge, gauges, read_gauges, renumber as renumber_gauges};
-use crate::output::fragments::{FragmentSummary, write_fragment_plots, write_tree};
+use crate::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
+use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
-use crate::output::plots::write_plots;
 use crate::output::series;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::plan::Plan;
@@ -32,11 +33,13 @@ use crate::snapshot::{Snapshot, fingerprint};
 use crate::stages::clumps::place_all;
 use crate::stages::replacement::{Happened, replace};
 use crate::state::State;
-use crate::step::{act, move_on};
+use crate::step::{act, find_pieces_now, move_on};
 
 use self::events::{
     change_step, new_step, write_breaks, write_happened, write_sleep, write_splits,
 };
+use self::finish::End;
+pub use self::finish::{Finished, finish};
 use self::fragments::write_fragments;
 use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
@@ -111,18 +114,63 @@ impl<'a> Files<'a> {
     }
 }
 
+/// How a run ended.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// What came of it, as far as it went.
+    pub summary: Summary,
+    /// Why it did not come to its end. None: it did.
+    pub problem: Option<Diagnostic>,
+}
+
+/// What ends the loop over steps.
+struct Ended {
+    by: &'static str,
+    balance: Balance,
+    problem: Option<Diagnostic>,
+}
+
+impl Ended {
+    /// Before the end, with what has happened.
+    fn before_the_end(state: &mut State, by: &'static str, problem: Diagnostic) -> Self {
+        Self {
+            by,
+            balance: balance(state),
+            problem: Some(problem),
+        }
+    }
+}
+
 /// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is called now and then with the share of the end time reached, in 0..1.
 ///
 /// # Errors
-/// The run goes unstable (exit code 3), is interrupted, or its files cannot be written (1).
+/// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
 pub fn run(
     plan: Plan,
     scene: &Scene,
     settings: RunSettings<'_>,
     tell: &dyn Fn(f64),
 ) -> Result<Summary> {
+    let outcome = run_as_far_as_it_goes(plan, scene, settings, tell)?;
+    outcome.problem.map_or(Ok(outcome.summary), Err)
+}
+
+/// The same. A run that goes unstable or is interrupted has a summary as well, in its folder too.
+///
+/// # Errors
+/// Its files cannot be written, or there is no equilibrium to go to.
+pub fn run_as_far_as_it_goes(
+    plan: Plan,
+    scene: &Scene,
+    settings: RunSettings<'_>,
+    tell: &dyn Fn(f64),
+) -> Result<Outcome> {
     if scene.run.integrator == Integrator::Static {
-        return crate::statics::run(plan, scene, &settings, tell);
+        let summary = crate::statics::run(plan, scene, &settings, tell)?;
+        return Ok(Outcome {
+            summary,
+            problem: None,
+        });
     }
     let mut gauges = gauges(scene, &plan);
     let watch = match (&scene.test, &plan.test, settings.test) {
@@ -136,10 +184,13 @@ pub fn run(
         mut bodies,
         step: choice,
         stages,
+        masses,
         notes,
-        warnings,
+        mut warnings,
+        inputs,
         ..
     } = plan;
+    place_watches(&gauges, &mut state);
     let fingerprint = fingerprint(&state);
     let mut order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
     let of_pictures = settings.folder.and(Order::of(scene, &state));
@@ -163,7 +214,7 @@ pub fn run(
             gauge.history = history;
         }
         if !state.clumps.templates.is_empty() {
-            renumber_gauges(&mut gauges, &[], &bodies, &state);
+            renumber_gauges(&mut gauges, &[], &bodies, &mut state);
             order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
         changed_step = change_step(&mut state, &choice, scene.run.adaptive);
@@ -200,10 +251,15 @@ pub fn run(
     let clock = Instant::now();
     let processor_before_s = processor_time_s();
     let mut saved = clock;
-    let (ended_by, last) = loop {
+    let ended = loop {
         act(&mut state);
         if let Some(problem) = went_through(&state, scene, &bodies) {
-            return Err(with_checkpoint(problem, files.as_ref()));
+            let problem = with_checkpoint(problem, files.as_ref());
+            break Ended::before_the_end(&mut state, "instability", problem);
+        }
+        progress.seen.note_breaks(&state);
+        if state.steps.is_multiple_of(LOOKS_EVERY) {
+            progress.seen.look_at_contacts(&state, scene, &bodies);
         }
         if let Some(files) = &mut files {
             write_breaks(&state, &bodies, files)?;
@@ -213,6 +269,9 @@ pub fn run(
             .as_ref()
             .is_some_and(|watch| watch.note(&mut progress.test, &state));
         let ends = broke || state.time_s + 0.5 * state.time_step_s >= end_s;
+        if ends {
+            find_last_pieces(&mut state, files.as_mut())?;
+        }
         let row_due = ends || due(&state, rhythm.row_s, progress.next_row);
         let frame_due = ends
             || rhythm
@@ -238,10 +297,17 @@ pub fn run(
         if row_due || checkpoint_due || watchdog_due {
             let balance = balance(&mut state);
             if let Err(problem) = watchdog.look(&state, &balance, &bodies) {
-                return Err(with_checkpoint(problem, files.as_ref()));
+                break Ended {
+                    by: "instability",
+                    balance,
+                    problem: Some(with_checkpoint(problem, files.as_ref())),
+                };
             }
             progress.note(&state, &balance, rhythm.rest);
             rests = progress.has_rested(&state);
+            if rests && !ends {
+                find_last_pieces(&mut state, files.as_mut())?;
+            }
             balanced = Some(balance);
         }
         if let (true, Some(balance)) = (row_due || rests, &balanced) {
@@ -281,7 +347,11 @@ pub fn run(
                 (false, true, None) => "end time",
                 (false, false, _) => "rest",
             };
-            break (why, balance);
+            break Ended {
+                by: why,
+                balance,
+                problem: None,
+            };
         }
         if let Some(since) = output_since {
             state.clock.book_all(Stage::Output, since.elapsed());
@@ -291,10 +361,11 @@ pub fn run(
         if let Some((renumbered, happened)) = replace(&mut state) {
             let is_swap = |one: &Happened| matches!(one, Happened::Replaced { .. });
             replaced = happened.iter().any(is_swap);
+            progress.seen.note_happened(&happened);
             for by in &renumbered {
                 renumber(&mut bodies, by);
             }
-            renumber_gauges(&mut gauges, &renumbered, &bodies, &state);
+            renumber_gauges(&mut gauges, &renumbered, &bodies, &mut state);
             if let Some(files) = &mut files {
                 write_happened(&state, &happened, files)?;
                 files.order = FrameOrder::new(&bodies, &state);
@@ -310,7 +381,8 @@ pub fn run(
         let followed = limits.follow(&mut state, replaced, &mut progress, &bodies, files.as_mut());
         state.clock.book_checks(since);
         if let Err(problem) = followed {
-            return Err(with_checkpoint(problem, files.as_ref()));
+            let problem = with_checkpoint(problem, files.as_ref());
+            break Ended::before_the_end(&mut state, "instability", problem);
         }
         let interrupted = settings.interrupted.load(Ordering::Relaxed);
         if let (true, Some(files)) = (interrupted || checkpoint_due, &mut files) {
@@ -326,9 +398,11 @@ pub fn run(
             )?;
         }
         if interrupted {
-            return Err(interruption(&state, files.as_ref()));
+            let problem = interruption(&state, files.as_ref());
+            break Ended::before_the_end(&mut state, "interruption", problem);
         }
     };
+    let last = ended.balance;
     let [energy_error, momentum_error, angular_momentum_error] = progress.largest_errors(&last);
     let wall_s = clock.elapsed().as_secs_f64();
     let processor_s = processor_time_s().zip(processor_before_s);
@@ -340,11 +414,15 @@ pub fn run(
         .clusters
         .as_ref()
         .map(|clusters| fragments_of(clusters, &state.particles, &state.clumps, None));
+    let pieces = fragments.as_deref().unwrap_or_default();
+    warnings.extend(progress.seen.warnings(&state, scene, &bodies, pieces));
     let of_state = state.clusters.as_ref().zip(fragments.as_ref());
     let mut summary = Summary {
         scene: scene.source.clone(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
-        ended_by: ended_by.to_owned(),
+        ended_by: ended.by.to_owned(),
+        problem: ended.problem.as_ref().map(Diagnostic::to_string),
+        inputs,
         simulated_s: state.time_s,
         wall_s,
         processor_s: processor_s.map(|(after, before)| after - before),
@@ -352,7 +430,10 @@ pub fn run(
         machine: machine(),
         particles: state.particles.len(),
         bonds: state.bonds.len(),
+        bodies: masses,
         broken_bonds: state.broken_count,
+        largest_bond_strain: progress.seen.bond_strain.largest,
+        largest_overlap: progress.seen.overlap.largest,
         broken_by_cause: state.broken_by_cause,
         fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
         population: PopulationSummary::of(&state),
@@ -397,10 +478,19 @@ pub fn run(
         equilibrium: None,
     };
     summary.judge(warnings);
+    if let (Some(files), Some(problem)) = (&files, &ended.problem) {
+        write_json(&files.folder.summary(), &summary)?;
+        return Ok(Outcome {
+            summary,
+            problem: Some(problem.clone()),
+        });
+    }
     if let Some(files) = &mut files {
         // A run that has ended can be taken further with a later end time.
         move_on(&mut state);
         write_sleep(&state, files)?;
+        let end = End::of(&summary)?;
+        write_json(&files.folder.ended(), &end)?;
         save(
             &state,
             &bodies,
@@ -410,17 +500,21 @@ pub fn run(
             &mut progress,
             files,
         )?;
-        write_json(&files.folder.summary(), &summary)?;
-        write_plots(files.folder, &gauges)?;
-        if let (Some(clusters), Some(fragments)) = (&state.clusters, &fragments) {
-            write_tree(files.folder, clusters)?;
-            write_fragment_plots(files.folder, clusters, fragments, summary.simulated_s)?;
-        }
-        if let Some(pictures) = &files.pictures {
-            pictures.finish()?;
-        }
+        end.write(files.folder, &state, &gauges, files.pictures.as_ref())?;
     }
-    Ok(summary)
+    Ok(Outcome {
+        summary,
+        problem: ended.problem,
+    })
+}
+
+/// Looks for pieces once more where bonds have broken since they were looked for last.
+fn find_last_pieces(state: &mut State, files: Option<&mut Files<'_>>) -> Result<()> {
+    if state.unsearched.is_empty() {
+        return Ok(());
+    }
+    find_pieces_now(state);
+    files.map_or(Ok(()), |files| write_splits(state, files))
 }
 
 fn save(
@@ -476,8 +570,7 @@ fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
         ),
         None => "with --out FOLDER its state would have been kept".to_owned(),
     };
-    Diagnostic::failed(
-        "",
+    Diagnostic::interrupted(
         format!(
             "interrupted at {:.6e} s, step {}",
             state.time_s, state.steps

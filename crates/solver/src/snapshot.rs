@@ -1,7 +1,9 @@
 //! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say is read again when it goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
+use dem_io::body::files::body_files;
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -15,6 +17,7 @@ use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::Motion;
 use crate::state::shares::divide_anew;
+use crate::state::watches::Seen;
 
 mod meetings;
 mod population;
@@ -44,6 +47,8 @@ pub struct Snapshot {
     meetings: Meetings,
     /// None: bodies neither come nor go, and what stands above is enough.
     population: Option<Population>,
+    /// What has been seen of forces and contacts in every step.
+    watches: Vec<Seen>,
     /// What the gauges have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
@@ -105,9 +110,26 @@ impl Snapshot {
             ledger: state.ledger,
             meetings: Meetings::taken(state),
             population,
+            watches: state.watches.iter().map(|watch| watch.seen).collect(),
             measures,
             progress,
         }
+    }
+
+    /// The files of bodies, walls and regions that its scene names.
+    pub fn files_of_scene(&self) -> Vec<PathBuf> {
+        let of_line = |line: &str| {
+            let (key, file) = line.split_once(' ')?;
+            let is_file = ["bodies.", "walls.", "regions."]
+                .iter()
+                .any(|kind| key.starts_with(kind))
+                && [".file", ".stl"].iter().any(|name| key.ends_with(name));
+            is_file.then(|| PathBuf::from(file.trim_start()))
+        };
+        let files = self.scene.lines().filter_map(of_line);
+        files
+            .flat_map(|file| body_files(&file).unwrap_or(vec![file]))
+            .collect()
     }
 
     /// As bytes.
@@ -198,6 +220,9 @@ impl Snapshot {
         }
         state.ledger = self.ledger;
         self.meetings.restore(state)?;
+        for (watch, seen) in state.watches.iter_mut().zip(&self.watches) {
+            watch.seen = *seen;
+        }
         state.steps = self.steps;
         state.time_s = self.time_s;
         state.time_step_s = self.time_step_s;

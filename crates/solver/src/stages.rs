@@ -18,3 +18,4 @@ pub mod restoring;
 pub mod sleep;
 pub mod supports;
 pub mod walls;
+pub mod watching;

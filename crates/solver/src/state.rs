@@ -11,6 +11,7 @@ pub mod rules;
 pub mod shares;
 pub mod sleep;
 pub mod walls;
+pub mod watches;
 
 use crate::check::ledger::Ledger;
 use crate::clock::StageClock;
@@ -28,6 +29,7 @@ use self::rules::Rules;
 use self::shares::{Share, divide};
 use self::sleep::Sleep;
 use self::walls::Wall;
+use self::watches::Watch;
 
 /// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
 #[derive(Debug, Clone)]
@@ -58,6 +60,8 @@ pub struct State {
     pub sleep: Option<Sleep>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
+    /// Forces and contacts that measures follow in every step. Empty: none.
+    pub watches: Vec<Watch>,
     /// Loads.
     pub loads: Vec<SetLoad>,
     /// Supports.
@@ -119,6 +123,7 @@ impl State {
             contacts: None,
             sleep: None,
             walls: Vec::new(),
+            watches: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
             gravity_m_s2: [0.0; 3],
@@ -178,5 +183,10 @@ impl State {
     /// Length of the kick of this step: half of the step before and half of the step to come, s.
     pub fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
+    }
+
+    /// The step before and the one to come, s.
+    pub fn steps_s(&self) -> [f64; 2] {
+        [self.previous_time_step_s, self.time_step_s]
     }
 }

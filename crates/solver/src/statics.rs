@@ -37,13 +37,15 @@ use crate::run::RunSettings;
 use crate::state::State;
 use crate::state::particles::Motion;
 
+use crate::check::laws::strain_warning;
+
 use self::newton::{loads, six};
 use self::record::AtRest;
 
 /// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
 ///
 /// # Errors
-/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, is interrupted, or its files cannot be written (1).
+/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, or its files cannot be written (1); it is interrupted (130).
 pub fn run(
     plan: Plan,
     scene: &Scene,
@@ -54,8 +56,10 @@ pub fn run(
     let Plan {
         mut state,
         bodies,
+        masses,
         notes,
-        warnings,
+        mut warnings,
+        inputs,
         ..
     } = plan;
     let order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
@@ -82,9 +86,11 @@ pub fn run(
         scene,
         gauges: &gauges,
         balance: &balance,
+        masses: &masses,
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
-    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), notes);
+    let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), (notes, inputs));
+    warnings.extend(strain_warning(summary.largest_bond_strain, ""));
     summary.judge(warnings);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;
@@ -146,11 +152,11 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
             "the factors of the stiffness do not fit into memory",
             "use fewer particles, or run.integrator = \"leapfrog\"",
         ),
-        Cause::Interrupted => Diagnostic::failed(
-            place,
+        Cause::Interrupted => Diagnostic::interrupted(
             format!("interrupted: {reached}"),
             "a static run leaves no checkpoint: start it again",
-        ),
+        )
+        .within(&place),
     }
 }
 

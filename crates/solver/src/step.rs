@@ -13,6 +13,7 @@ use crate::stages::motion::{add_particle_damping, drift, kick};
 use crate::stages::sleep;
 use crate::stages::supports::{hold, remember};
 use crate::stages::walls::{move_walls, plan_motions, wall_wrenches};
+use crate::stages::watching::watch;
 use crate::state::State;
 use crate::state::particles::Wrench;
 use crate::state::shares::{Share, divide_anew};
@@ -73,7 +74,8 @@ pub fn act(state: &mut State) {
     find_pieces(state);
     state.clock.book(Stage::Clusters);
     let p = &mut state.particles;
-    add_loads(&state.loads, state.time_s, &mut p.wrenches);
+    let steps_s = [before_s, state.time_step_s];
+    add_loads(&state.loads, state.time_s, steps_s, &mut p.wrenches);
     state.clock.book(Stage::Loads);
 
     if !state.bond_resistance.is_empty() {
@@ -120,6 +122,7 @@ pub fn act(state: &mut State) {
     crate::check::ledger::after_kick(state);
     count_done(state);
     state.clock.book(Stage::Ledger);
+    watch(state);
 }
 
 /// Second half of a step: the particles move on.
@@ -154,9 +157,9 @@ pub fn move_on(state: &mut State) {
 /// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
 fn find_pieces(state: &mut State) {
     state.splits.clear();
-    let Some(clusters) = &mut state.clusters else {
+    if state.clusters.is_none() {
         return;
-    };
+    }
     let broken = state.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
     if !state
@@ -165,6 +168,14 @@ fn find_pieces(state: &mut State) {
     {
         return;
     }
+    find_pieces_now(state);
+}
+
+/// The same, whether it is time to or not.
+pub fn find_pieces_now(state: &mut State) {
+    let Some(clusters) = &mut state.clusters else {
+        return;
+    };
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
     state.clock.did(Stage::Clusters, damaged.len());
     state.splits = clusters.update(state.time_s, &damaged, &state.bonds);

@@ -245,3 +245,57 @@ fn info_says_what_a_body_is() {
     assert_eq!(json["bonds"], made.body.bonds.len());
     assert_eq!(json["pieces"], made.report["quality"]["pieces"]["count"]);
 }
+
+/// The mass of the spheres, beside that of the shape filled with their density.
+#[test]
+fn the_report_says_what_body_and_shape_weigh() {
+    let bench = Bench::new();
+    let made = bench.pack(&shape("02"), &["-d", "2mm", "--particle-density", "2050"]);
+    let volume_m3 = made.body.about.shape_volume_m3.unwrap();
+    let number = |pointer: &str| made.report.pointer(pointer).unwrap().as_f64().unwrap();
+    let spheres = made.body.radii.iter().map(|r| r * r * r);
+    let spheres_m3 = 4.0 / 3.0 * std::f64::consts::PI * spheres.sum::<f64>();
+    for (pointer, wanted) in [
+        ("/mass/mass_kg", 2050.0 * spheres_m3),
+        ("/mass/shape_mass_kg", 2050.0 * volume_m3),
+        (
+            "/mass/difference_percent",
+            100.0 * (spheres_m3 / volume_m3 - 1.0),
+        ),
+        ("/mass_over_shape", spheres_m3 / volume_m3),
+    ] {
+        let found = number(pointer);
+        assert!(
+            (found / wanted - 1.0).abs() < 1e-9,
+            "{pointer}: {found} {wanted}"
+        );
+    }
+    let line = |text: &str, name: &str| {
+        let found = text.lines().find(|line| line.starts_with(name));
+        found
+            .unwrap_or_else(|| panic!("no {name} in {text}"))
+            .to_owned()
+    };
+    let run = |options: &[&str]| {
+        let output = bench.run(&shape("02"), options);
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = run(&["-d", "2mm", "--particle-density", "2050", "-o", "body.vtp"]);
+    let mass = line(&text, "mass ");
+    assert!(
+        mass.contains(" kg; its shape filled with 2050 kg/m3 would weigh ")
+            && mass.ends_with(" %)"),
+        "{mass}"
+    );
+    assert!(
+        line(&text, "centre ").contains("; principal moments "),
+        "{text}"
+    );
+    let text = run(&["-d", "2mm", "-o", "body.vtp"]);
+    let mass = line(&text, "mass ");
+    assert!(
+        mass.ends_with(" of its shape filled with the density of the particles"),
+        "{mass}"
+    );
+    assert!(!line(&text, "centre ").contains("moments"), "{text}");
+}

@@ -211,3 +211,201 @@ fn a_standard_error_that_takes_nothing() {
         [Some(2); 2]
     );
 }
+
+/// A pipe that never ends is left at the first bytes that are no body.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_endless_pipe_is_refused_at_once() {
+    let bench = Bench::new();
+    bench.pack(&shape("02"), &OPTIONS);
+    let body = fs::read(bench.path("body.vtp")).unwrap();
+    let header = body
+        .windows(13)
+        .position(|some| some == b"<AppendedData")
+        .unwrap();
+    let zeros = dem_pack()
+        .args(["info", "-"])
+        .stdin(fs::File::open("/dev/zero").unwrap())
+        .output()
+        .unwrap();
+    let endless = |beginning: &[u8], arguments: &[&str]| {
+        fs::write(bench.path("beginning"), beginning).unwrap();
+        let script = format!(
+            "(cat beginning; yes) | {} {}",
+            dem_pack().get_program().display(),
+            arguments.join(" ")
+        );
+        std::process::Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(bench.folder.path())
+            .output()
+            .unwrap()
+    };
+    let in_values = &body[..header + 300];
+    for (output, wanted) in [
+        (zeros, "this is not a VTK XML file"),
+        (endless(b"", &["info", "-"]), "this is not a VTK XML file"),
+        (
+            endless(b"", &["convert", "-", "other.vtp"]),
+            "this is not a VTK XML file",
+        ),
+        (
+            endless(&body[..header], &["info", "-"]),
+            "its XML is longer than",
+        ),
+        (endless(in_values, &["info", "-"]), "the header says"),
+    ] {
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.starts_with("error: standard input: ") && said.contains(wanted),
+            "{said}"
+        );
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+/// Neither the shape nor the sieve curve nor the body that is converted is written over, under whatever name.
+#[cfg(unix)]
+#[test]
+fn an_output_that_is_an_input_is_refused() {
+    let bench = Bench::new();
+    let stl = fs::read(shape("02")).unwrap();
+    let sieve = "opening_mm,passing_percent\n1.5,0\n2,100\n";
+    fs::write(bench.path("shape.vtp"), &stl).unwrap();
+    fs::write(bench.path("sieve.particles.csv"), sieve).unwrap();
+    fs::hard_link(bench.path("shape.vtp"), bench.path("hard.vtp")).unwrap();
+    std::os::unix::fs::symlink("sieve.particles.csv", bench.path("soft.bonds.txt")).unwrap();
+    let refused = |arguments: &[&str]| {
+        let output = dem_pack()
+            .current_dir(bench.folder.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.ends_with("; write to another name\n"), "{said}");
+        said
+    };
+    let own = "it would replace the file that it is made from";
+    let said = refused(&["shape.vtp", "-d", "2mm", "-o", "shape.vtp"]);
+    assert_eq!(
+        said,
+        format!("error: shape.vtp: {own}; write to another name\n")
+    );
+    let said = refused(&["shape.vtp", "-d", "2mm", "-o", "hard.vtp"]);
+    assert!(
+        said.starts_with("error: hard.vtp: it would replace 'shape.vtp'"),
+        "{said}"
+    );
+    for sizes in ["sieve:sieve.particles.csv", "sieve.particles.csv"] {
+        let said = refused(&["shape.vtp", "-d", sizes, "-o", "sieve.csv"]);
+        assert!(
+            said.starts_with(&format!("error: sieve.particles.csv: {own}")),
+            "{said}"
+        );
+        let said = refused(&["shape.vtp", "-d", sizes, "-o", "soft.txt"]);
+        assert!(said.starts_with("error: soft.bonds.txt: "), "{said}");
+    }
+    assert_eq!(fs::read(bench.path("shape.vtp")).unwrap(), stl);
+    assert_eq!(
+        fs::read_to_string(bench.path("sieve.particles.csv")).unwrap(),
+        sieve
+    );
+    // Any other file is replaced as ever.
+    let made = bench.run(
+        &bench.path("shape.vtp"),
+        &["-d", "2mm", "-q", "-o", "body.vtp"],
+    );
+    assert!(made.status.success());
+    refused(&["convert", "body.vtp", "body.vtp"]);
+    refused(&["convert", "./body.vtp", "body.vtp"]);
+    let body = read_body(&bench.path("body.vtp")).unwrap();
+    dem_io::body::write_body(&body, &bench.path("pair.csv")).unwrap();
+    refused(&["convert", "pair.csv", "pair.particles.csv"]);
+}
+
+/// A limit of the shell on the size of files is an error, not a signal that ends the program.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_beyond_the_limit_of_the_shell_leaves_nothing() {
+    for name in ["body.vtp", "body.csv"] {
+        let bench = Bench::new();
+        let script = format!(
+            "ulimit -f 4; exec {} {} -d 1mm -q -o {name}",
+            dem_pack().get_program().display(),
+            shape("02").display()
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(bench.folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(
+            said.starts_with("error: body.")
+                && said.contains("a limit on the size of files is reached")
+                && said.lines().count() == 1,
+            "{said}"
+        );
+        assert!(bench.files().is_empty(), "{:?}", bench.files());
+    }
+}
+
+/// What a killed run has left goes with the next; what somebody else writes stays.
+#[test]
+fn remnants_of_a_killed_run_go_with_the_next() {
+    let bench = Bench::new();
+    for name in [".unfinished-a1B2c3", ".unfinished-zzzzzz"] {
+        fs::write(bench.path(name), "half a body").unwrap();
+    }
+    let other = fs::File::open(bench.path(".unfinished-zzzzzz")).unwrap();
+    other.lock().unwrap();
+    let made = bench.run(&shape("02"), &["-d", "2mm", "-q", "-o", "body.vtp"]);
+    assert!(made.status.success());
+    assert_eq!(bench.files(), [".unfinished-zzzzzz", "body.vtp"]);
+}
+
+/// What the report warns of is kept in the .vtp, and told by info.
+#[test]
+fn warnings_are_kept_with_the_body() {
+    let bench = Bench::new();
+    let made = bench.pack(&shape("02"), &["-d", "3mm"]);
+    let warned = made.report["quality"]["warnings"].as_array().unwrap();
+    assert!(!warned.is_empty());
+    let kept: Vec<&str> = warned.iter().map(|text| text.as_str().unwrap()).collect();
+    assert_eq!(made.body.about.warnings, kept);
+    let info = dem_pack()
+        .current_dir(bench.folder.path())
+        .args(["info", "body.vtp"])
+        .output()
+        .unwrap();
+    let info = String::from_utf8(info.stdout).unwrap();
+    for text in kept {
+        assert!(
+            info.contains(&format!("warning    when it was made: {text}\n")),
+            "{info}"
+        );
+    }
+    // Through a pipe and a conversion too.
+    let again = dem_pack()
+        .current_dir(bench.folder.path())
+        .args(["convert", "body.vtp", "again.vtp"])
+        .output()
+        .unwrap();
+    assert!(again.status.success());
+    let again = read_body(&bench.path("again.vtp")).unwrap();
+    assert_eq!(again.about, made.body.about);
+    // Nothing is written of a body without any.
+    let sound = bench.pack(&shape("02"), &["-d", "1mm"]);
+    assert_eq!(
+        sound.report["quality"]["warnings"]
+            .as_array()
+            .unwrap()
+            .len(),
+        0
+    );
+    let bytes = fs::read(bench.path("body.vtp")).unwrap();
+    assert!(!bytes.windows(8).any(|some| some == b"warnings"));
+}

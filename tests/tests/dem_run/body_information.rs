@@ -13,6 +13,7 @@ bonds      8, 0.8 per particle
 pieces     2, the largest of 5 particles; 0 particles without a bond
 box        from -1 mm, -1 mm, -1 mm to 19 mm, 1 mm, 1 mm
 mass       8.587e-5 kg, particles of 2050 kg/m3
+centre     9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2
 made       seed 7
 ";
 
@@ -32,7 +33,7 @@ fn says_what_a_body_holds_from_a_file_of_each_kind() {
             // What is known of a body stands in a .vtp only, the density in LAMMPS data too.
             let wanted: Vec<&str> = TEXT
                 .lines()
-                .take(if name == "row.vtp" { 6 } else { 4 })
+                .take(if name == "row.vtp" { 7 } else { 4 })
                 .collect();
             assert!(said.starts_with(&wanted.join("\n")), "{said}");
         }
@@ -162,4 +163,20 @@ fn a_full_disk_behind_standard_output_is_exit_code_1() {
         "{said}"
     );
     assert_eq!(code, 1);
+}
+
+/// A pipe that never ends is left at the first bytes that are no body.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_endless_pipe_is_refused_at_once() {
+    for arguments in [&["-"][..], &["--body", "-"]] {
+        let zeros = std::fs::File::open("/dev/zero").unwrap();
+        let output = dem_run().args(arguments).stdin(zeros).output().unwrap();
+        let (said, code) = refused(&output);
+        assert!(
+            said.starts_with("error: standard input: this is not a VTK XML file"),
+            "{said}"
+        );
+        assert_eq!(code, 2);
+    }
 }

@@ -28,7 +28,8 @@ fn says_the_step_and_why_stages_memory_and_time() {
         "leaves out     gravity: no gravity",
         "memory         about ",
         "run time       about ",
-        "loads.tip.force                          [0, -100000, 0] N",
+        "\nloads.tip.force ",
+        "[0, -100000, 0] N\n",
     ] {
         assert!(said.contains(part), "'{part}' is not in\n{said}");
     }
@@ -98,4 +99,17 @@ fn only_scenes_can_be_checked() {
         assert_eq!(code, 2);
         assert!(said.contains("this is no scene (.toml)"), "{said}");
     }
+}
+
+/// The bonds of a clump that nothing replaces are not used, and need no kind.
+#[test]
+fn says_which_bonds_are_not_used() {
+    let bench = Bench::new();
+    bench.write("row.vtp", vtp_bytes(&super::row(5)));
+    let text = "version = 1\nrun.end_time = 1\nmaterials.any.density = 1000\n\
+                bodies.rock = { file = \"row.vtp\", material = \"any\", start_as = \"clump\" }\n";
+    bench.write("rigid.toml", text);
+    let said = check(&bench, &["rigid.toml"]);
+    let line = "\n               'rock' as a rigid clump; its 3 bonds are not used\n";
+    assert!(said.contains(line), "{said}");
 }

@@ -138,3 +138,54 @@ fn folders_that_cannot_be_made() {
         "{said}"
     );
 }
+
+/// A limit of the shell on the size of files is an error, not a signal that ends the program.
+#[test]
+fn a_file_beyond_the_limit_of_the_shell() {
+    let bench = Bench::new();
+    let script = format!(
+        "ulimit -f 8; exec {} {} --out out --set output.series=1e-9",
+        dem_run().get_program().display(),
+        good("breaking.toml").display()
+    );
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(bench.path(""))
+        .output()
+        .unwrap();
+    let (said, code) = refused(&output);
+    assert_eq!(code, 1, "{said}");
+    assert!(
+        said.starts_with("error: out/") && said.contains("a limit on the size of files is reached"),
+        "{said}"
+    );
+    let files = names_in(&bench.path("out"));
+    assert!(
+        !files.iter().any(|name| name.starts_with(".unfinished")),
+        "{files:?}"
+    );
+}
+
+/// What a killed run left of a checkpoint and of a fragment is removed by the next that writes there.
+#[test]
+fn remnants_of_a_killed_run_go_with_the_next() {
+    let bench = Bench::new();
+    fs::create_dir(bench.path("out")).unwrap();
+    bench.write("out/checkpoint.dem", "");
+    bench.write("out/.unfinished-a1B2c3", "half");
+    bench.write("here.vtp", "");
+    bench.good(&good("breaking.toml"), &["--out", "out", "--force"]);
+    let files = names_in(&bench.path("out"));
+    assert!(
+        !files.iter().any(|name| name.starts_with(".unfinished")),
+        "{files:?}"
+    );
+    bench.write(".unfinished-a1B2c3", "half");
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .args(["fragment", "out", "--largest", "-o", "piece.vtp"])
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    assert_eq!(bench.files(), ["here.vtp", "out", "piece.vtp"]);
+}

@@ -61,7 +61,7 @@ pub(super) fn interrupt(
     }
     assert!(checkpoint.exists());
     let (said, code) = super::refused(&output);
-    assert_eq!(code, 1, "{said}");
+    assert_eq!(code, 130, "{said}");
     Some(said)
 }
 
@@ -102,7 +102,7 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
     child.try_wait().unwrap();
     let output = child.wait_with_output().unwrap();
     let (said, code) = super::refused(&output);
-    assert_eq!(code, 1);
+    assert_eq!(code, 130);
     assert!(said.starts_with("error: interrupted at "), "{said}");
     assert!(
         said.ends_with("with --out FOLDER its state would have been kept"),
@@ -120,6 +120,10 @@ fn a_folder_is_written_to_by_one_run_at_a_time() {
         "run.end_time=1000 s",
         "--set",
         "output.series=1e-3 s",
+        "--set",
+        "output.frames=1 s",
+        "--set",
+        "output.checkpoint=1 s",
         "--out",
         "out",
     ];
@@ -159,7 +163,7 @@ fn before_a_run_nothing_is_waited_for() {
     assert!(since.elapsed() < Duration::from_secs(5));
     assert_eq!(
         super::refused(&output),
-        ("error: interrupted".to_owned(), 1)
+        ("error: interrupted".to_owned(), 130)
     );
     drop(kept);
 }
@@ -177,4 +181,28 @@ fn a_checkpoint_stays_when_the_next_run_is_interrupted_too() {
         "{said}"
     );
     assert!(bench.path("out/checkpoint.dem").exists());
+}
+
+/// Waits until the program handles the interrupt itself: bit 1 of the mask of caught signals.
+fn wait_for_handler(child: &mut Child) {
+    let path = format!("/proc/{}/status", child.id());
+    wait_until(child, || {
+        let status = fs::read_to_string(&path).unwrap_or_default();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let caught = u64::from_str_radix(caught.unwrap_or("0").trim(), 16);
+        caught.is_ok_and(|caught| caught & 2 != 0)
+    });
+}
+
+#[test]
+fn a_stress_suite_ends_with_the_same_code() {
+    let mut command = dem_run();
+    command.args(["stress", "--threads", "1"]);
+    let mut child = start(command);
+    wait_for_handler(&mut child);
+    send("-INT", &child);
+    let output = child.wait_with_output().unwrap();
+    let (said, code) = super::refused(&output);
+    assert_eq!(code, 130, "{said}");
+    assert!(said.starts_with("error: interrupted"), "{said}");
 }

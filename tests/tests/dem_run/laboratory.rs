@@ -166,7 +166,15 @@ fn a_sample_is_bent_by_four_pins() {
         .status();
     assert!(packed.unwrap().success());
     let scene = scene_of_data("four-point-bending.toml");
-    let mut options = vec!["--body", "sample=sample.vtp", "--json", "--out", "out"];
+    // Quiet: dem-pack warned of spheres as large as these, and dem-run repeats it.
+    let mut options = vec![
+        "--body",
+        "sample=sample.vtp",
+        "--json",
+        "--out",
+        "out",
+        "--quiet",
+    ];
     for set in ["test.periods=8", "test.rate_check=false"] {
         options.extend(["--set", set]);
     }

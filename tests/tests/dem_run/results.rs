@@ -19,6 +19,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
     assert_eq!(
         names_in(&bench.path("out")),
         [
+            ".ended.json",
             ".lock",
             "checkpoint.dem",
             "events.csv",
@@ -169,7 +170,7 @@ fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     ] {
         assert!(plots.contains(&name.to_owned()), "{name} in {plots:?}");
     }
-    assert_eq!(plots.len(), 3 + 31 + 2);
+    assert_eq!(plots.len(), 3 + 33 + 2);
     for name in plots {
         let text = fs::read_to_string(bench.path("out/plots").join(&name)).unwrap();
         assert!(text.starts_with("<!-- dem-run plot -->\n<svg "), "{name}");

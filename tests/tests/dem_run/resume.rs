@@ -51,7 +51,9 @@ fn after_a_signal_a_run_goes_on_as_if_nothing_had_been() {
                 said.ends_with("go on with the same command and --resume: 'part/checkpoint.dem' holds its state"),
                 "{said}"
             );
-            assert!(!bench.path("part/summary.json").exists());
+            let left = fs::read(bench.path("part/summary.json")).unwrap();
+            let left: serde_json::Value = serde_json::from_slice(&left).unwrap();
+            assert_eq!(left["ended_by"], "interruption");
             times += 1;
             resume = true;
             rows = numbers(&bench.path("part/series.csv"), "time_s").len() + 100;
@@ -259,4 +261,81 @@ fn there_has_to_be_a_folder_to_resume() {
         said.contains("--resume: no folder") && said.contains("add --out FOLDER"),
         "{said}"
     );
+}
+
+/// A run that was killed while it wrote what it writes at its end, and one of which something was removed since.
+#[test]
+fn what_is_missing_at_the_end_is_written() {
+    let tension = super::laboratory::bar();
+    for (name, missing) in [
+        (
+            "meeting.toml",
+            &[
+                "film.png",
+                "film-strip.png",
+                "fragment-tree.csv",
+                "plots/energy.svg",
+                "summary.json",
+            ][..],
+        ),
+        (
+            "breaking.toml",
+            &[
+                "fragment-tree.csv",
+                "plots/pull.svg",
+                "plots/errors.svg",
+                "summary.json",
+            ],
+        ),
+        ("rest.toml", &["plots/energy.svg"]),
+        (
+            "tension.toml",
+            &["test.html", "force-displacement.csv", "summary.json"],
+        ),
+    ] {
+        let bench = Bench::new();
+        let scene = match name {
+            "tension.toml" => bench.write(name, &tension),
+            _ => good(name),
+        };
+        let go = |options: &[&str]| bench.good(&scene, &[&["--out", "out"], options].concat());
+        go(&[]);
+        let whole = bytes_of(&bench);
+        for file in missing {
+            fs::remove_file(bench.path("out").join(file)).unwrap();
+            let said = go(&["--resume", "--threads", "2"]);
+            assert_eq!(
+                said,
+                format!(
+                    "this run had come to its end; what was missing has been written: {file}\n"
+                ),
+                "{name}"
+            );
+            assert!(whole == bytes_of(&bench), "{name} without {file}");
+        }
+        // All at once, as where the run was killed when it had written its last checkpoint, with another summary in the way.
+        for file in missing {
+            fs::remove_file(bench.path("out").join(file)).unwrap();
+        }
+        bench.write("out/summary.json", "{}");
+        assert_eq!(go(&["--resume", "--quiet"]), "");
+        assert!(whole == bytes_of(&bench), "{name} as a whole");
+        fs::remove_file(bench.path("out/summary.json")).unwrap();
+        let said = go(&["--resume", "--json"]);
+        assert!(said.as_bytes() == whole["summary.json"], "{said}");
+        // Nothing is missing now.
+        let said = bench.bad(&scene, &["--out", "out", "--resume"], 2);
+        assert!(said.contains("nothing is left to be done"), "{said}");
+        assert!(whole == bytes_of(&bench));
+    }
+}
+
+/// All files of the results as they are.
+fn bytes_of(bench: &Bench) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let mut found = super::results(&bench.path("out"));
+    found.insert(
+        "summary.json".to_owned(),
+        fs::read(bench.path("out/summary.json")).unwrap(),
+    );
+    found
 }

@@ -120,6 +120,30 @@ fn materials_of_data_fit_into_a_scene() {
     }
 }
 
+/// The page of the materials reads the sizes of Platzer's tables as radii: so do their time steps keep to eq. 15, and not with spheres half as large.
+#[test]
+fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
+    let page = std::fs::read_to_string(root().join("data/materials/README.md")).unwrap();
+    for (table, young_modulus_pa, printed_s) in [(1, 12.05e6, 2e-6), (2, 15e6, 4e-6)] {
+        let file = format!("`filter-cake-table-{table}.toml`");
+        let row = page.lines().find(|line| line.contains(&file)).unwrap();
+        let after = |option: &str| {
+            let rest = row.split_once(option).unwrap().1;
+            rest.split([' ', '`'])
+                .find(|word| !word.is_empty())
+                .unwrap()
+        };
+        let (smallest, _) = after("--diameter").split_once("..").unwrap();
+        let radius_m = 0.5 * dem_io::units::length_m(smallest).unwrap();
+        let overlap: f64 = after("--overlap").parse().unwrap();
+        // m/K of the smallest sphere with a bond of its radius to its like, 2 R/(1 + overlap) away.
+        let squared_s2 = 8.0 / 3.0 / (1.0 + overlap) * radius_m.powi(2) * 2050.0 / young_modulus_pa;
+        let limit_s = 0.17 * squared_s2.sqrt();
+        assert!(limit_s > printed_s, "table {table}: {limit_s:e}");
+        assert!(0.5 * limit_s < printed_s, "table {table}: {limit_s:e}");
+    }
+}
+
 /// The bodies that scenes of `data` run with are those that their page tells how to make.
 #[test]
 fn bodies_of_data_are_as_said() {

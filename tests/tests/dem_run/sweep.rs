@@ -3,6 +3,7 @@
 mod curves;
 mod failed;
 mod pieces;
+mod safety;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -87,6 +88,18 @@ fn good(bench: &Bench, options: &[&str]) -> String {
     assert!(output.status.success(), "{said}");
     assert_eq!(said, "");
     String::from_utf8(output.stdout).unwrap()
+}
+
+/// A sweep of which some runs have no values: what it says on standard output and on standard error.
+fn partly(bench: &Bench, options: &[&str]) -> (String, String) {
+    let output = sweep(bench, options).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.starts_with("error: study.toml: ") && said.matches('\n').count() == 1,
+        "{said}"
+    );
+    (String::from_utf8(output.stdout).unwrap(), said)
 }
 
 fn bad(bench: &Bench, options: &[&str], code: i32) -> String {
@@ -267,7 +280,7 @@ fn an_interrupted_sweep_goes_on() {
         .status()
         .unwrap();
     let (said, code) = super::refused(&child.wait_with_output().unwrap());
-    assert_eq!(code, 1, "{said}");
+    assert_eq!(code, 130, "{said}");
     assert!(
         said.contains("interrupted after") && said.contains("of 8 runs; go on with --resume"),
         "{said}"
@@ -280,7 +293,12 @@ fn an_interrupted_sweep_goes_on() {
         "{said}"
     );
     // What is there can be looked at in between.
-    assert!(good(&bench, &["--collect"]).contains("it has not been run to its end"));
+    let (table, said) = partly(&bench, &["--collect"]);
+    assert!(table.contains("it has not been run to its end"));
+    assert!(
+        said.contains(" of 8 runs did not come to their end; the first: run "),
+        "{said}"
+    );
     good(&bench, &["--resume"]);
     assert_eq!(
         fs::metadata(&first).unwrap().modified().unwrap(),
@@ -447,8 +465,8 @@ fn what_is_refused() {
         ),
         (
             "[0.2, 0.1, 0.05, 0.025]",
-            "{ from = 0.01, to = 0.9, count = 500000 }",
-            "study.toml: 1000000 runs, 2 times each, are more than 10000; vary less, or say --yes",
+            "{ from = 0.01, to = 0.9, count = 50000 }",
+            "study.toml: 100000 runs, 2 times each, are more than 10000; vary less, or say --yes",
         ),
         ("version = 1", "version = 3", "version is 3"),
     ];

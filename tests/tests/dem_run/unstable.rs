@@ -53,7 +53,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
 }
 
 /// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all others.
-fn uneven() -> String {
+pub(super) fn uneven() -> String {
     "version = 1
 run = { end_time = \"20 ms\", gravity = [0, 0, -1] }
 materials.cake.density = 2050

@@ -123,12 +123,14 @@ impl Bar {
         }
         let mut state = State::new(particles, bonds, 1e-9, 1);
         state.loads.push(SetLoad {
+            end_s: f64::INFINITY,
             particles: vec![count as u32 - 1],
             force_n: (self.turned * Vector3::new(0.0, load_n, 0.0)).into(),
             torque_n_m: [0.0; 3],
             factor: Factor::Ramp { until_s: ramp_s },
         });
         state.supports.push(SetSupport {
+            end_s: f64::INFINITY,
             holds: [Some(Hold::Fixed); 6],
             factor: Factor::One,
             held: vec![Held::default()],

@@ -6,7 +6,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use super::{Body, csv, lammps, txt, vtp};
-use crate::safe_write::{PendingFile, write_file, write_standard_output};
+use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
 use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
@@ -176,7 +176,7 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
                     remedy,
                 ));
             }
-            write_standard_output(|out| vtp::write(body, out))
+            write_standard_bytes(|out| vtp::write(body, out))
         }
         Storage::Vtp(path) => write_file(&path, |out| vtp::write(body, out)),
         Storage::Lammps(path) => write_file(&path, |out| lammps::write(body, out)),

@@ -4,7 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::mass::{centre_text, moments_text, of_body, percent_text};
 use super::{About, Body};
+use crate::text::visible;
 use crate::units::{show_length, significant};
 
 /// What a body holds. SI units.
@@ -38,6 +40,16 @@ pub struct BodySummary {
     pub mass_kg: Option<f64>,
     /// Mass by volume of the shape, kg/m3, if both are known.
     pub solid_density_kg_m3: Option<f64>,
+    /// Mass of the shape filled with the density of the particles, kg, if both are known.
+    pub shape_mass_kg: Option<f64>,
+    /// By how much the body weighs more than that, percent, if the volume of the shape is known: of any density.
+    pub mass_difference_percent: Option<f64>,
+    /// Centre of mass, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// Principal moments of inertia, rising, kg m2, if the density is known. Length 3.
+    pub principal_moments_kg_m2: Option<[f64; 3]>,
+    /// Inertia about the centre of mass, kg m2, if the density is known: a symmetric matrix.
+    pub inertia_kg_m2: Option<[[f64; 3]; 3]>,
     /// Where it came from.
     pub about: About,
 }
@@ -58,10 +70,11 @@ pub fn body_summary(body: &Body) -> BodySummary {
         .iter()
         .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r * r * r)
         .sum();
-    let mass_kg = body
-        .about
-        .particle_density_kg_m3
-        .map(|density| density * volume);
+    let density = body.about.particle_density_kg_m3;
+    let mass_kg = density.map(|density| density * volume);
+    // Where the centre is does not depend on the density.
+    let properties = of_body(body, density.unwrap_or(1.0));
+    let shape_volume = body.about.shape_volume_m3;
     let piece_sizes = piece_sizes(body);
     BodySummary {
         particles,
@@ -80,6 +93,11 @@ pub fn body_summary(body: &Body) -> BodySummary {
         solid_density_kg_m3: mass_kg
             .zip(body.about.shape_volume_m3)
             .map(|(mass, volume)| mass / volume),
+        shape_mass_kg: density.zip(shape_volume).map(|(of, volume)| of * volume),
+        mass_difference_percent: shape_volume.map(|shape| 100.0 * (volume / shape - 1.0)),
+        centre_m: properties.centre_m,
+        principal_moments_kg_m2: density.map(|_| properties.moments_kg_m2),
+        inertia_kg_m2: density.map(|_| properties.inertia_kg_m2()),
         about: body.about.clone(),
     }
 }
@@ -160,13 +178,17 @@ impl fmt::Display for BodySummary {
             }
             writeln!(f)?;
         }
+        self.write_shape_mass(f)?;
         let about = &self.about;
         let made = [
             about
                 .program
                 .as_ref()
-                .map(|program| format!("by {program}")),
-            about.source.as_ref().map(|source| format!("from {source}")),
+                .map(|program| format!("by {}", visible(program))),
+            about
+                .source
+                .as_ref()
+                .map(|source| format!("from {}", visible(source))),
             about.source_hash.map(|hash| format!("hash {hash:016x}")),
             about
                 .shape_volume_m3
@@ -178,10 +200,46 @@ impl fmt::Display for BodySummary {
             about.seed.map(|seed| format!("seed {seed}")),
         ];
         let made: Vec<String> = made.into_iter().flatten().collect();
-        if made.is_empty() {
-            Ok(())
-        } else {
-            writeln!(f, "made       {}", made.join(", "))
+        if !made.is_empty() {
+            writeln!(f, "made       {}", made.join(", "))?;
+        }
+        for warning in &about.warnings {
+            writeln!(f, "warning    when it was made: {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+impl BodySummary {
+    /// What its shape would weigh, where its mass is, and how it is spread.
+    fn write_shape_mass(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(difference) = self.mass_difference_percent {
+            let percent = percent_text(difference);
+            match (self.shape_mass_kg, self.about.particle_density_kg_m3) {
+                (Some(mass), Some(density)) => writeln!(
+                    f,
+                    "           its shape filled with {} kg/m3 would weigh {} kg ({percent})",
+                    significant(density, 4),
+                    significant(mass, 4)
+                )?,
+                _ => writeln!(
+                    f,
+                    "mass       {} of its shape filled with the density of its particles",
+                    significant(1.0 + 0.01 * difference, 4)
+                )?,
+            }
+        }
+        let known = self.mass_kg.zip(self.principal_moments_kg_m2);
+        // Without a density nothing tells how large rounding is.
+        let (mass_kg, moments) = known.unwrap_or((1.0, [0.0; 3]));
+        write!(
+            f,
+            "centre     {}",
+            centre_text(self.centre_m, moments, mass_kg)
+        )?;
+        match self.principal_moments_kg_m2 {
+            Some(moments) => writeln!(f, "; {}", moments_text(moments)),
+            None => writeln!(f),
         }
     }
 }

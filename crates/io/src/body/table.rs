@@ -1,8 +1,11 @@
 //! Lines and words of text files, with messages that name the line.
 
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 use crate::{Diagnostic, Result};
+
+/// Bytes of the longest line that is read; no table has one nearly as long.
+const LONGEST_LINE: u64 = 1 << 20;
 
 /// The lines of a text file, one at a time.
 pub(crate) struct Lines<'a> {
@@ -26,13 +29,19 @@ impl<'a> Lines<'a> {
     /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line break, too.
     pub(crate) fn next(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
-        let read = self.input.read_until(b'\n', &mut self.bytes);
+        let mut some = Read::take(&mut *self.input, LONGEST_LINE);
+        let read = some.read_until(b'\n', &mut self.bytes);
         if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
             == 0
         {
             return Ok(None);
         }
         self.number += 1;
+        if self.bytes.len() as u64 == LONGEST_LINE {
+            let problem = format!("this line is longer than {LONGEST_LINE} bytes");
+            let error = Diagnostic::input("", problem, "write one particle or bond per line");
+            return Err(on_line(self.number, error));
+        }
         if !self.bytes.ends_with(b"\n") {
             return Err(on_line(
                 self.number,

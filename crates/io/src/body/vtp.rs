@@ -6,6 +6,7 @@
 
 mod contents;
 mod decode;
+mod guard;
 mod header;
 mod read;
 
@@ -15,7 +16,7 @@ pub(crate) use read::read_frame;
 use std::io::{self, Write};
 
 use super::{About, Body};
-use crate::vtk::{NamedArray, PolyData, Values, exact, write_number, write_text};
+use crate::vtk::{NamedArray, PolyData, Values, exact, write_number, write_text, write_texts};
 
 /// Version of this layout. Files of a later one are refused.
 pub const FORMAT_VERSION: u64 = 1;
@@ -36,6 +37,7 @@ const PARTICLE_DENSITY: &str = "particle_density_kg_m3";
 const OVERLAP: &str = "overlap";
 const BONDING_RADIUS: &str = "bonding_radius";
 const SEED: &str = "seed";
+const WARNINGS: &str = "warnings";
 
 /// Writes a body as .vtp. It must keep the rules of [`Body::check`].
 ///
@@ -85,5 +87,6 @@ fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {
         BONDING_RADIUS,
         about.bonding_radius.map(exact),
     )?;
-    write_number(out, "UInt64", SEED, about.seed)
+    write_number(out, "UInt64", SEED, about.seed)?;
+    write_texts(out, WARNINGS, &about.warnings)
 }

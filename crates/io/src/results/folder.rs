@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plots;
-use crate::safe_write::{PendingFile, UNFINISHED_PREFIX, explain, write_file};
+use crate::safe_write::{
+    PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
+};
 use crate::{Diagnostic, Result};
 
 const FRAMES: &str = "frames";
@@ -23,7 +25,23 @@ const SUMMARY: &str = "summary.json";
 const TEST_PAGE: &str = "test.html";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
+const ENDED: &str = ".ended.json";
 const LOCK: &str = ".lock";
+/// Files of which a run writes one each.
+const SINGLE_FILES: [&str; 12] = [
+    INDEX,
+    SERIES,
+    EVENTS,
+    FRAGMENTS,
+    FRAGMENT_TREE,
+    SUMMARY,
+    TEST_PAGE,
+    TEST_CURVE,
+    FILM_STRIP,
+    FILM,
+    CHECKPOINT,
+    ENDED,
+];
 
 /// What to do with a folder that holds something already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,6 +157,11 @@ impl ResultsFolder {
         self.path.join(SUMMARY)
     }
 
+    /// What is written at the end of a run, kept until it all is: `.ended.json`.
+    pub fn ended(&self) -> PathBuf {
+        self.path.join(ENDED)
+    }
+
     /// The latest state of the run: `checkpoint.dem`.
     pub fn checkpoint(&self) -> PathBuf {
         self.path.join(CHECKPOINT)
@@ -171,9 +194,7 @@ impl ResultsFolder {
     /// # Errors
     /// Those of [`ResultsFolder::write_plot`].
     pub fn write_test_page(&self, html: &str) -> Result<()> {
-        write_file(&self.path.join(TEST_PAGE), |out| {
-            out.write_all(html.as_bytes())
-        })
+        write_file(&self.test_page(), |out| out.write_all(html.as_bytes()))
     }
 
     /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
@@ -181,9 +202,17 @@ impl ResultsFolder {
     /// # Errors
     /// Those of [`ResultsFolder::write_plot`].
     pub fn write_test_curve(&self, csv: &str) -> Result<()> {
-        write_file(&self.path.join(TEST_CURVE), |out| {
-            out.write_all(csv.as_bytes())
-        })
+        write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
+    }
+
+    /// The page of a laboratory test: `test.html`.
+    pub fn test_page(&self) -> PathBuf {
+        self.path.join(TEST_PAGE)
+    }
+
+    /// The curve of a laboratory test: `force-displacement.csv`.
+    pub fn test_curve(&self) -> PathBuf {
+        self.path.join(TEST_CURVE)
     }
 
     /// Makes the folder of the frames, unless it is there.
@@ -241,22 +270,29 @@ impl ResultsFolder {
         self.remove_files("", |name| name == INDEX)
     }
 
+    /// Removes the files that a run wrote, and the folder unless it holds something else.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub fn remove(self) -> Result<()> {
+        self.remove_results()?;
+        for part in [FRAMES, PICTURES, PLOTS] {
+            // One that holds something else stays, and so does the folder then.
+            let _ = fs::remove_dir(self.path.join(part));
+        }
+        let is_empty = refuse_unless_empty(&self.path).is_ok();
+        let lock = self.path.join(LOCK);
+        fs::remove_file(&lock).map_err(|error| explain(&lock, &error))?;
+        if is_empty {
+            fs::remove_dir(&self.path).map_err(|error| explain(&self.path, &error))?;
+        }
+        Ok(())
+    }
+
     fn remove_results(&self) -> Result<()> {
         // First, so that a folder of which only a part could be removed is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        const OTHERS: [&str; 10] = [
-            INDEX,
-            SERIES,
-            EVENTS,
-            FRAGMENTS,
-            FRAGMENT_TREE,
-            SUMMARY,
-            TEST_PAGE,
-            TEST_CURVE,
-            FILM_STRIP,
-            FILM,
-        ];
-        self.remove_files("", |name| OTHERS.contains(&name))?;
+        self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
@@ -273,15 +309,79 @@ impl ResultsFolder {
         }
         for entry in entries(&folder)? {
             let path = entry.map_err(|error| explain(&folder, &error))?;
-            let is_ours = path
-                .file_name()
-                .and_then(|name| name.to_str())
-                .is_some_and(|name| ours(name) || name.starts_with(UNFINISHED_PREFIX));
-            if is_ours && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                fs::remove_file(&path).map_err(|error| explain(&path, &error))?;
-            }
+            let name = path.file_name().and_then(|name| name.to_str());
+            let name = name.unwrap_or_default();
+            let removed = if name.starts_with(UNFINISHED_PREFIX) {
+                remove_if_abandoned(&path)
+            } else if ours(name)
+                && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file())
+            {
+                fs::remove_file(&path)
+            } else {
+                Ok(())
+            };
+            removed.map_err(|error| explain(&path, &error))?;
         }
         Ok(())
+    }
+}
+
+/// Whether a run is writing into the folder `path` at this moment. A folder that no run has written to is not there for it.
+pub fn is_written_to(path: &Path) -> bool {
+    is_locked(&path.join(LOCK))
+}
+
+/// Whether a file is there and another program holds its lock.
+pub fn is_locked(path: &Path) -> bool {
+    File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// The first of `files` that stands in the folder `path` under a name of results, also through a link: a run that writes
+/// there would remove or overwrite it. None: there is none of them, or no such folder.
+pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
+    let is_frame = |name: &str| frame_number(name).is_some();
+    let is_picture = |name: &str| picture_number(name).is_some();
+    let parts: [(&str, &dyn Fn(&str) -> bool); 4] = [
+        ("", &|name| SINGLE_FILES.contains(&name)),
+        (FRAMES, &is_frame),
+        (PICTURES, &is_picture),
+        (PLOTS, &|name| name.ends_with(".svg")),
+    ];
+    for (part, is_ours) in parts {
+        let Ok(entries) = fs::read_dir(path.join(part)) else {
+            continue;
+        };
+        for entry in entries.flatten() {
+            let name = entry.file_name();
+            let is_result = (name.to_str())
+                .is_some_and(|name| is_ours(name) || name.starts_with(UNFINISHED_PREFIX));
+            if !is_result {
+                continue;
+            }
+            let found = files.iter().find(|file| is_same_file(file, &entry.path()));
+            if found.is_some() {
+                return found;
+            }
+        }
+    }
+    None
+}
+
+/// Refuses to write results into the folder `path` where they would take the place of a file that the run reads.
+///
+/// # Errors
+/// One of `inputs` stands there under a name of results (exit code 2).
+pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+    match result_among(path, inputs) {
+        None => Ok(()),
+        Some(input) => Err(Diagnostic::input(
+            input.display().to_string(),
+            format!(
+                "this is an input of the run, and results in '{}' would take its place",
+                path.display()
+            ),
+            "name another folder with --out, or copy the file elsewhere and name the copy",
+        )),
     }
 }
 

@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::xml::escaped;
+use crate::text::for_page;
 use legend::{Entry, Legend};
 use scale::Scale;
 use text::{shortened, width};
@@ -238,7 +238,7 @@ fn write_svg(out: &mut String, plot: &Plot, layout: &Layout) -> std::fmt::Result
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
          font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"12\" fill=\"{INK}\">"
     )?;
-    writeln!(out, "<title>{}</title>", escaped(&plot.title))?;
+    writeln!(out, "<title>{}</title>", for_page(&plot.title))?;
     writeln!(
         out,
         "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#ffffff\"/>"
@@ -330,7 +330,7 @@ fn write_labels(out: &mut String, plot: &Plot, layout: &Layout) -> std::fmt::Res
             out,
             "<text x=\"{:.2}\" y=\"25\" text-anchor=\"middle\" font-size=\"15\" font-weight=\"bold\">{}</text>",
             WIDTH / 2.0,
-            escaped(&title)
+            for_page(&title)
         )?;
     }
     writeln!(out, "<g text-anchor=\"middle\">")?;
@@ -361,13 +361,13 @@ fn write_labels(out: &mut String, plot: &Plot, layout: &Layout) -> std::fmt::Res
         out,
         "<text x=\"{x:.2}\" y=\"{:.2}\">{}</text>",
         bottom + 38.0,
-        escaped(&label)
+        for_page(&label)
     )?;
     let label = shortened(&layout.y.label, 13.0, bottom - top);
     writeln!(
         out,
         "<text transform=\"translate(20 {y:.2}) rotate(-90)\">{}</text>\n</g>",
-        escaped(&label)
+        for_page(&label)
     )
 }
 
@@ -383,7 +383,7 @@ fn write_line(
         out,
         "<g class=\"line\" fill=\"none\" stroke-linejoin=\"round\" {stroke}>"
     )?;
-    writeln!(out, "<title>{}</title>", escaped(&line.name))?;
+    writeln!(out, "<title>{}</title>", for_page(&line.name))?;
     for segment in segments {
         if let [[x, y]] = segment[..] {
             let colour = COLOURS[index % COLOURS.len()];

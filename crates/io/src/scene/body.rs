@@ -8,15 +8,17 @@ use super::field::Field;
 use super::names::meaning;
 use super::read::named_path;
 use super::table::Table;
-use super::{BodyEntry, BodySource, BondKind, Material, clump};
+use super::{BodyEntry, BodySource, BondKind, Material, StartAs, WholeMass, clump};
 use crate::Result;
-use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
+use crate::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 13] = [
     "file",
     "particles",
     "bond_list",
     "material",
+    "body_density",
+    "mass",
     "bonds",
     "position",
     "rotation",
@@ -70,15 +72,26 @@ fn read(
     let source = source(&table, folder)?;
     let material_field = table.need("material", "\"NAME\", a name in [materials]")?;
     let material = material_field.reference(materials.keys(), "materials")?;
+    if materials.get(&material).is_some_and(|found| found.rigid) {
+        let problem = format!(
+            "{} is \"{material}\", which is rigid, and only walls can be",
+            material_field.path
+        );
+        let remedy = "name another material, or give this one a density and a young_modulus";
+        return Err(material_field.refuse(problem, remedy));
+    }
     let bond_kind = table.read("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
+    let start_as = clump::read(&table)?;
+    let whole_mass = whole_mass(&table, &source)?;
     if let BodySource::Inline { bonds, .. } = &source {
-        if !bonds.is_empty() && bond_kind.is_none() {
+        // Of a clump: who replaces it needs them.
+        if !bonds.is_empty() && bond_kind.is_none() && start_as == StartAs::Bonded {
             table.need("bonds", "\"NAME\", a name in [bonds]")?;
         }
         let density = materials
             .get(&material)
             .and_then(|found| found.density_kg_m3);
-        if density.is_none() {
+        if density.is_none() && whole_mass.is_none() {
             let problem = format!(
                 "{} is \"{material}\", which has no density, and no file names one for {}",
                 material_field.path, table.path
@@ -103,8 +116,32 @@ fn read(
         angular_velocity_rad_s: table
             .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
             .unwrap_or_default(),
-        start_as: clump::read(&table)?,
+        start_as,
+        whole_mass,
     })
+}
+
+fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass>> {
+    let mass = table.get("mass");
+    let Some(field) = table.get("body_density") else {
+        let mass = mass.map(|field| field.positive(&MASS)).transpose()?;
+        return Ok(mass.map(WholeMass::Mass));
+    };
+    if mass.is_some() {
+        let problem = format!("{} stands beside mass", field.path);
+        return Err(field.refuse(
+            problem,
+            "either says what the body weighs: remove the other",
+        ));
+    }
+    if matches!(source, BodySource::Inline { .. }) {
+        let problem = format!(
+            "{} is that of a shape, and particles in the scene have none",
+            field.path
+        );
+        return Err(field.refuse(problem, "give the body a mass, such as mass = \"0.4 kg\""));
+    }
+    Ok(Some(WholeMass::Density(field.positive(&DENSITY)?)))
 }
 
 fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {

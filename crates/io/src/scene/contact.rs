@@ -49,7 +49,8 @@ pub struct Contact {
 /// How forces follow from overlap and sliding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactLaw {
-    /// "hertz-mindlin", unless given: elastic spheres. Both materials have a `young_modulus`.
+    /// "hertz-mindlin", unless given: elastic spheres. Both materials have a `young_modulus`, or
+    /// one of them is rigid.
     HertzMindlin,
     /// "linear": a spring and a dashpot.
     Linear {
@@ -108,6 +109,14 @@ fn read(
     materials: &BTreeMap<String, Material>,
 ) -> Result<Contact> {
     let table = field.table(&KEYS)?;
+    let is_rigid = |name: &String| materials.get(name).is_some_and(|material| material.rigid);
+    if pair.iter().all(is_rigid) {
+        let problem = format!("{} is a pair of rigid materials", field.path);
+        return Err(field.refuse(
+            problem,
+            "remove it: only walls are rigid, and walls never meet each other",
+        ));
+    }
     let law = law(&table)?;
     if law == ContactLaw::HertzMindlin {
         need_moduli(&table, &pair, materials)?;
@@ -169,7 +178,7 @@ fn need_moduli(
 ) -> Result<()> {
     let has_none = |name: &&String| {
         let material = materials.get(*name);
-        material.is_none_or(|material| material.young_modulus_pa.is_none())
+        material.is_none_or(|material| material.young_modulus_pa.is_none() && !material.rigid)
     };
     let Some(name) = pair.iter().find(has_none) else {
         return Ok(());

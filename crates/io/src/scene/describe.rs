@@ -12,9 +12,10 @@ use super::measure::TIMES;
 use super::run::{INTEGRATORS, START_OVERLAPS};
 use super::support::FREEDOMS;
 use super::{
-    BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Load, Material, Measure,
-    Output, ParticleSet, Pick, Run, Scene, Support,
+    BodyEntry, BodySource, BondKind, BondModel, Factor, Formulation, Hold, Initial, Load, Material,
+    Measure, Output, ParticleSet, Pick, Run, Scene, Support, WholeMass,
 };
+use crate::text::visible;
 
 /// Most items of a list that are written out.
 const LISTED: usize = 8;
@@ -22,6 +23,15 @@ const LISTED: usize = 8;
 impl Scene {
     /// All values in SI with their units, defaults included: one line each, `key   value`, aligned.
     pub fn describe(&self) -> String {
+        self.described().aligned()
+    }
+
+    /// The same as keys and values, in the same order.
+    pub fn values(&self) -> Vec<(String, String)> {
+        self.described().lines
+    }
+
+    fn described(&self) -> Lines {
         let mut lines = Lines::default();
         lines.run(&self.run);
         for (name, material) in &self.materials {
@@ -41,6 +51,9 @@ impl Scene {
         }
         for (name, set) in &self.sets {
             lines.set(&format!("sets.{name}"), set);
+        }
+        for (name, initial) in &self.initial {
+            lines.initial(&format!("initial.{name}"), initial);
         }
         for (name, support) in &self.supports {
             lines.support(&format!("supports.{name}"), support);
@@ -71,7 +84,7 @@ impl Scene {
         if let Some(test) = &self.test {
             lines.test(test);
         }
-        lines.aligned()
+        lines
     }
 }
 
@@ -92,7 +105,7 @@ impl Lines {
         let mut text = String::new();
         for (key, value) in &self.lines {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{key:width$}   {value}");
+            let _ = writeln!(text, "{key:width$}   {}", visible(value));
         }
         text
     }
@@ -113,6 +126,9 @@ impl Lines {
     }
 
     fn material(&mut self, path: &str, material: &Material) {
+        if material.rigid {
+            return self.add(format!("{path}.rigid"), "true");
+        }
         self.add(
             format!("{path}.density"),
             optional(material.density_kg_m3, "kg/m3", "from the body's file"),
@@ -211,6 +227,13 @@ impl Lines {
             }
         }
         self.add(format!("{path}.material"), body.material.clone());
+        match body.whole_mass {
+            Some(WholeMass::Density(density)) => {
+                self.add(format!("{path}.body_density"), value(density, "kg/m3"));
+            }
+            Some(WholeMass::Mass(mass)) => self.add(format!("{path}.mass"), value(mass, "kg")),
+            None => self.add(format!("{path}.mass"), "that of its particles"),
+        }
         let bonds = body.bond_kind.as_deref().unwrap_or("none");
         self.add(format!("{path}.bonds"), bonds);
         for (key, components, unit) in [
@@ -248,6 +271,17 @@ impl Lines {
         }
     }
 
+    fn initial(&mut self, path: &str, initial: &Initial) {
+        self.add(format!("{path}.of"), initial.of.clone());
+        for (key, components, unit) in [
+            ("velocity", initial.velocity_m_s, "m/s"),
+            ("angular_velocity", initial.angular_velocity_rad_s, "rad/s"),
+            ("displacement", initial.displacement_m, "m"),
+        ] {
+            self.add(format!("{path}.{key}"), vector(components, unit));
+        }
+    }
+
     fn support(&mut self, path: &str, support: &Support) {
         self.add(format!("{path}.of"), support.of.clone());
         for (at, (freedom, hold)) in FREEDOMS.iter().zip(&support.holds).enumerate() {
@@ -266,6 +300,7 @@ impl Lines {
             self.add(format!("{path}.{freedom}"), text);
         }
         self.factor(path, &support.factor);
+        self.add(format!("{path}.end"), optional(support.end_s, "s", "never"));
     }
 
     fn load(&mut self, path: &str, load: &Load) {
@@ -273,6 +308,7 @@ impl Lines {
         self.add(format!("{path}.force"), vector(load.force_n, "N"));
         self.add(format!("{path}.torque"), vector(load.torque_n_m, "N m"));
         self.factor(path, &load.factor);
+        self.add(format!("{path}.end"), optional(load.end_s, "s", "never"));
     }
 
     fn factor(&mut self, path: &str, factor: &Factor) {
@@ -297,6 +333,9 @@ impl Lines {
         let unit = measure.quantity.dimension().si;
         self.add(format!("{path}.of"), measure.of.clone());
         self.add(format!("{path}.quantity"), measure.quantity.name());
+        if let Some(with) = &measure.with {
+            self.add(format!("{path}.with"), with.clone());
+        }
         self.add(format!("{path}.at"), word(&TIMES, measure.at));
         self.add(
             format!("{path}.reference"),
@@ -305,6 +344,10 @@ impl Lines {
         self.add(
             format!("{path}.tolerance"),
             optional(measure.tolerance, "", "none"),
+        );
+        self.add(
+            format!("{path}.tolerance_absolute"),
+            optional(measure.tolerance_absolute, unit, "none"),
         );
     }
 

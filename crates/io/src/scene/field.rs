@@ -107,7 +107,12 @@ impl<'a> Field<'a> {
 
     /// Poisson's ratio.
     pub(super) fn poisson_ratio(&self) -> Result<f64> {
-        self.between(-1.0, 0.5, "a usual value is 0.3")
+        self.limited(
+            &NUMBER,
+            |ratio| ratio > -1.0 && ratio <= 0.5,
+            "more than -1 and at most 0.5",
+            "a usual value is 0.3",
+        )
     }
 
     /// Three values in SI.

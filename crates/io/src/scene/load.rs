@@ -8,8 +8,9 @@ use crate::Result;
 use crate::units::{FORCE, NUMBER, TIME, TORQUE};
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
-    let table = field.table(&["of", "force", "torque", "ramp", "table"])?;
+    let table = field.table(&["of", "force", "torque", "ramp", "table", "end"])?;
     let of = targets.name(&table.need("of", "\"NAME\", a set, a body or \"all\"")?)?;
+    let factor = factor(&table)?;
     let load = Load {
         of,
         force_n: table
@@ -18,7 +19,8 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
         torque_n_m: table
             .read("torque", |field| field.vector(&TORQUE))?
             .unwrap_or_default(),
-        factor: factor(&table)?,
+        end_s: end(&table, &factor)?,
+        factor,
     };
     if load.force_n == [0.0; 3] && load.torque_n_m == [0.0; 3] {
         let problem = format!("{} is a load of zero", table.path);
@@ -47,6 +49,24 @@ pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
             Err(field.refuse(problem, "the factor follows one of them: remove the other"))
         }
     }
+}
+
+/// `end`, s: not before the last change of the factor.
+pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
+    let Some(field) = table.get("end") else {
+        return Ok(None);
+    };
+    let end_s = field.positive(&TIME)?;
+    let (last_s, which) = match factor {
+        Factor::One => return Ok(Some(end_s)),
+        Factor::Ramp { until_s } => (*until_s, "the ramp"),
+        Factor::Table(points) => (points.last().map_or(0.0, |row| row[0]), "the table"),
+    };
+    if end_s < last_s {
+        let limit = format!("at least {last_s} s, the end of {which}");
+        return Err(field.wrong(&limit, format!("write a later end, or shorten {which}")));
+    }
+    Ok(Some(end_s))
 }
 
 /// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to begin at 0.

@@ -7,20 +7,23 @@ use super::targets::{Subject, Targets};
 use super::{At, Measure, Quantity};
 use crate::Result;
 use crate::units::{
-    ANGLE, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TORQUE, VELOCITY,
+    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
+    TORQUE, VELOCITY,
 };
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 35] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
     ("displacement_x", Quantity::Displacement(0)),
     ("displacement_y", Quantity::Displacement(1)),
     ("displacement_z", Quantity::Displacement(2)),
+    ("displacement", Quantity::DisplacementMagnitude),
     ("velocity_x", Quantity::Velocity(0)),
     ("velocity_y", Quantity::Velocity(1)),
     ("velocity_z", Quantity::Velocity(2)),
+    ("velocity", Quantity::VelocityMagnitude),
     ("rotation_x", Quantity::Rotation(0)),
     ("rotation_y", Quantity::Rotation(1)),
     ("rotation_z", Quantity::Rotation(2)),
@@ -41,6 +44,13 @@ pub(super) const QUANTITIES: [(&str, Quantity); 35] = [
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
     ("force_z", Quantity::Force(2)),
+    ("force", Quantity::ForceMagnitude),
+    ("contact_force_x", Quantity::ContactForce(0)),
+    ("contact_force_y", Quantity::ContactForce(1)),
+    ("contact_force_z", Quantity::ContactForce(2)),
+    ("contact_force", Quantity::ContactForceMagnitude),
+    ("contact_overlap", Quantity::ContactOverlap),
+    ("contact_duration", Quantity::ContactDuration),
     ("torque_x", Quantity::Torque(0)),
     ("torque_y", Quantity::Torque(1)),
     ("torque_z", Quantity::Torque(2)),
@@ -64,15 +74,24 @@ impl Quantity {
         found.map_or("", |(name, _)| *name)
     }
 
-    /// Its dimension, which knows its SI unit.
+    /// Its dimension, which knows the unit of its values.
     pub fn dimension(self) -> &'static Dimension {
         match self {
-            Self::Position(_) | Self::Displacement(_) => &LENGTH,
-            Self::Velocity(_) => &VELOCITY,
-            Self::Rotation(_) | Self::AngleOfRepose => &ANGLE,
+            Self::Position(_)
+            | Self::Displacement(_)
+            | Self::DisplacementMagnitude
+            | Self::ContactOverlap => &LENGTH,
+            Self::Velocity(_) | Self::VelocityMagnitude => &VELOCITY,
+            Self::Rotation(_) => &ANGLE,
+            Self::AngleOfRepose => &ANGLE_DEG,
             Self::AngularVelocity(_) => &ANGULAR_VELOCITY,
-            Self::Reaction(_) | Self::Force(_) => &FORCE,
+            Self::Reaction(_)
+            | Self::Force(_)
+            | Self::ForceMagnitude
+            | Self::ContactForce(_)
+            | Self::ContactForceMagnitude => &FORCE,
             Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
+            Self::ContactDuration => &TIME,
             Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
             Self::MassOfLargest => &MASS,
             Self::BrokenBonds
@@ -82,11 +101,24 @@ impl Quantity {
         }
     }
 
-    /// Whether it is a quantity of such things.
+    /// Whether it is of the contacts between two: `of` and `with`.
+    pub fn is_of_contact(self) -> bool {
+        matches!(
+            self,
+            Self::ContactForce(_)
+                | Self::ContactForceMagnitude
+                | Self::ContactOverlap
+                | Self::ContactDuration
+        )
+    }
+
+    /// Whether it is of such things.
     fn is_of(self, subject: Subject) -> bool {
         match self {
-            Self::Position(_) => subject != Subject::Fragments,
-            Self::Force(_) | Self::Torque(_) => subject == Subject::Wall,
+            Self::Position(_) | Self::Force(_) | Self::ForceMagnitude => {
+                subject != Subject::Fragments
+            }
+            Self::Torque(_) => subject == Subject::Wall,
             Self::Count | Self::MassFractionOfLargest | Self::MassOfLargest => {
                 subject == Subject::Fragments
             }
@@ -95,14 +127,33 @@ impl Quantity {
     }
 }
 
+/// The keys of a measure.
+const KEYS: [&str; 7] = [
+    "of",
+    "quantity",
+    "with",
+    "at",
+    "reference",
+    "tolerance",
+    "tolerance_absolute",
+];
+
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> {
-    let table = field.table(&["of", "quantity", "at", "reference", "tolerance"])?;
+    let table = field.table(&KEYS)?;
     let (of, subject) = table
         .read("of", |field| targets.measured(&field))?
         .unwrap_or_else(|| (ALL.to_owned(), Subject::Particles));
     let quantity = quantity(&table, &of, subject)?;
-    let reference = table.read("reference", |field| field.quantity(quantity.dimension()))?;
+    if let (Quantity::Displacement(_) | Quantity::DisplacementMagnitude, Some(field)) =
+        (quantity, table.get("quantity"))
+    {
+        targets.presence.refuse_without_start(&field, &of)?;
+    }
+    let with = counterpart(&table, &of, quantity, targets)?;
+    let dimension = quantity.dimension();
+    let reference = table.read("reference", |field| field.quantity(dimension))?;
     let tolerance = table.read("tolerance", |field| field.positive(&NUMBER))?;
+    let tolerance_absolute = table.read("tolerance_absolute", |field| field.positive(dimension))?;
     if let Some(field) = table.get("tolerance") {
         let problem = match reference {
             None => "stands without reference, to which it is relative",
@@ -117,15 +168,68 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
             ));
         }
     }
+    if let (Some(field), None) = (table.get("tolerance_absolute"), reference) {
+        let problem = format!(
+            "{} stands without reference, from which it allows to differ",
+            field.path
+        );
+        return Err(field.refuse(problem, "give a reference, or remove tolerance_absolute"));
+    }
     Ok(Measure {
         of,
         quantity,
+        with,
         at: table
             .read("at", |field| field.choice(&TIMES))?
             .unwrap_or(At::End),
         reference,
         tolerance,
+        tolerance_absolute,
     })
+}
+
+/// What `of` touches: needed where a contact is measured, refused elsewhere.
+fn counterpart(
+    table: &Table<'_>,
+    of: &str,
+    quantity: Quantity,
+    targets: &Targets<'_>,
+) -> Result<Option<String>> {
+    let name = quantity.name();
+    if !quantity.is_of_contact() {
+        return match table.get("with") {
+            Some(field) => {
+                let problem = format!(
+                    "{} stands beside the quantity \"{name}\", which is not of a contact",
+                    field.path
+                );
+                Err(field.refuse(problem, "remove it, or ask for \"contact_force\""))
+            }
+            None => Ok(None),
+        };
+    }
+    let Some(field) = table.get("with") else {
+        let problem = format!(
+            "{}.quantity is \"{name}\", of a contact, but nothing says with what",
+            table.path
+        );
+        return Err(table.refuse(problem, "add with = \"NAME\", of a body, a set or a wall"));
+    };
+    let (with, subject) = targets.measured(&field)?;
+    let problem = if with == of {
+        format!("{} is \"{with}\", as of is", field.path)
+    } else if with == ALL || subject == Subject::Fragments {
+        format!(
+            "{} is \"{with}\", which is no one of two that touch",
+            field.path
+        )
+    } else {
+        return Ok(Some(with));
+    };
+    Err(field.refuse(
+        problem,
+        "name another body, set or wall; quantity = \"force\" is of contacts with all else",
+    ))
 }
 
 /// The quantity that is asked, if `of`, which is a `subject`, has it.

@@ -82,6 +82,23 @@ impl Presence<'_> {
         Ok(())
     }
 
+    /// Refuses the quantity that `field` gives, which counts from the start, for `of` where an inlet feeds it or a part of it.
+    pub(super) fn refuse_without_start(&self, field: &Field<'_>, of: &str) -> Result<()> {
+        let mut meant = self.bodies.keys().filter(|name| of == ALL || *name == of);
+        let Some((name, absence)) =
+            meant.find_map(|name| self.fed(name).map(|absence| (name, absence)))
+        else {
+            return Ok(());
+        };
+        let problem = format!(
+            "{} is {} of \"{of}\", with the body \"{name}\", {}",
+            field.path,
+            field.shown(),
+            absence.why
+        );
+        Err(field.refuse(problem, "ask for a position or a velocity, or of another"))
+    }
+
     fn absence(&self, name: &str) -> Option<Absence> {
         self.fed(name).or_else(|| self.clump(name))
     }

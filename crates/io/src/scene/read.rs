@@ -1,7 +1,8 @@
 //! A scene from its text: the order in which the tables are read, and what holds between them.
 
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::presence::Presence;
@@ -9,15 +10,15 @@ use super::table::Table;
 use super::targets::Targets;
 use super::tree::{Document, Origin};
 use super::{
-    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, inlet, load, material,
-    measure, outlet, output, region, relaxation, replacement, run, search, set, sleep, statics,
-    support, test, wall,
+    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, initial, inlet, load,
+    material, measure, outlet, output, region, relaxation, replacement, run, search, set, sleep,
+    statics, support, test, wall,
 };
 use crate::scene::field::Field;
 use crate::{Diagnostic, Result};
 
 /// The tables of a scene.
-const KEYS: [&str; 21] = [
+const KEYS: [&str; 22] = [
     "version",
     "run",
     "materials",
@@ -26,6 +27,7 @@ const KEYS: [&str; 21] = [
     "bodies",
     "walls",
     "sets",
+    "initial",
     "supports",
     "loads",
     "regions",
@@ -52,13 +54,23 @@ pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     scene_from_text(&text, &path.display().to_string(), overrides)
 }
 
+/// Largest file of a scene or study, bytes: what is larger is something else, or has no end.
+const MOST_BYTES: u64 = 1 << 28;
+
 /// The text of a file that holds `what`.
 ///
 /// # Errors
 /// It cannot be read, or is not text.
 pub fn text_of(path: &Path, what: &str) -> Result<String> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    let read = || -> std::io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        File::open(path)?
+            .take(MOST_BYTES + 1)
+            .read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    let bytes = read().map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
             Diagnostic::input(&name, "there is no such file", "check its name and folder")
         }
@@ -70,6 +82,13 @@ pub fn text_of(path: &Path, what: &str) -> Result<String> {
             Diagnostic::input(&name, format!("cannot be read: {error}"), remedy)
         }
     })?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(Diagnostic::input(
+            &name,
+            format!("this is larger than {} MB", MOST_BYTES >> 20),
+            format!("name {what}; particles belong into a file of their own"),
+        ));
+    }
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
@@ -131,6 +150,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         materials,
         bonds,
         supports,
+        initial: each(&root, "initial", |field| initial::read(field, &targets))?,
         loads: each(&root, "loads", |field| load::read(field, &targets))?,
         measures: each(&root, "measures", |field| measure::read(field, &targets))?,
         clusters: root

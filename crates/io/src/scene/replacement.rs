@@ -81,9 +81,9 @@ fn check_body(
         return Err(field.refuse(problem, remedy));
     };
     let has_bonds = match &body.source {
-        BodySource::Inline { bonds, .. } => !bonds.is_empty(),
+        BodySource::Inline { bonds, .. } if bonds.is_empty() => false,
         // Whoever reads the file finds whether it has some.
-        BodySource::File(_) => body.bond_kind.is_some(),
+        _ => body.bond_kind.is_some(),
     };
     if !has_bonds {
         let problem = format!(
@@ -91,8 +91,8 @@ fn check_body(
             field.path
         );
         let missing = match body.source {
-            BodySource::Inline { .. } => "bond_list = [[0, 1]]",
-            BodySource::File(_) => "bonds = \"NAME\"",
+            BodySource::Inline { ref bonds, .. } if bonds.is_empty() => "bond_list = [[0, 1]]",
+            _ => "bonds = \"NAME\"",
         };
         let remedy = format!("add {missing} to [bodies.{name}], or remove [replacement.{name}]");
         return Err(field.refuse(problem, remedy));

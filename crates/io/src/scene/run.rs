@@ -27,9 +27,10 @@ pub(super) const INTEGRATORS: [(&str, Integrator); 2] = [
 ];
 
 /// What may happen to overlaps at the start.
-pub(super) const START_OVERLAPS: [(&str, StartOverlap); 2] = [
+pub(super) const START_OVERLAPS: [(&str, StartOverlap); 3] = [
     ("refuse", StartOverlap::Refuse),
     ("relax", StartOverlap::Relax),
+    ("keep", StartOverlap::Keep),
 ];
 
 /// `run.safety` unless given.

@@ -5,8 +5,9 @@ use super::table::Table;
 use super::tree::Value;
 use crate::Result;
 
-/// Tables of what touches, moves by itself, comes or goes.
-const TABLES: [&str; 7] = [
+/// Tables of what touches, moves by itself, comes or goes, and of how it starts.
+const TABLES: [&str; 8] = [
+    "initial",
     "contacts",
     "walls",
     "replacement",
@@ -25,6 +26,21 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         );
         let remedy = "remove it, or write run.integrator = \"leapfrog\"";
         return Err(field.refuse(problem, remedy));
+    }
+    for table in ["supports", "loads"] {
+        for (_, one) in root.named(table)? {
+            if let Some(field) = one.any_table()?.get("end") {
+                let problem = format!(
+                    "{} stands in a scene with run.integrator = \"static\", where nothing ends",
+                    field.path
+                );
+                let remedy = format!(
+                    "remove it, or the whole [{}] if it is over; or write run.integrator = \"leapfrog\"",
+                    one.path
+                );
+                return Err(field.refuse(problem, remedy));
+            }
+        }
     }
     let incremental = written(root, "bonds", "formulation", "incremental")?;
     if let Some(field) = incremental {

@@ -15,6 +15,7 @@ use crate::{Diagnostic, Result};
 
 pub use check::{override_text, reference_values, scene_with};
 pub use rewrite::rewritten;
+use values::MOST_VALUES;
 
 /// Version of the study format.
 pub const STUDY_VERSION: u64 = 1;
@@ -172,6 +173,9 @@ const TIMES: [(&str, RunTime); 2] = [("wall", RunTime::Wall), ("processor", RunT
 
 const COMBINATIONS: [(&str, Combine); 2] = [("grid", Combine::Grid), ("paired", Combine::Paired)];
 
+/// Most axes of a study.
+const MOST_AXES: usize = 100;
+
 /// Most repeats, threads.
 const MOST: u64 = 1024;
 
@@ -216,10 +220,12 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
             let mut field = table.field(path, node);
             field.path = format!("vary.\"{path}\"");
             axes.push(values::axis(path, &field, folder)?);
+            refuse_many_values(&axes)?;
         }
     }
     for (name, field) in root.named("together")? {
         axes.push(values::together(&name, &field, folder)?);
+        refuse_many_values(&axes)?;
     }
     if axes.is_empty() {
         let remedy = "add [vary] with \"run.safety\" = [0.9, 0.5], say";
@@ -296,6 +302,27 @@ fn tidy(path: PathBuf) -> PathBuf {
     match (short.canonicalize(), path.canonicalize()) {
         (Ok(one), Ok(other)) if one == other => short,
         _ => path,
+    }
+}
+
+/// Refuses the last axis if all have more values than a study can have.
+fn refuse_many_values(axes: &[Axis]) -> Result<()> {
+    let count: usize = axes.iter().map(|axis| axis.values.len()).sum();
+    match axes.last() {
+        Some(last) if axes.len() > MOST_AXES => Err(Diagnostic::input(
+            &last.place,
+            format!("with {} there are more than {MOST_AXES} axes", last.name),
+            "join what changes together in [together.NAME]",
+        )),
+        Some(last) if count as u64 > MOST_VALUES => Err(Diagnostic::input(
+            &last.place,
+            format!(
+                "with {} the axes have {count} values, more than {MOST_VALUES}",
+                last.name
+            ),
+            "vary less, or in several studies",
+        )),
+        _ => Ok(()),
     }
 }
 

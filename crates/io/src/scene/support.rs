@@ -1,7 +1,7 @@
 //! `[supports.NAME]`
 
 use super::field::Field;
-use super::load::{factor, factor_from_zero, over_time};
+use super::load::{end, factor, factor_from_zero, over_time};
 use super::names::suggestion;
 use super::targets::Targets;
 use super::tree::Value;
@@ -9,7 +9,15 @@ use super::{Hold, Support};
 use crate::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, Dimension, LENGTH, VELOCITY};
 
-const KEYS: [&str; 6] = ["of", "fixed", "velocity", "displacement", "ramp", "table"];
+const KEYS: [&str; 7] = [
+    "of",
+    "fixed",
+    "velocity",
+    "displacement",
+    "ramp",
+    "table",
+    "end",
+];
 
 /// The degrees of freedom of a particle: along x, y, z, then about x, y, z.
 pub(super) const FREEDOMS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
@@ -50,7 +58,13 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
         Some(field) => factor_from_zero(&table, &field)?,
         None => factor(&table)?,
     };
-    Ok(Support { of, holds, factor })
+    let end_s = end(&table, &factor)?;
+    Ok(Support {
+        of,
+        holds,
+        factor,
+        end_s,
+    })
 }
 
 /// `true`, or a list of degrees of freedom.

@@ -21,6 +21,7 @@ pub(crate) fn triangle() -> Body {
             overlap: Some(0.25),
             bonding_radius: Some(1.1),
             seed: Some(7),
+            warnings: vec!["few – 4.9 – across".to_owned(), "2 pieces".to_owned()],
         },
     }
 }
@@ -111,9 +112,20 @@ fn any_about() -> impl Strategy<Value = About> {
         of(0.0..1.0),
         positive(),
         of(any::<u64>()),
+        prop::collection::vec("[^\\x00-\\x1f\\x7f-\\x9f]{1,12}", 0..3),
     )
         .prop_map(
-            |(program, source, source_hash, volume, density, overlap, bonding_radius, seed)| {
+            |(
+                program,
+                source,
+                source_hash,
+                volume,
+                density,
+                overlap,
+                bonding_radius,
+                seed,
+                warnings,
+            )| {
                 About {
                     program,
                     source,
@@ -123,6 +135,7 @@ fn any_about() -> impl Strategy<Value = About> {
                     overlap,
                     bonding_radius,
                     seed,
+                    warnings,
                 }
             },
         )

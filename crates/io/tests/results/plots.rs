@@ -357,7 +357,7 @@ fn names_of_any_length_and_letters() {
     names.reference = Some((0.5, "<limit>".to_owned()));
     let picture = read(&svg(&names));
     assert!(has(&picture, "</svg>&amp;") && has(&picture, "<limit>"));
-    assert!(picture.titles[0].starts_with("<a> & \"b\" 'c' very long"));
+    assert!(picture.titles[0].starts_with("<a> & \"b\" 'c'\\u{0}\\u{a}very long"));
     assert_eq!(
         picture.titles[2].len(),
         5000,

@@ -7,10 +7,7 @@ use dem_io::scene::{
     Formulation, Hold, Integrator, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search,
     StartOverlap, TestKind, Wall, WallMotion, WallShape,
 };
-use dem_io::units::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, AREA, DENSITY, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH,
-    MASS, MASS_RATE, NUMBER, RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY, VISCOUS_DAMPING,
-};
+use dem_io::units::DIMENSIONS;
 use dem_io::{read_scene, scene_from_text};
 
 pub(crate) fn folder() -> PathBuf {
@@ -60,27 +57,7 @@ fn the_documentation() {
 #[test]
 fn the_documentation_lists_every_unit() {
     let text = include_str!("../../../../doc/scenes.md");
-    for dimension in [
-        LENGTH,
-        TIME,
-        MASS,
-        ANGLE,
-        VELOCITY,
-        ANGULAR_VELOCITY,
-        ACCELERATION,
-        FORCE,
-        TORQUE,
-        STRESS,
-        ENERGY,
-        ENERGY_PER_MASS,
-        MASS_RATE,
-        STIFFNESS,
-        VISCOUS_DAMPING,
-        DENSITY,
-        RATE,
-        AREA,
-        NUMBER,
-    ] {
+    for dimension in DIMENSIONS {
         let units: Vec<String> = dimension
             .units
             .iter()
@@ -116,6 +93,10 @@ fn materials() {
     assert_eq!(steel.density_kg_m3, None);
     assert_eq!(steel.young_modulus_pa, Some(210e9));
     assert_eq!(steel.poisson_ratio, 0.3);
+    assert!(!steel.rigid);
+    assert_eq!(scene.materials["belt-rubber"].poisson_ratio, 0.5);
+    let anvil = &scene.materials["anvil"];
+    assert!(anvil.rigid && anvil.young_modulus_pa.is_none());
 }
 
 fn contact(materials: [&str; 2], law: ContactLaw, restitution: f64, rolling: Rolling) -> Contact {
@@ -140,6 +121,7 @@ fn contacts() {
     assert_eq!(
         good("every-key.toml").contacts,
         [
+            contact(["anvil", "cake"], hertz, 0.5, Rolling::None),
             Contact {
                 friction: 0.1,
                 ..contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2))
@@ -430,6 +412,42 @@ fn supports_and_loads() {
     assert_eq!(press.torque_n_m, [0.0, 2.0, 0.0]);
     assert_eq!(scene.loads["turn"].torque_n_m, [0.0, 0.0, 0.003]);
     assert_eq!(scene.loads["turn"].factor, Factor::Ramp { until_s: 0.1 });
+    assert_eq!(pull.end_s, Some(0.02));
+    assert_eq!(scene.supports["wall"].end_s, None);
+    assert_eq!(press.end_s, Some(0.001));
+    assert_eq!(scene.loads["turn"].end_s, None);
+}
+
+/// What a set starts with, in SI; what is left out is 0.
+#[test]
+fn initial_states() {
+    let scene = good("every-key.toml");
+    let tip = &scene.initial["tip"];
+    assert_eq!(tip.of, "left-end");
+    assert_eq!(tip.velocity_m_s, [0.003, 0.0, 0.0]);
+    assert_near(tip.angular_velocity_rad_s[1], std::f64::consts::PI);
+    assert_eq!(tip.displacement_m, [0.0, -1e-6, 0.0]);
+    let options = ["initial.only={ of = \"all\", velocity = [1, 0, 0] }".to_owned()];
+    let file = folder().join("every-key.toml");
+    let scene = read_scene(&file, &options).unwrap();
+    assert_eq!(scene.initial["only"].displacement_m, [0.0; 3]);
+    assert_eq!(scene.initial["only"].angular_velocity_rad_s, [0.0; 3]);
+}
+
+/// A clump that is never replaced needs no kind of bonds, and overlaps may be kept.
+#[test]
+fn a_rigid_clump_without_a_kind_of_bonds() {
+    let options = ["bodies.bar.start_as=clump", "run.start_overlap=keep"].map(str::to_owned);
+    let text = "version = 1\nrun.end_time = 1\nmaterials.clay.density = 2000\n\
+                bodies.bar = { particles = [[0, 0, 0, 1], [1, 0, 0, 1]], bond_list = [[0, 1]], \
+                material = \"clay\" }\n";
+    let error = scene_from_text(text, "bar.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("bodies.bar.bonds is missing"), "{error}");
+    let scene = scene_from_text(text, "bar.toml", &options).unwrap();
+    assert_eq!(scene.bodies["bar"].bond_kind, None);
+    assert_eq!(scene.run.start_overlap, StartOverlap::Keep);
 }
 
 #[test]
@@ -450,6 +468,11 @@ fn measures_and_output() {
         ("punch", Quantity::Force(2))
     );
     assert_eq!(push.reference, Some(-1000.0));
+    assert_eq!((push.tolerance_absolute, &push.with), (None, &None));
+    let hit = &scene.measures["hit"];
+    assert_eq!(hit.quantity, Quantity::ContactOverlap);
+    assert_eq!(hit.with.as_deref(), Some("punch"));
+    assert_near(hit.tolerance_absolute.unwrap(), 1e-5);
     let pieces = &scene.measures["pieces"];
     assert_eq!(pieces.of, "fragments");
     assert_eq!(pieces.quantity, Quantity::MassOfLargest);
@@ -464,10 +487,15 @@ fn measures_and_output() {
         ("place", Quantity::Position(2), "m"),
         ("pieces", Quantity::Count, ""),
         ("largest", Quantity::MassFractionOfLargest, ""),
+        ("all_of_it", Quantity::ForceMagnitude, "N"),
+        ("sideways", Quantity::ContactForce(1), "N"),
+        ("while", Quantity::ContactDuration, "s"),
+        ("slope", Quantity::AngleOfRepose, "deg"),
     ] {
         assert_eq!(others[name].quantity, quantity);
         assert_eq!(quantity.dimension().si, unit);
     }
+    assert_near(others["slope"].reference.unwrap(), 30.0);
     let output = scene.output.unwrap();
     assert_eq!(output.folder, Some(folder().join("results")));
     assert_eq!(output.frames_s, Some(0.005));
@@ -499,6 +527,7 @@ materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
 bodies.block.file               block.vtp
 bodies.block.material           clay
+bodies.block.mass               that of its particles
 bodies.block.bonds              none
 bodies.block.position           [0, 0, 0] m
 bodies.block.rotation           [0, 0, 0] rad
@@ -581,6 +610,9 @@ fn values_in_words() {
     let text = good("every-key.toml").describe();
     for line in [
         "materials.cake.young_modulus 2.5e7 Pa",
+        "bodies.bar.mass that of its particles",
+        "bodies.piped.body_density 1800 kg/m3",
+        "bodies.tool.mass 1.2 kg",
         "run.start_overlap relax",
         "contacts.belt-rubber-cake.law linear",
         "contacts.belt-rubber-cake.normal_stiffness 100000 N/m",
@@ -623,7 +655,16 @@ fn values_in_words() {
         "supports.wall.rz fixed",
         "supports.shake.table 0 s: 0, 0.005 s: 1, 0.01 s: -0.5",
         "loads.press.force [100000, 0, -0.001] N",
+        "loads.press.end 0.001 s",
+        "loads.turn.end never",
+        "supports.pull.end 0.02 s",
+        "initial.tip.velocity [0.003, 0, 0] m/s",
+        "initial.tip.displacement [0, -1e-6, 0] m",
+        "materials.anvil.rigid true",
         "measures.bending.reference 0.0015 m",
+        "measures.bending.tolerance_absolute none",
+        "measures.hit.with punch",
+        "measures.hit.tolerance_absolute 1e-5 m",
         "output.frames 0.005 s",
         "output.pictures 0.01 s",
         "output.view.from [0.6, -0.8, 0]",

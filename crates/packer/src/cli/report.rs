@@ -2,6 +2,7 @@
 
 use crate::make::Made;
 use dem_io::Surface;
+use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
 use std::path::Path;
 
@@ -30,7 +31,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     let parts = surface.parts();
     let mut text = format!(
         "{}\n  surface     {} triangles, {} corners, closed\n  size        {size}, from ({corner})\n  volume      {} mm3\n  parts       {parts}, cavities {}\n",
-        surface.source,
+        visible(&surface.source),
         surface.triangles.len(),
         surface.vertices.len(),
         significant(surface.volume_m3() * 1e9, 6),
@@ -42,6 +43,22 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     text
 }
 
+/// What the body weighs, beside what its shape would, and where its centre is.
+fn mass_text(made: &Made) -> String {
+    let [mass, centre] = match &made.mass {
+        Some(mass) => mass.lines(),
+        None => [
+            format!(
+                "{} of its shape filled with the density of the particles",
+                significant(made.mass_over_shape, 4)
+            ),
+            format!("centre {}", made.centre_m.map(show_length).join(", ")),
+        ],
+    };
+    let centre = centre.trim_start_matches("centre ");
+    format!("mass             {mass}\ncentre           {centre}\n")
+}
+
 /// What a person wants to know: how good the body is, what to mind, where the time went.
 pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
@@ -50,7 +67,12 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
     } else {
         output.display().to_string()
     };
-    let mut text = format!("{} -> {name}\n{}", surface.source, made.quality.text());
+    let mut text = format!(
+        "{} -> {}\n{}",
+        visible(&surface.source),
+        visible(&name),
+        made.quality.text()
+    );
     if let Some(search) = &made.density_search {
         text += &format!(
             "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",
@@ -62,6 +84,7 @@ pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> Str
             search.packings
         );
     }
+    text += &mass_text(made);
     let history = &made.history;
     text += &format!(
         "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",

@@ -46,6 +46,15 @@ pub(super) enum Law {
     Sieve(SieveCurve),
 }
 
+/// The file of a sieve curve that `text` names.
+pub(super) fn file(text: &str) -> Option<&str> {
+    let text = text.trim();
+    match text.split_once(':') {
+        Some((name, file)) if name.trim().eq_ignore_ascii_case("sieve") => Some(file.trim()),
+        _ => Some(text).filter(|text| text.to_ascii_lowercase().ends_with(".csv")),
+    }
+}
+
 /// The law that `text` names.
 pub(super) fn law(text: &str) -> Result<Law> {
     let text = text.trim();

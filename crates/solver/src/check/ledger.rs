@@ -169,6 +169,7 @@ impl Ledger {
         ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
         let pressed = state.contacts.as_ref();
         let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
+        let pressed = pressed + state.walls.iter().map(|wall| wall.elastic_j).sum::<f64>();
         let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
         ledger.opening_j = kinetic + elastic + pressed;
         ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
@@ -289,7 +290,12 @@ fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
 fn powers(state: &State) -> Work {
     let particles = &state.particles;
     Work {
-        loads: loads_power_w(&state.loads, state.time_s, &particles.motions),
+        loads: loads_power_w(
+            &state.loads,
+            state.time_s,
+            state.steps_s(),
+            &particles.motions,
+        ),
         supports: 0.0,
         bond_damping: -power_w(&state.bond_resistance, particles),
         particle_damping: -power_w(&state.particle_resistance, particles),
@@ -323,7 +329,8 @@ pub fn after_kick(state: &mut State) {
         ..
     } = state;
     let (before_s, after_s) = (state.previous_time_step_s, state.time_step_s);
-    let supported = reactions_work_j(supports, particles, [before_s, after_s]);
+    let steps_s = [before_s, after_s];
+    let supported = reactions_work_j(supports, particles, state.time_s, steps_s);
     ledger.work.supports += supported[0];
     ledger.pending.add(&pending, 0.5 * after_s);
     ledger.pending.supports = supported[1];
@@ -333,7 +340,7 @@ pub fn after_kick(state: &mut State) {
     ledger.fallen_j = ledger.fallen_j.max(ledger.fallen_now_j(state.gravity_m_s2));
 
     let about = ledger.about_m;
-    let mut total = loads_resultant(loads, state.time_s, &particles.poses, about);
+    let mut total = loads_resultant(loads, state.time_s, steps_s, &particles.poses, about);
     for support in supports.iter() {
         for held in &support.held {
             let [early, late] = held.reactions;

@@ -327,7 +327,8 @@ fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
     )
 }
 
-/// One over the root of mass or inertia of each freedom; 0 where a support holds it.
+/// One over the root of mass or inertia of each freedom; 0 where a support holds it to the end.
+/// What a support lets go of counts as free all along, which never gives a larger step.
 fn inverse_mass_roots(state: &State) -> Field {
     let p = &state.particles;
     let mut roots: Field = (0..p.len())
@@ -339,7 +340,7 @@ fn inverse_mass_roots(state: &State) -> Field {
             [m, m, m, j, j, j]
         })
         .collect();
-    for support in &state.supports {
+    for support in (state.supports.iter()).filter(|support| support.end_s.is_infinite()) {
         for held in &support.held {
             for (root, hold) in roots[held.particle as usize].iter_mut().zip(support.holds) {
                 if hold.is_some() {

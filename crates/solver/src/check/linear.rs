@@ -315,6 +315,39 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     largest
 }
 
+/// Largest overlap over the radius that an impact at a speed, m/s, gives a single sphere that meets a
+/// wall or another of its size, by itself: what a body pushes from behind goes deeper. One sphere of
+/// each material stands for all, as the share of the radius does not depend on it with Hertz's law.
+pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let materials = contacts.kind_of.len().isqrt();
+    let mut seen = vec![false; materials];
+    let mut largest = 0.0_f64;
+    for (i, &material) in contacts.materials.iter().enumerate() {
+        let material = usize::from(material);
+        if std::mem::replace(&mut seen[material], true) {
+            continue;
+        }
+        let radius_m = state.particles.poses[i].radius_m();
+        let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+        let inverse_kg = 1.0 / (state.density_kg_m3(i) * volume_m3);
+        let row = &contacts.kind_of[material * materials..(material + 1) * materials];
+        let pairs = (row.iter()).filter_map(|&kind| contacts.kinds.get(usize::from(kind)));
+        let walls = state.walls.iter().filter_map(|wall| {
+            let kind = wall.kind_of.get(material)?;
+            wall.kinds.get(usize::from(*kind))
+        });
+        let all = (pairs.map(|kind| (kind, false))).chain(walls.map(|kind| (kind, true)));
+        for (kind, at_wall) in all {
+            let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
+            largest = largest.max(overlap_m / radius_m);
+        }
+    }
+    largest
+}
+
 /// Those on which impacts are fastest, with the inverse of the mass that each moves, 1/kg: of particles that move by themselves the smallest of each material; of
 /// the clumps of each template a largest sphere, as if it stood at the end of the longest lever.
 fn first_to_hit(state: &State) -> Vec<(usize, f64)> {

@@ -4,7 +4,7 @@ use crate::physics::bond::total::BondEnergy;
 use crate::stages::clumps::synchronous;
 use crate::stages::loads::add_resultant;
 use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums};
-use crate::stages::supports::velocity_at_kick;
+use crate::stages::supports::{Phase, SetSupport, velocity_at_kick};
 use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::particles::{Motion, Particles};
@@ -53,8 +53,9 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
                 .map(|pose| clump.motion_at(template, &pose.place())),
         );
     }
-    let steps_s = [state.previous_time_step_s, state.time_step_s];
-    for support in &state.supports {
+    let steps_s = state.steps_s();
+    let holds = |support: &&SetSupport| support.phase(state.time_s, steps_s) == Phase::Holds;
+    for support in state.supports.iter().filter(holds) {
         for held in &support.held {
             let after = &p.motions[held.particle as usize];
             let motion = &mut motions[held.particle as usize];

@@ -58,7 +58,12 @@ impl Watchdog {
     /// Energy is no number, or more has appeared from nowhere than a stable run can show.
     pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
         // A load that has only just begun has moved nothing yet: what it does in the half step to come counts as well.
-        let power_w = loads_power_w(&state.loads, state.time_s, &state.particles.motions);
+        let power_w = loads_power_w(
+            &state.loads,
+            state.time_s,
+            state.steps_s(),
+            &state.particles.motions,
+        );
         let coming = 0.5 * state.time_step_s * power_w.abs();
         let put_in = state.ledger.put_in_j(state.gravity_m_s2, &state.walls) + coming;
         if balance.energy_error_j <= self.allowed * put_in {

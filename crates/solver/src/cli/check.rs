@@ -3,16 +3,17 @@
 use std::time::Instant;
 
 use dem_io::Result;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use serde_json::{Value, json};
 
 use crate::clock::{Stage, StageClock};
+use crate::output::masses;
 use crate::plan::savings::saving;
 use crate::plan::{Plan, PlannedStage};
 use crate::state::State;
-use crate::state::memory::bytes;
+use crate::state::memory::all_bytes;
 use crate::step::step;
 
 /// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
@@ -49,12 +50,16 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "scene": scene.source,
                 "particles": plan.state.particles.len(),
                 "bonds": plan.state.bonds.len(),
+                "bodies": plan.masses,
                 "time_step_s": plan.step.step_s,
                 "limit_s": plan.step.limit.step_s,
                 "foreseen_limit_s": plan.step.foreseen_s,
                 "impact_speed_m_s": plan.step.impact_speed_m_s,
                 "notes": plan.notes,
-                "warnings": plan.warnings,
+                "warnings": plan.warnings.iter().chain(&plan.forecast.warnings).collect::<Vec<_>>(),
+                "first_contacts": plan.forecast.first_contacts,
+                "to_come": plan.forecast.to_come,
+                "inputs": plan.inputs,
                 "limit_undamped_s": plan.step.limit.undamped_step_s,
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
                 "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
@@ -64,8 +69,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "memory_bytes": bytes,
                 "predicted_run_time_s": per_step_s.map(|s| steps * s),
             });
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            writeln!(out)
+            write_json_text(out, &value)
         } else {
             write!(
                 out,
@@ -85,11 +89,43 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     line(
         "holds",
         format!(
-            "{} particles, {} bonds",
+            "{} particles, {} bonds{}",
             state.particles.len(),
-            state.bonds.len()
+            state.bonds.len(),
+            if state.rules.inlets.is_empty() {
+                ""
+            } else {
+                " at the start"
+            }
         ),
     );
+    for (name, bonds) in &plan.unused_bonds {
+        line(
+            "",
+            format!(
+                "'{name}' as a rigid clump; its {} not used",
+                bonds_are(*bonds)
+            ),
+        );
+    }
+    for fed in &plan.forecast.to_come {
+        line(
+            "to come",
+            format!(
+                "{} bodies through the inlet '{}' until the end: {} spheres and {} bonds once they are bonded",
+                fed.bodies,
+                fed.inlet,
+                significant(fed.spheres, 6),
+                significant(fed.bonds, 6)
+            ),
+        );
+    }
+    for first in &plan.forecast.first_contacts {
+        line("first contact", first.clone());
+    }
+    for (name, mass) in masses::lines(&plan.masses) {
+        line(name, mass);
+    }
     let why = if choice.given { "given" } else { "chosen" };
     let step = significant(choice.step_s, 5);
     let limit = if choice.foreseen_s.is_finite() {
@@ -144,7 +180,10 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
             };
             format!("{name} {} s{of_limit}", significant(step_s, 5))
         } else {
-            format!("{name} unknown: no elastic modulus of a material is given")
+            match state.smallest_radius_m().is_finite() {
+                true => format!("{name} unknown: no elastic modulus of a material is given"),
+                false => format!("{name} unknown: no particle is there or will be fed"),
+            }
         }
     };
     line("", beside("Rayleigh's estimate", choice.rayleigh_s));
@@ -168,10 +207,17 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     for note in &plan.notes {
         line("note", note.clone());
     }
-    for warning in &plan.warnings {
+    for warning in plan.warnings.iter().chain(&plan.forecast.warnings) {
         line("warning", warning.clone());
     }
-    line("memory", format!("about {}", size_text(bytes)));
+    let fed_bytes: f64 = plan.forecast.to_come.iter().map(|fed| fed.bytes).sum();
+    let with_fed = if fed_bytes > 0.0 {
+        let most = size_text((bytes as f64 + fed_bytes) as usize);
+        format!(" at the start, {most} if all that is fed is bonded and none leaves")
+    } else {
+        String::new()
+    };
+    line("memory", format!("about {}{with_fed}", size_text(bytes)));
     line(
         "run time",
         trial.map(|trial| trial.per_step_s).map_or(
@@ -210,6 +256,13 @@ fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> Str
     text
 }
 
+fn bonds_are(count: usize) -> String {
+    match count {
+        1 => "bond is".to_owned(),
+        _ => format!("{count} bonds are"),
+    }
+}
+
 fn time_text(ns: f64) -> String {
     match ns {
         few if few < 1e3 => format!("{few:.0} ns per step"),
@@ -229,7 +282,7 @@ pub(super) fn size_text(bytes: usize) -> String {
 
 /// What the arrays of a state take, and what contacts may come to take, bytes.
 fn memory_bytes(state: &State) -> usize {
-    let now: usize = Stage::ALL.iter().map(|&stage| bytes(state, stage)).sum();
+    let now = all_bytes(state);
     let may_come = state.contacts.as_ref().filter(|contacts| !contacts.alone);
     // Every particle may come to touch a few others.
     now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())

@@ -5,11 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
-use dem_io::results::folder::{frame_in, frames_in};
+use dem_io::checkpoint::read_checkpoint;
+use dem_io::results::folder::{frame_in, frames_in, result_among};
 use dem_io::results::{StoredFragment, read_frame};
-use dem_io::safe_write::{need_folder_of, write_standard_output};
+use dem_io::safe_write::{need_folder_of, refuse_input, write_standard_output};
+use dem_io::text::visible;
 use dem_io::units::significant;
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, read_scene};
+use serde_json::Value;
+
+use crate::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
 pub(super) struct FragmentArguments {
@@ -42,6 +47,7 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
         need_folder_of(&file)?;
     }
     let path = frame_path(&arguments.results, arguments.frame)?;
+    refuse_overwriting(&arguments.results, output)?;
     let frame = read_frame(&path)?;
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let fragments = frame.fragments();
@@ -63,12 +69,46 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
             out,
             "fragment {id} at {} s -> {}: {} particles, {} bonds, {} kg",
             significant(frame.time_s, 6),
-            output.display(),
+            visible(&output.display().to_string()),
             body.positions.len(),
             body.bonds.len(),
             significant(mass_kg, 4)
         )
     })
+}
+
+/// Refuses to write the body over the results or over what their run has read, as far as the folder tells.
+fn refuse_overwriting(results: &Path, output: &Path) -> Result<()> {
+    let targets = body_files(output)?;
+    if let Some(target) = result_among(results, &targets) {
+        return Err(Diagnostic::input(
+            target.display().to_string(),
+            format!("this is one of the results in '{}'", results.display()),
+            "name another file with --output",
+        ));
+    }
+    let inputs = inputs_of(results);
+    targets
+        .iter()
+        .try_for_each(|target| refuse_input(&target.display().to_string(), target, &inputs))
+}
+
+/// The files that the run with these results has read, as its checkpoint and its summary name them.
+fn inputs_of(results: &Path) -> Vec<PathBuf> {
+    let mut inputs = Vec::new();
+    let checkpoint = read_checkpoint(&results.join("checkpoint.dem"));
+    if let Ok(snapshot) = checkpoint.and_then(|bytes| Snapshot::from_bytes(&bytes)) {
+        inputs.extend(snapshot.files_of_scene());
+    }
+    let summary = std::fs::read(results.join("summary.json")).unwrap_or_default();
+    let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
+    if let Some(scene) = summary["scene"].as_str() {
+        let scene = PathBuf::from(scene);
+        inputs.extend(
+            read_scene(&scene, &[]).map_or_else(|_| vec![scene], |read| read.input_files()),
+        );
+    }
+    inputs
 }
 
 /// The file of the frame with this number, or of the last one.

@@ -1,11 +1,12 @@
 //! `dem-run check` of a scene that goes to its equilibrium at once.
 
 use dem_io::Result;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_json_text, write_standard_output};
 use dem_io::scene::Scene;
 use serde_json::json;
 
 use super::check::size_text;
+use crate::output::masses;
 use crate::plan::Plan;
 use crate::statics::Outlook;
 
@@ -24,13 +25,13 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "scene": scene.source,
                 "particles": state.particles.len(),
                 "bonds": state.bonds.len(),
+                "bodies": plan.masses,
                 "equilibrium": outlook,
                 "memory_bytes": bytes,
                 "notes": plan.notes,
                 "warnings": plan.warnings,
             });
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            return writeln!(out);
+            return write_json_text(out, &value);
         }
         writeln!(out, "{}", scene.describe())?;
         let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");
@@ -42,6 +43,9 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 state.bonds.len()
             ),
         )?;
+        for (name, mass) in masses::lines(&plan.masses) {
+            line(name, &mass)?;
+        }
         line(
             "solves",
             &format!(

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 
 use clap::Args;
-use dem_io::safe_write::write_standard_output;
+use dem_io::safe_write::{write_standard_json, write_standard_output};
 use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -53,19 +53,16 @@ pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result
     });
     bar.finish_and_clear();
     tried?;
-    write_standard_output(|out| {
-        if options.json {
-            serde_json::to_writer_pretty(&mut *out, &results)?;
-            return writeln!(out);
-        }
-        if options.quiet {
-            return Ok(());
-        }
-        write!(out, "{HEAD}")?;
-        results
-            .iter()
-            .try_for_each(|one| write!(out, "{}", row(one)))
-    })?;
+    if options.json {
+        write_standard_json(&results)?;
+    } else if !options.quiet {
+        write_standard_output(|out| {
+            write!(out, "{HEAD}")?;
+            results
+                .iter()
+                .try_for_each(|one| write!(out, "{}", row(one)))
+        })?;
+    }
     let wrong = results.iter().filter(|one| one.wrong().next().is_some());
     let wrong: Vec<&str> = wrong.map(|one| one.name).collect();
     if wrong.is_empty() {

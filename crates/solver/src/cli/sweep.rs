@@ -1,13 +1,17 @@
 //! `dem-run sweep`: a scene with many settings, error against run time.
 
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::results::write_json;
-use dem_io::safe_write::{need_folder_of, write_file, write_standard_output};
+use dem_io::safe_write::{
+    need_folder_of, refuse_input, write_file, write_standard_json, write_standard_output,
+};
 use dem_io::scene::text_of;
-use dem_io::study::{Study, read_study, reference_values, rewritten, scene_with};
+use dem_io::study::{Combine, Study, read_study, reference_values, rewritten, scene_with};
+use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,9 +20,11 @@ use serde_json::json;
 use crate::interrupt::Interrupt;
 use crate::sweep::collect::{Outcome, outcome};
 use crate::sweep::curves;
-use crate::sweep::expand::{Run, runs};
+use crate::sweep::expand::{MOST_UNASKED, Run, runs};
 use crate::sweep::folder::{Earlier, SweepFolder};
-use crate::sweep::jobs::{Job, arguments, further_jobs, jobs, scene_arguments, shell_line, work};
+use crate::sweep::jobs::{
+    Job, arguments, further_jobs, jobs, refuse_unlistable, scene_arguments, shell_line, work,
+};
 use crate::sweep::page::page;
 use crate::sweep::plot::svg;
 use crate::sweep::table::{Row, SweepTable};
@@ -67,7 +73,8 @@ pub(super) struct SweepArguments {
 /// Runs the study, lists its runs or collects them, and says what came of it.
 ///
 /// # Errors
-/// Bad input, all runs failed, interrupted, files that cannot be written. A run that fails is no error of the sweep.
+/// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the tables of the others
+/// are written.
 pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
     if !(1..=1024).contains(&options.jobs) {
         let problem = format!("{} is not between 1 and 1024", options.jobs);
@@ -87,11 +94,17 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     let wants = options.want.iter().map(|text| Want::parse(text, &names));
     let wants = wants.collect::<Result<Vec<_>>>()?;
     let all = runs(&study, options.yes)?;
-    let values = checked(&study, &scene_text, &all)?;
     let path = options.out.clone().unwrap_or_else(|| {
         let stem = options.study.file_stem().unwrap_or_default();
         PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
     });
+    refuse_unlistable_names(options, &study, &path)?;
+    let (values, mut inputs) = checked(&study, &scene_text, &all)?;
+    inputs.push(options.study.clone());
+    SweepFolder::refuse_inputs(&path, &inputs)?;
+    if let Some(target) = &options.write {
+        refuse_input(&format!("--write {}", target.display()), target, &inputs)?;
+    }
     let earlier = match options {
         SweepArguments { collect: true, .. } => Earlier::Collect,
         SweepArguments { force: true, .. } => Earlier::Replace,
@@ -128,17 +141,11 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         ));
     }
     write_files(&folder, &table)?;
-    if let Some(row) = table.failed().next()
+    let failure = failure(&study, &table);
+    if let Some(failure) = &failure
         && table.failed().count() == table.runs.len()
     {
-        return Err(Diagnostic::failed(
-            &study.source,
-            format!(
-                "no run came to its end; the first: {}",
-                row.failed.as_deref().unwrap_or_default()
-            ),
-            "",
-        ));
+        return Err(failure.clone());
     }
     let best = if wants.is_empty() {
         None
@@ -150,7 +157,44 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         let text = rewritten(&study, &scene_text, &settings, target)?;
         write_file(target, |out| out.write_all(text.as_bytes()))?;
     }
-    say(options, &study, &all, &table, best, &folder)
+    say(options, &study, &all, &table, best, &folder)?;
+    failure.map_or(Ok(()), Err)
+}
+
+/// Refuses names that the commands of the runs cannot hold.
+fn refuse_unlistable_names(options: &SweepArguments, study: &Study, out: &Path) -> Result<()> {
+    refuse_unlistable("the study", &options.study)?;
+    refuse_unlistable(&format!("{}: scene", study.source), &study.scene)?;
+    refuse_unlistable("the folder of the sweep", out)?;
+    let of_axes = study.axes.iter().flat_map(|axis| &axis.values);
+    let varied = of_axes.flat_map(|value| &value.settings);
+    for setting in study.fixed.iter().chain(varied) {
+        for text in [&setting.path, &setting.value] {
+            refuse_unlistable(&setting.place, Path::new(text))?;
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a sweep of which some runs have no values. None: all have.
+fn failure(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
+    let first = table.failed().next()?;
+    let (failed, all) = (table.failed().count(), table.runs.len());
+    let count = if failed == all {
+        "no run came to its end".to_owned()
+    } else {
+        format!("{failed} of {all} runs did not come to their end")
+    };
+    Some(Diagnostic::failed(
+        &study.source,
+        format!(
+            "{count}; the first: run {}, {}: {}",
+            first.number,
+            table.named(first),
+            first.failed.as_deref().unwrap_or_default()
+        ),
+        "what they left is in the folder of the sweep; --resume tries them again",
+    ))
 }
 
 /// Adds what jobs have left to the outcomes of their runs.
@@ -181,18 +225,27 @@ fn do_what_is_left(
     worked
 }
 
-/// Reads the scene of every run, so that what it refuses is known before hours are spent. What each measure is compared with, where that is known.
-fn checked(study: &Study, scene_text: &str, all: &[Run]) -> Result<Vec<Option<f64>>> {
+/// Reads the scene of every run, so that what it refuses is known before hours are spent: what each measure is compared
+/// with, where that is known, and the files that the scenes read. Of very many runs, one for each value is read.
+fn checked(
+    study: &Study,
+    scene_text: &str,
+    all: &[Run],
+) -> Result<(Vec<Option<f64>>, Vec<PathBuf>)> {
+    let are_many = study.combine == Combine::Grid && all.len() as u64 > MOST_UNASKED;
+    let differs_once = |run: &&Run| run.choice.iter().filter(|at| **at > 0).count() <= 1;
     let mut values = Vec::new();
-    for run in all {
+    let mut files = BTreeSet::new();
+    for run in all.iter().filter(|run| !are_many || differs_once(run)) {
         let settings = run.settings(study);
         let scene = scene_with(study, scene_text, settings.into_iter())?;
         let of_run = reference_values(study, &scene)?;
         if values.is_empty() {
             values = of_run;
         }
+        files.extend(scene.input_files());
     }
-    Ok(values)
+    Ok((values, files.into_iter().collect()))
 }
 
 fn list<'a>(
@@ -202,6 +255,7 @@ fn list<'a>(
     folder: &SweepFolder,
 ) -> Result<()> {
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("dem-run"));
+    refuse_unlistable("this program", &program)?;
     let program = program.display().to_string();
     let runs = folder.runs();
     write_standard_output(|out| {
@@ -262,24 +316,24 @@ fn say(
         let arguments = scene_arguments(study, &all[row.number - 1]);
         shell_line("dem-run", &arguments, None)
     };
+    if options.json {
+        let mut value = serde_json::to_value(table)
+            .map_err(|error| Diagnostic::failed("--json", error.to_string(), ""))?;
+        value["fastest"] = match best {
+            Some(row) => json!({ "run": row.number, "command": command(row) }),
+            None => serde_json::Value::Null,
+        };
+        return write_standard_json(&value);
+    }
+    if options.quiet {
+        return Ok(());
+    }
     write_standard_output(|out| {
-        if options.json {
-            let mut value = serde_json::to_value(table)?;
-            value["fastest"] = match best {
-                Some(row) => json!({ "run": row.number, "command": command(row) }),
-                None => serde_json::Value::Null,
-            };
-            serde_json::to_writer_pretty(&mut *out, &value)?;
-            return writeln!(out);
-        }
-        if options.quiet {
-            return Ok(());
-        }
         write!(out, "{table}")?;
         writeln!(
             out,
             "results      {}",
-            folder.path().join("sweep.html").display()
+            visible(&folder.path().join("sweep.html").display().to_string())
         )?;
         if let Some(row) = best {
             let errors = table.measures.iter().zip(&row.results);
@@ -293,11 +347,15 @@ fn say(
                 row.number,
                 significant(row.time_s.unwrap_or(f64::NAN), 3),
                 errors.join(", "),
-                table.named(row)
+                visible(&table.named(row))
             )?;
             writeln!(out, "             {}", command(row))?;
             if let Some(target) = &options.write {
-                writeln!(out, "written      {}", target.display())?;
+                writeln!(
+                    out,
+                    "written      {}",
+                    visible(&target.display().to_string())
+                )?;
             }
         }
         Ok(())

@@ -39,6 +39,7 @@ pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<S
             of: name.clone(),
             holds: pulled(&test, rate),
             factor: ramp.clone(),
+            end_s: None,
         };
         let key = support_of(name);
         if scene.supports.insert(key.clone(), support).is_some() {

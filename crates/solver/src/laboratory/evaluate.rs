@@ -81,6 +81,8 @@ pub struct TestResult {
     pub kind: String,
     /// Whether the body broke: the load fell below half of its largest.
     pub broken: bool,
+    /// Bonds that broke, and all that there were.
+    pub broken_bonds: [usize; 2],
     /// Strength that the scene names, Pa.
     pub strength_wanted_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
@@ -138,6 +140,8 @@ pub struct Evidence<'a> {
     pub lowest_frequency_hz: f64,
     /// The load fell below half of its largest.
     pub broken: bool,
+    /// Number of the bonds that there were.
+    pub all_bonds: usize,
 }
 
 /// Load over a way in the elastic part of a test.
@@ -289,6 +293,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
     let mut result = TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
+        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
         strength_wanted_pa: strength,
         lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use dem_io::Result;
 use dem_io::results::{Axis, Line, Plot, ResultsFolder, svg};
 use dem_io::scene::Test;
+use dem_io::text::for_page;
 use dem_io::units::significant;
 
 use super::crack::{CrackPicture, crack_svg};
@@ -139,12 +140,6 @@ pub fn percent(share: f64) -> String {
     format!("{:+.1} %", 100.0 * share)
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-}
-
 /// Everything on one page that needs no other file.
 fn page(files: &TestFiles<'_>, curve: &str, crack: &str) -> String {
     let mut out = String::new();
@@ -169,11 +164,11 @@ fn write_page(
         out,
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>"
     )?;
-    writeln!(out, "<h1>{title}</h1>\n<p>{}</p>", escaped(files.scene))?;
+    writeln!(out, "<h1>{title}</h1>\n<p>{}</p>", for_page(files.scene))?;
     write_table(out, "Results", "error", &result.figures)?;
     writeln!(out, "<ul>")?;
     for (name, text) in result.sentences() {
-        writeln!(out, "<li>{}: {}</li>", escaped(&name), escaped(&text))?;
+        writeln!(out, "<li>{}: {}</li>", for_page(&name), for_page(&text))?;
     }
     writeln!(out, "</ul>\n{curve}\n{crack}")?;
     write_table(out, "Calibration", "error", &result.calibration)?;
@@ -187,7 +182,7 @@ fn write_page(
             writeln!(
                 out,
                 "<tr><td>{}</td><td class=\"n\">{}</td></tr>",
-                escaped(&figure.name),
+                for_page(&figure.name),
                 percent(figure.value)
             )?;
         }
@@ -212,7 +207,7 @@ fn write_table(out: &mut String, title: &str, error: &str, figures: &[Figure]) -
         write!(
             out,
             "<tr><td>{}</td><td class=\"n\">{}</td>",
-            escaped(&figure.name),
+            for_page(&figure.name),
             shown(figure.value, &figure.unit)
         )?;
         if with_theory {

@@ -15,10 +15,16 @@ impl TestResult {
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.strength_wanted_pa.is_some() && !self.broken {
-            doubts.push(
-                "the body did not break, there is no strength: take a longer stroke (test.stroke)"
-                    .to_owned(),
-            );
+            let although = match self.broken_share() {
+                0.0 => "; no bond broke".to_owned(),
+                share => format!(
+                    ", although {} % of the bonds are broken",
+                    significant(100.0 * share, 2)
+                ),
+            };
+            doubts.push(format!(
+                "the load did not fall to half of its largest within the stroke, so there is no strength{although}: take a longer stroke (test.stroke)"
+            ));
         }
         if self.figure(STIFFNESS).is_none_or(|found| found <= 0.0) {
             doubts.push(
@@ -41,6 +47,12 @@ impl TestResult {
         doubts
     }
 
+    /// Share of the bonds that broke; 0 without bonds.
+    fn broken_share(&self) -> f64 {
+        let [broken, all] = self.broken_bonds;
+        broken as f64 / all.max(1) as f64
+    }
+
     /// What is no number in a table: how fast, whether it broke, where it began, where the crack is, what the rate changes. Each with a name.
     pub fn sentences(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
@@ -54,7 +66,13 @@ impl TestResult {
             ),
         );
         if !self.broken {
-            say("broken", "no: the stroke was done first".to_owned());
+            let [broken, all] = self.broken_bonds;
+            say(
+                "broken",
+                format!(
+                    "no, the load did not fall to half of its largest; {broken} of {all} bonds broke"
+                ),
+            );
         }
         if let Some(first) = &self.first_broken {
             let place = first.place_m.map(|x| significant(1e3 * x, 4)).join(", ");

@@ -104,6 +104,7 @@ impl<'a> Watch<'a> {
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
             broken,
+            all_bonds: state.bonds.len(),
         });
         if let Some(fast) = &self.settings.at_twice_the_rate {
             result.compare(fast);

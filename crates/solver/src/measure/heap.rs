@@ -1,76 +1,119 @@
 //! The angle of repose of a heap.
+//!
+//! A cone of height H and radius R has a variance of height of 3/80 H^2, a mean square distance
+//! from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
+//! slope whatever the ground is and however much is missing all over its surface: sqrt(8 var z /
+//! mean r^2). Spheres count with their own extent. The third says whether there is a slope at all:
+//! a bed that is flat on top has none.
 
 use nalgebra::Vector3;
 
-use crate::state::particles::Particles;
+use super::members::Members;
+use crate::state::State;
 
-/// Median height of the mass of a cone over its height: 1 - (1 - z/H)^3 = 1/2.
-const MEDIAN_HEIGHT: f64 = 0.206_299_474_015_900_3;
-/// Median distance from the axis of the mass of a cone over the radius of its base: 3 x^2 - 2 x^3 = 1/2.
-const MEDIAN_RADIUS: f64 = 0.5;
+/// Fewest particles of which an angle of repose can be told.
+pub const FEWEST: usize = 50;
 
-/// Slope of the cone whose mass has the same median height above the lowest point and the same median distance from the upright axis through the middle
-/// of the mass as these particles, rad. Few that have rolled far away do not change it. `up`: unit vector.
-pub(super) fn angle_of_repose_rad(particles: &Particles, some: &[u32], up: Vector3<f64>) -> f64 {
-    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
-    let across = up.cross(&aside);
-    let pose = |i: u32| &particles.poses[i as usize];
-    let mass = |i: u32| 1.0 / particles.motions[i as usize].inverse_mass;
-    let median_of =
-        |value: &dyn Fn(u32) -> f64| median(some.iter().map(|&i| (value(i), mass(i))).collect());
-    let axis = [aside, across].map(|along| median_of(&|i| pose(i).place().dot(&along)));
-    let radius = median_of(&|i| {
-        let place = pose(i).place();
-        (place.dot(&aside) - axis[0]).hypot(place.dot(&across) - axis[1])
-    });
-    let height = |i: u32| pose(i).place().dot(&up);
-    let ground = some
-        .iter()
-        .map(|&i| height(i) - pose(i).radius_m())
-        .fold(f64::INFINITY, f64::min);
-    let middle = median_of(&height) - ground;
-    (middle / MEDIAN_HEIGHT).atan2(radius / MEDIAN_RADIUS)
+/// Farther from the axis than this times the radius of the cone lies what has rolled away.
+const ROLLED_AWAY: f64 = 1.25;
+/// The covariance tells less of a slope than the variances: by up to a fifth for the layers of a
+/// small cone. What is missing beyond that is flat.
+const CONICAL: f64 = 0.8;
+
+/// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
+struct Sphere {
+    mass_kg: f64,
+    radius_m: f64,
+    height_m: f64,
+    across_m: [f64; 2],
 }
 
-/// The value below which half of the weight is.
-fn median(mut values: Vec<(f64, f64)>) -> f64 {
-    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let half = 0.5 * values.iter().map(|(_, weight)| weight).sum::<f64>();
-    let mut below = 0.0;
-    for (value, weight) in values {
-        below += weight;
-        if below >= half {
-            return value;
+/// Moments of a heap's mass.
+struct Moments {
+    /// Of the axis.
+    middle_m: [f64; 2],
+    /// Variance of the height, m2.
+    upright_m2: f64,
+    /// Mean square distance from the axis, m2.
+    across_m2: f64,
+    /// Covariance of height and square distance, m3.
+    covariance_m3: f64,
+}
+
+/// Slope, degrees, of the cone whose mass is spread as far up and as far out as that of the
+/// members; 0 where they are flat on top. Few that have rolled far away do not change it. No number
+/// for fewer than [`FEWEST`]. `up`: unit vector.
+pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<f64>) -> f64 {
+    let mut heap = spheres(members, state, &up);
+    if heap.len() < FEWEST {
+        return f64::NAN;
+    }
+    loop {
+        let moments = moments(&heap);
+        let radius_m = (10.0 / 3.0 * moments.across_m2).sqrt();
+        let before = heap.len();
+        let [x, y] = moments.middle_m;
+        heap.retain(|sphere| {
+            let [sx, sy] = sphere.across_m;
+            (sx - x).hypot(sy - y) <= ROLLED_AWAY * radius_m
+        });
+        if heap.len() == before {
+            let slope = (8.0 * moments.upright_m2 / moments.across_m2).sqrt();
+            let falling = -40.0 * moments.covariance_m3 / radius_m.powi(3);
+            let share = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
+            return (share * slope).atan().to_degrees();
         }
     }
-    f64::NAN
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// All spheres, those within clumps as well.
+fn spheres(members: &Members, state: &State, up: &Vector3<f64>) -> Vec<Sphere> {
+    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
+    let across = up.cross(&aside);
+    let sphere = |mass_kg: f64, radius_m: f64, place: Vector3<f64>| Sphere {
+        mass_kg,
+        radius_m,
+        height_m: place.dot(up),
+        across_m: [place.dot(&aside), place.dot(&across)],
+    };
+    let p = &state.particles;
+    let free = members.free(state);
+    let free = free.map(|i| {
+        let pose = &p.poses[i];
+        sphere(
+            1.0 / p.motions[i].inverse_mass,
+            pose.radius_m(),
+            pose.place(),
+        )
+    });
+    let clumps = members.clumps(state, &state.clumps.all);
+    let carried = clumps.flat_map(|(clump, template)| {
+        (0..template.spheres.len()).map(move |n| {
+            let pose = template.pose(n, clump);
+            (template.spheres[n].mass_kg, pose.radius_m(), pose.place())
+        })
+    });
+    free.chain(carried.map(|(mass_kg, radius_m, place)| sphere(mass_kg, radius_m, place)))
+        .collect()
+}
 
-    #[test]
-    fn a_cone_of_many_small_spheres_has_its_angle() {
-        let (radius, height): (f64, f64) = (1.0, 0.6);
-        let mut particles = Particles::default();
-        let step = 0.02;
-        let count = (1.0 / step) as i32;
-        for x in -count..=count {
-            for y in -count..=count {
-                for z in 0..=5 * count {
-                    let [x, y] = [x, y].map(|n| f64::from(n) * step);
-                    let z = f64::from(z) * 0.2 * step;
-                    if x.hypot(y) < radius * (1.0 - z / height) {
-                        // A tilted world: up is x.
-                        particles.push_sphere([z + 5.0, x - 3.0, y], 1e-6, 1000.0);
-                    }
-                }
-            }
-        }
-        let all: Vec<u32> = (0..particles.len() as u32).collect();
-        let angle = angle_of_repose_rad(&particles, &all, Vector3::x());
-        let wanted = height.atan2(radius);
-        assert!((angle - wanted).abs() < 0.01, "{angle} for {wanted}");
+fn moments(heap: &[Sphere]) -> Moments {
+    let mass_kg: f64 = heap.iter().map(|sphere| sphere.mass_kg).sum();
+    let mean =
+        |of: &dyn Fn(&Sphere) -> f64| heap.iter().map(|s| s.mass_kg * of(s)).sum::<f64>() / mass_kg;
+    let middle_m = [0, 1].map(|k| mean(&|s| s.across_m[k]));
+    let height_m = mean(&|s| s.height_m);
+    let square = |s: &Sphere| {
+        let [x, y] = [0, 1].map(|k| s.across_m[k] - middle_m[k]);
+        x * x + y * y
+    };
+    let square_m2 = mean(&square);
+    // A solid sphere's own variance along any axis.
+    let own_m2 = 0.2 * mean(&|s| s.radius_m * s.radius_m);
+    Moments {
+        middle_m,
+        upright_m2: own_m2 + mean(&|s| (s.height_m - height_m).powi(2)),
+        across_m2: 2.0 * own_m2 + square_m2,
+        covariance_m3: mean(&|s| (s.height_m - height_m) * (square(s) - square_m2)),
     }
 }

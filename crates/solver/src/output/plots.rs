@@ -62,11 +62,25 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
             .measure
             .reference
             .map(|value| (value, "reference".to_owned()));
-        let is_taken = OVERALL.contains(&gauge.name.to_lowercase().as_str());
-        let prefix = if is_taken { "measured_" } else { "" };
-        folder.write_plot(&format!("{prefix}{}", gauge.name), &one)?;
+        folder.write_plot(&plot_name(gauge), &one)?;
     }
     Ok(())
+}
+
+/// The plot of a measure.
+fn plot_name(gauge: &Gauge) -> String {
+    let is_taken = OVERALL.contains(&gauge.name.to_lowercase().as_str());
+    let prefix = if is_taken { "measured_" } else { "" };
+    format!("{prefix}{}", gauge.name)
+}
+
+/// Names of the plots that a run with these measures has, whatever came of it.
+pub fn plots_of_every_run(gauges: &[Gauge]) -> Vec<String> {
+    let overall = [ENERGY, ERRORS].map(str::to_owned);
+    overall
+        .into_iter()
+        .chain(gauges.iter().map(plot_name))
+        .collect()
 }
 
 fn column<'a>(series: &'a Series, name: &str) -> &'a [f64] {
@@ -82,6 +96,8 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
             .iter()
             .zip(column(series, name))
             .map(|(&t, &v)| [t, v])
+            // What has no value yet has no point.
+            .filter(|[_, v]| !v.is_nan())
             .collect(),
         dashed: false,
     };

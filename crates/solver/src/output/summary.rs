@@ -1,18 +1,28 @@
 //! The summary of a run: what came of it, how far to trust it, where the time went.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
+use dem_io::Diagnostic;
+use dem_io::body::mass::BodyMass;
+use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
 use super::fragments::FragmentSummary;
+use super::inputs::Inputs;
+use super::masses;
 use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::physics::bond::failure::CauseCounts;
 use crate::state::State;
+use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;
 use crate::statics::EquilibriumSummary;
+
+/// Program and version.
+const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
 
 /// Energy errors above this share are worth a word.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
@@ -26,6 +36,11 @@ pub struct Summary {
     pub program: String,
     /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
     pub ended_by: String,
+    /// What happened, where it did not come to its end: `ended_by` is "instability" or "interruption".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// What was run.
+    pub inputs: Inputs,
     /// Simulated, s.
     pub simulated_s: f64,
     /// Needed for it, s; of the part since the last checkpoint for a run that was resumed.
@@ -41,8 +56,14 @@ pub struct Summary {
     pub particles: usize,
     /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
     pub bonds: usize,
+    /// What each body weighed at the start, by its name.
+    pub bodies: BTreeMap<String, BodyMass>,
     /// Bonds that broke.
     pub broken_bonds: u64,
+    /// Largest elongation of a bond over its length, of either sign.
+    pub largest_bond_strain: f64,
+    /// Largest overlap of a contact over the radius of its smaller sphere.
+    pub largest_overlap: f64,
     /// The same by what they failed by.
     pub broken_by_cause: CauseCounts,
     /// What the bodies broke into, where they can.
@@ -102,6 +123,40 @@ pub struct Summary {
     pub equilibrium: Option<EquilibriumSummary>,
 }
 
+/// What is left of a run that ended before there was anything to sum up.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unfinished {
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Always "failure".
+    pub ended_by: String,
+    /// What happened.
+    pub problem: String,
+    /// What was run.
+    pub inputs: Inputs,
+    /// Not sound, because of the problem.
+    pub verdict: Verdict,
+}
+
+impl Unfinished {
+    /// Of a scene that came to nothing because of this.
+    pub fn new(scene: &str, inputs: Inputs, problem: &Diagnostic) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            program: PROGRAM.to_owned(),
+            ended_by: "failure".to_owned(),
+            problem: problem.to_string(),
+            inputs,
+            verdict: Verdict {
+                sound: false,
+                warnings: vec![problem.to_string()],
+            },
+        }
+    }
+}
+
 /// Whether the result of a run can be trusted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Verdict {
@@ -114,8 +169,10 @@ pub struct Verdict {
 /// Which bodies came, went, and became others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PopulationSummary {
-    /// Rigid clumps at the end.
+    /// Rigid clumps at the end, of two spheres and more.
     pub clumps: usize,
+    /// Single loose spheres of clumps and inlets at the end.
+    pub single_spheres: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
     /// Clusters and fragments that became rigid clumps again.
@@ -128,8 +185,6 @@ pub struct PopulationSummary {
     pub delayed: u32,
     /// Bodies that an inlet still owes at the end.
     pub waiting: u32,
-    /// Clumps could be replaced, and none was.
-    pub never_replaced: bool,
     /// Bodies and fragments that went through outlets.
     pub left: u32,
     /// Their mass, kg.
@@ -178,13 +233,16 @@ impl PopulationSummary {
         if clumps.templates.is_empty() && rules.are_none() {
             return None;
         }
+        let is_single = |clump: &&Clump| clumps.template(clump).spheres.len() == 1;
+        let single = clumps.all.iter().filter(is_single).count();
         let [done, left_out] = rules.bond_steps.map(|count| count as f64);
         let inner = clumps.templates.iter();
         let inner: f64 = inner
             .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
             .sum();
         Some(Self {
-            clumps: clumps.all.len(),
+            clumps: clumps.all.len() - single,
+            single_spheres: single,
             replaced: rules.replaced,
             restored: rules.restored,
             came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
@@ -193,7 +251,6 @@ impl PopulationSummary {
             waiting: (rules.inlets.iter())
                 .map(|inlet| inlet.owed(state.time_s))
                 .sum(),
-            never_replaced: rules.replaced == 0 && rules.triggers.iter().any(Option::is_some),
             left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
             left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
             bonds_left_out: over(left_out, done + left_out),
@@ -215,7 +272,7 @@ impl Summary {
 
     /// What of the summary speaks against trusting the result.
     fn doubts(&self) -> Vec<String> {
-        let mut doubts = Vec::new();
+        let mut doubts: Vec<String> = self.problem.iter().cloned().collect();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
                 "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
@@ -226,20 +283,33 @@ impl Summary {
             doubts.push("the step is above the largest stable one".to_owned());
         }
         if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
+            let waiting = match population.waiting {
+                1 => "1 body still waits".to_owned(),
+                many => format!("{many} bodies still wait"),
+            };
             doubts.push(format!(
-                "{} bodies still wait for a place at their inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller",
-                population.waiting
+                "{waiting} for a place at an inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller"
             ));
         }
-        if self.population.as_ref().is_some_and(|p| p.never_replaced) {
-            doubts.push("no clump was ever replaced: no trigger of [replacement] fired".to_owned());
-        }
-        for measure in self.measures.iter().filter(|m| !m.is_good()) {
+        doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
+        let off = |m: &&Measured| m.missing.is_none() && !m.is_good();
+        for measure in self.measures.iter().filter(off) {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));
         doubts.extend((self.equilibrium.iter()).flat_map(EquilibriumSummary::doubts));
         doubts
+    }
+
+    /// Two lines for each body: what it weighs.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub(crate) fn write_masses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, line) in masses::lines(&self.bodies) {
+            writeln!(f, "{name:12} {line}")?;
+        }
+        Ok(())
     }
 
     /// Notes, and what the result is worth.
@@ -248,10 +318,10 @@ impl Summary {
     /// Those of the formatter.
     pub(crate) fn write_verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for note in &self.notes {
-            writeln!(f, "note         {note}")?;
+            writeln!(f, "note         {}", visible(note))?;
         }
         for warning in &self.verdict.warnings {
-            writeln!(f, "warning      {warning}")?;
+            writeln!(f, "warning      {}", visible(warning))?;
         }
         let verdict = match (self.verdict.warnings.len(), self.notes.len()) {
             (0, 0) => "sound: no warnings".to_owned(),
@@ -271,11 +341,11 @@ impl fmt::Display for Summary {
         let results = self
             .results
             .as_ref()
-            .map_or(String::new(), |r| format!(" -> {r}"));
+            .map_or(String::new(), |r| format!(" -> {}", visible(r)));
         writeln!(
             f,
             "{}: {} s simulated in {} s on {} thread{}{results}",
-            self.scene,
+            visible(&self.scene),
             significant(self.simulated_s, 6),
             significant(self.wall_s, 3),
             self.threads,
@@ -345,7 +415,7 @@ impl fmt::Display for Summary {
         if let Some(p) = &self.population {
             writeln!(
                 f,
-                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps at the end",
+                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps{} at the end",
                 p.came,
                 significant(p.came_kg, 4),
                 p.replaced,
@@ -353,6 +423,10 @@ impl fmt::Display for Summary {
                 p.left,
                 significant(p.left_kg, 4),
                 p.clumps,
+                match p.single_spheres {
+                    0 => String::new(),
+                    count => format!(" and {count} single spheres"),
+                },
             )?;
             let hidden = match 100.0 * p.inner_spheres {
                 share if share >= 0.5 => {
@@ -374,6 +448,16 @@ impl fmt::Display for Summary {
                 100.0 * sleep.left_out,
             )?;
         }
+        let strained = [
+            ("bonds", self.largest_bond_strain, "of their length"),
+            ("contacts", self.largest_overlap, "of the smaller radius"),
+        ];
+        let strained: Vec<String> = (strained.iter().filter(|(_, largest, _)| *largest > 0.0))
+            .map(|(what, largest, of)| format!("{what} {} {of}", significant(*largest, 3)))
+            .collect();
+        if !strained.is_empty() {
+            writeln!(f, "deformed     {} at most", strained.join("   "))?;
+        }
         if let Some(fragments) = &self.fragments {
             writeln!(
                 f,
@@ -382,6 +466,7 @@ impl fmt::Display for Summary {
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
+        self.write_masses(f)?;
         writeln!(f, "left out     {}", self.left_out.join(", "))?;
         self.write_verdict(f)
     }

@@ -3,8 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use dem_io::body::About;
 use dem_io::body::files::body_files;
-use dem_io::scene::{BodyEntry, BodySource, BondKind, BondModel as SceneModel, Formulation, Scene};
+use dem_io::body::mass::volume_m3;
+use dem_io::scene::{
+    BodyEntry, BodySource, BondKind, BondModel as SceneModel, ClumpMass, ClumpSettings,
+    Formulation, Scene, StartAs, WholeMass,
+};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -16,6 +21,7 @@ use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
+use crate::shape::inertia::of_union;
 use crate::stages::population::{Born, GONE, Renumbered};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::clumps::Clumps;
@@ -167,7 +173,7 @@ pub(super) fn place_body(
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
                 .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
         }
-        _ if !body.bonds.is_empty() => {
+        _ if !body.bonds.is_empty() && !stays_rigid(scene, name) => {
             return Err(Diagnostic::input(
                 format!("{}: [bodies.{name}]", scene.source),
                 format!(
@@ -180,6 +186,12 @@ pub(super) fn place_body(
         _ => {}
     }
     Ok(one)
+}
+
+/// Whether a body is a rigid clump all along: then nobody uses its bonds.
+pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
+    let start = scene.bodies.get(name).map(|entry| entry.start_as);
+    matches!(start, Some(StartAs::Clump(_))) && !scene.replacement.contains_key(name)
 }
 
 /// The same message said of a body of the scene and, where it comes from a file, of that one of its `files` that says so.
@@ -208,18 +220,7 @@ fn place_particles(
     body: &Body,
     particles: &mut Particles,
 ) -> Result<PlacedBody> {
-    let density = scene
-        .materials
-        .get(&entry.material)
-        .and_then(|material| material.density_kg_m3)
-        .or(body.about.particle_density_kg_m3)
-        .ok_or_else(|| {
-            Diagnostic::input(
-                format!("{}: [materials.{}]", scene.source, entry.material),
-                format!("no density, and the file of body '{name}' names none"),
-                "add density = \"2050 kg/m3\"",
-            )
-        })?;
+    let density = sphere_density_kg_m3(scene, name, entry, body)?;
     let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
     let turned = entry.rotation_rad != [0.0; 3];
     let shift = Vector3::from(entry.position_m);
@@ -254,6 +255,53 @@ fn place_particles(
     })
 }
 
+/// The density with which a body's shape is compared: that of its material, or the one that its file names, kg/m3.
+pub(crate) fn material_density_kg_m3(
+    scene: &Scene,
+    entry: &BodyEntry,
+    about: &About,
+) -> Option<f64> {
+    let material = scene.materials.get(&entry.material);
+    let given = material.and_then(|material| material.density_kg_m3);
+    given.or(about.particle_density_kg_m3)
+}
+
+/// Density of the spheres of a body, kg/m3: of its material, or such that it weighs what the scene says.
+fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Body) -> Result<f64> {
+    let place = || format!("{}: [bodies.{name}]", scene.source);
+    let mass_kg = match entry.whole_mass {
+        None => {
+            let density = material_density_kg_m3(scene, entry, &body.about);
+            return density.ok_or_else(|| {
+                Diagnostic::input(
+                    format!("{}: [materials.{}]", scene.source, entry.material),
+                    format!("no density, and the file of body '{name}' names none"),
+                    "add density = \"2050 kg/m3\"",
+                )
+            });
+        }
+        Some(WholeMass::Mass(mass_kg)) => mass_kg,
+        Some(WholeMass::Density(density)) => {
+            let volume = body.about.shape_volume_m3.ok_or_else(|| {
+                Diagnostic::input(
+                    place(),
+                    "body_density is that of a shape, whose volume the body's file does not name",
+                    "give it a mass, such as mass = \"0.4 kg\"; or use a .vtp that dem-pack wrote",
+                )
+            })?;
+            density * volume
+        }
+    };
+    let volume_m3 = match entry.start_as {
+        StartAs::Clump(ClumpSettings {
+            mass: ClumpMass::Union,
+            ..
+        }) => of_union(&body.positions, &body.radii, 1.0).mass_kg,
+        _ => body.radii.iter().map(|radius| volume_m3(*radius)).sum(),
+    };
+    Ok(mass_kg / volume_m3)
+}
+
 /// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold them.
 fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> {
     let inert = [
@@ -263,7 +311,7 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     let pose = &particles.poses[i];
     let is_placed = pose.position_m.iter().all(|x| x.is_finite());
     if is_placed && inert.into_iter().all(f64::is_normal) {
-        return check_place(number, pose);
+        return check_place(pose, || format!("particle {number}"));
     }
     Err(Diagnostic::input(
         format!("particle {number}"),
@@ -276,15 +324,15 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     ))
 }
 
-/// Whether a particle of a body's file is so near to the origin that its place can be told.
-fn check_place(number: usize, pose: &Pose) -> Result<()> {
+/// Whether a particle, `who` in words, is so near to the origin that its place can be told.
+pub(super) fn check_place(pose: &Pose, who: impl Fn() -> String) -> Result<()> {
     let farthest_m = pose.place().amax();
     let rounded_m = f64::EPSILON * farthest_m;
     if rounded_m <= ROUNDING * pose.radius_m() {
         return Ok(());
     }
     Err(Diagnostic::input(
-        format!("particle {number}"),
+        who(),
         format!(
             "{farthest_m:.3e} m from the origin its coordinates are rounded by {rounded_m:.1e} m, more than {ROUNDING:e} of its radius of {:.3e} m",
             pose.radius_m()

@@ -7,7 +7,7 @@ use dem_io::scene::{BodyEntry, ClumpMass, Scene, StartAs, WallShape};
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::bodies::place_body;
+use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
 use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{HIDDEN, SHARE_OF_SMALLEST, outer_layer};
@@ -24,6 +24,15 @@ pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
     clumps
         .map(|(name, _)| name.clone())
         .chain(by_inlets.map(|(name, _)| name.clone()))
+        .collect()
+}
+
+/// Bodies with bonds that stay rigid clumps all along, and how many bonds they have.
+pub(super) fn unused_bonds(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<(String, usize)> {
+    let with_bonds = read.iter().map(|(name, body)| (name, body.bonds.len()));
+    with_bonds
+        .filter(|(name, bonds)| *bonds > 0 && stays_rigid(scene, name))
+        .map(|(name, bonds)| (name.clone(), bonds))
         .collect()
 }
 

@@ -1,6 +1,6 @@
 //! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of particles may.
 
-use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene};
+use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
 use dem_io::{Diagnostic, Result};
 
 use super::bodies::{PlacedBody, called};
@@ -11,7 +11,7 @@ use crate::physics::contact::manner::{Behaviour, Elastic};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
-use crate::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.
 const SKIN: [f64; 2] = [0.1, 0.5];
@@ -160,23 +160,37 @@ pub(super) fn place_contacts(
         materials,
         skin_m: scene.search.skin.unwrap_or(SKIN[0]) * state.largest_radius_m(),
         least_overlap: scene.relaxation.min_overlap,
-        relaxes: true,
+        relaxes: scene.run.start_overlap != StartOverlap::Keep,
         lost_j: vec![[0.0; 2]; p.len()],
         ..Contacts::default()
     };
     contacts.divide(p.len(), state.shares.len().max(1));
-    // What overlaps now is no fruit of a break: it relaxes whenever it is let in at all.
+    // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
     let skin_m = contacts.skin_m;
     list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
     refuse_same_place(scene, &contacts, bodies, state)?;
-    if scene.run.start_overlap == dem_io::scene::StartOverlap::Refuse {
-        refuse_overlaps(scene, &contacts, bodies, state)?;
+    match scene.run.start_overlap {
+        StartOverlap::Refuse => refuse_overlaps(scene, &contacts, bodies, state)?,
+        StartOverlap::Relax => {}
+        StartOverlap::Keep => {
+            refuse_swallowed(scene, &contacts, bodies, state)?;
+            keep_overlaps(&mut contacts, state);
+        }
     }
     contacts.relaxes = scene.relaxation.enabled;
     contacts.alone = is_alone(state, clusters);
     contacts.room_m = -1.0;
     state.contacts = Some(contacts);
     Ok(())
+}
+
+/// Makes of what overlaps contacts that press as if they had been pressed together before.
+fn keep_overlaps(contacts: &mut Contacts, state: &State) {
+    let poses = &state.particles.poses;
+    for (&pair, memory) in contacts.pairs.iter().zip(&mut contacts.memories) {
+        *memory = Memory::pressed_by(overlap_m(poses, pair));
+    }
+    contacts.divide(state.particles.len(), contacts.wanted_shares);
 }
 
 /// Whether there is one piece that cannot break, and no other can come.
@@ -256,6 +270,34 @@ fn refuse_same_place(
     ))
 }
 
+/// Refuses particles that are pressed into each other by more than the radius of the smaller.
+fn refuse_swallowed(
+    scene: &Scene,
+    contacts: &Contacts,
+    bodies: &[PlacedBody],
+    state: &State,
+) -> Result<()> {
+    let poses = &state.particles.poses;
+    let smaller_m = |pair: [u32; 2]| {
+        let [a, b] = pair.map(|i| poses[i as usize].radius_m());
+        a.min(b)
+    };
+    let is_swallowed = |pair: &&[u32; 2]| overlap_m(poses, **pair) > smaller_m(**pair);
+    let Some(&pair) = contacts.pairs.iter().find(is_swallowed) else {
+        return Ok(());
+    };
+    let [a, b] = pair.map(|i| called(bodies, &state.clumps, i));
+    Err(Diagnostic::input(
+        &scene.source,
+        format!(
+            "{a} and {b} overlap by {} at the start, more than the radius of the smaller, {}",
+            dem_io::units::show_length(overlap_m(poses, pair)),
+            dem_io::units::show_length(smaller_m(pair))
+        ),
+        "move the bodies apart: run.start_overlap = \"keep\" is for bodies that rest on each other",
+    ))
+}
+
 /// Refuses particles of different clusters that overlap: names the deepest pair.
 fn refuse_overlaps(
     scene: &Scene,
@@ -287,6 +329,6 @@ fn refuse_overlaps(
             "{a} and {b} overlap by {} at the start although no bond joins them{more}",
             dem_io::units::show_length(*overlap)
         ),
-        "move the bodies apart; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press",
+        "move the bodies apart; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it",
     ))
 }

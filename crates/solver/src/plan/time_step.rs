@@ -1,6 +1,6 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use beside it.
 
-use dem_io::scene::{Factor, SAFETY, Scene, WallMotion};
+use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
 use dem_io::{Diagnostic, Result};
 
 use nalgebra::Vector3;
@@ -9,6 +9,7 @@ use crate::check::limit::{Limit, limit, safe_step};
 use crate::check::linear::{Matters, at_impact, contact_rates, largest_contact_rate_1_s2};
 use crate::clusters::Clusters;
 use crate::geometry::{Bounds, Shape};
+use crate::plan::bodies::PlacedBody;
 use crate::stages::population::{Changes, change};
 use crate::state::State;
 use crate::state::bonds::Bonds;
@@ -89,7 +90,9 @@ impl Outlook {
             f64::INFINITY
         };
         // A contact that is pressed now is on its way: an adaptive step must not rise before its end.
-        let [pressed_k, pressed_c] = if run.adaptive {
+        // What is pressed from the start on is followed like an impact, too.
+        let keeps = run.start_overlap == StartOverlap::Keep;
+        let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
         } else {
             [0.0; 2]
@@ -207,7 +210,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         foreseen_s,
         impact_speed_m_s: outlook.impact_speed_m_s,
         contact_rate_1_s2: outlook.contact_rate_1_s2,
-        rayleigh_s: rayleigh_s(scene, state),
+        rayleigh_s: f64::INFINITY,
         thesis_s: thesis_s(state),
         replaced,
     })
@@ -217,6 +220,11 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
 /// no templates.
 pub fn arriving(state: &State) -> Option<State> {
     coming(state, false)
+}
+
+/// The same with all bonded that can be.
+pub fn arriving_as_clusters(state: &State) -> Option<State> {
+    coming(state, true)
 }
 
 /// One body of each shape; where clumps are `replaced`, those that can become clusters are some.
@@ -284,25 +292,31 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
     Some(bonded)
 }
 
-/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest of all particles [Platzer 14].
-fn rayleigh_s(scene: &Scene, state: &State) -> f64 {
-    let softness = |material: &dem_io::scene::Material| {
+/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest of all particles that are there or may be
+/// fed, each with its own material, s [Platzer 14]. Infinite: no particle has a modulus.
+pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
+    let of_material = |body: &str| {
+        let material = scene.materials.get(&scene.bodies.get(body)?.material)?;
         let nu = material.poisson_ratio;
-        let shear = material.young_modulus_pa? / (2.0 * (1.0 + nu));
-        Some(1.0 / (shear.sqrt() * (0.1631 * nu + 0.8766)))
+        let shear_pa = material.young_modulus_pa? / (2.0 * (1.0 + nu));
+        Some(std::f64::consts::PI / (shear_pa.sqrt() * (0.1631 * nu + 0.8766)))
     };
-    let smallest = scene
-        .materials
-        .values()
-        .filter_map(softness)
-        .fold(f64::INFINITY, f64::min);
     let p = &state.particles;
-    (0..p.len())
-        .map(|i| {
-            let (radius, density) = (p.poses[i].radius_m(), p.density_kg_m3(i));
-            std::f64::consts::PI * radius * density.sqrt() * smallest
+    let of_bodies = bodies.iter().flat_map(|body| {
+        let factor = of_material(&body.name).unwrap_or(f64::INFINITY);
+        body.particles.iter().map(move |&i| {
+            let i = i as usize;
+            factor * p.poses[i].radius_m() * p.density_kg_m3(i).sqrt()
         })
-        .fold(f64::INFINITY, f64::min)
+    });
+    let of_templates = state.clumps.templates.iter().flat_map(|template| {
+        let factor = of_material(&template.body).unwrap_or(f64::INFINITY);
+        template.spheres.iter().map(move |sphere| {
+            let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * sphere.radius_m.powi(3);
+            factor * sphere.radius_m * (sphere.mass_kg / volume_m3).sqrt()
+        })
+    });
+    of_bodies.chain(of_templates).fold(f64::INFINITY, f64::min)
 }
 
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all bonds [Platzer 15].

@@ -11,6 +11,7 @@ use super::bodies::{PlacedBody, called};
 use super::contacts::{Kinds, ROUNDING};
 use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
+use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::contacts::Memory;
 use crate::state::walls::{Wall, WallTouch};
@@ -62,15 +63,24 @@ pub(super) fn place_walls(
             motion: entry.motion.clone(),
             ..Wall::standing(shape, frame)
         };
-        let touches = starting_touches(&wall, state);
+        let keeps = scene.run.start_overlap == StartOverlap::Keep;
+        // What only touches presses by so little that it is left out, unless it is to be kept.
+        let least_share = if keeps { 0.0 } else { ROUNDING };
+        let touches = starting_touches(&wall, state, least_share);
         let is_through = touches.iter().any(|(_, touch)| touch.distance_m < 0.0);
         if is_through || scene.run.start_overlap == StartOverlap::Refuse {
             refuse_touches(&place, name, &wall, &touches, bodies, state)?;
         }
         wall.touching = touches
             .iter()
-            .map(|(particle, touch)| relaxing(*particle, touch, state))
+            .map(|(particle, touch)| at_start(*particle, touch, state, keeps))
             .collect();
+        if let (true, Some(contacts)) = (keeps, &state.contacts) {
+            let pressed = wall.touching.iter();
+            let pressed =
+                pressed.map(|touch| touch_energy_j(&wall, contacts, &state.particles, touch));
+            wall.elastic_j = pressed.sum();
+        }
         walls.push(wall);
     }
     Ok(walls)
@@ -148,14 +158,14 @@ fn frame(entry: &SceneWall) -> Frame {
     }
 }
 
-/// What overlaps a wall at the start by more than rounding.
-fn starting_touches(wall: &Wall, state: &State) -> Vec<(u32, Touch)> {
+/// What overlaps a wall at the start by more than this share of its radius.
+fn starting_touches(wall: &Wall, state: &State, least_share: f64) -> Vec<(u32, Touch)> {
     let mut found = Vec::new();
     let mut of_one = Vec::new();
     let bounds = wall.shape.bounds();
     for (i, pose) in (0..).zip(&state.particles.poses) {
         let centre = wall.frame.to_wall(pose.place().into());
-        let reach_m = pose.radius_m() * (1.0 - ROUNDING);
+        let reach_m = pose.radius_m() * (1.0 - least_share);
         if bounds.is_near(&centre, reach_m) {
             of_one.clear();
             match &wall.shape {
@@ -201,7 +211,7 @@ fn refuse_touches(
         }
         (_, true) => "move the body or the wall: its centre is inside",
         _ => {
-            "move the body or the wall; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press"
+            "move the body or the wall; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it"
         }
     };
     Err(Diagnostic::input(
@@ -214,10 +224,14 @@ fn refuse_touches(
     ))
 }
 
-/// A touch whose overlap is where the law begins.
-fn relaxing(particle: u32, touch: &Touch, state: &State) -> WallTouch {
-    let radius_m = state.particles.poses[particle as usize].radius_m();
-    let memory = Memory::parted_at(radius_m - touch.distance_m);
+/// A touch at the start: its overlap is where the law begins, or presses where it is kept.
+fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallTouch {
+    let overlap_m = state.particles.poses[particle as usize].radius_m() - touch.distance_m;
+    let memory = if keeps {
+        Memory::pressed_by(overlap_m)
+    } else {
+        Memory::parted_at(overlap_m)
+    };
     WallTouch {
         particle,
         feature: touch.feature,

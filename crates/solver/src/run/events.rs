@@ -7,7 +7,7 @@ use super::Files;
 use crate::output::fragments::split_text;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
-use crate::stages::replacement::Happened;
+use crate::stages::replacement::{Happened, STARTS_BONDED};
 use crate::state::State;
 
 /// The bonds that broke in this step, by the numbers of the body's file.
@@ -76,7 +76,11 @@ pub(super) fn write_happened(
                 kinetic_j: [kinetic, kinetic_after],
                 place_m,
             } => (
-                "replaced",
+                if *cause == STARTS_BONDED {
+                    "bonded"
+                } else {
+                    "replaced"
+                },
                 *cause,
                 place_m,
                 Some(kinetic_after - kinetic),

@@ -124,7 +124,7 @@ impl<'a> Limits<'a> {
         }
         let mut may_be_less = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
-            let strain = largest_strain(&state.bonds, &state.particles.poses);
+            let strain = progress.seen.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
                 may_be_less = true;

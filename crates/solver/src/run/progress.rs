@@ -5,6 +5,7 @@ use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;
+use super::seen::Seen;
 use crate::check::ledger::{Balance, over};
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
@@ -65,6 +66,8 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether that has ended because the body broke.
     pub(super) broke: bool,
+    /// What has been seen beside the measures.
+    pub(super) seen: Seen,
 }
 
 /// How often a run writes, s, and what it takes for rest.
@@ -108,7 +111,10 @@ fn last_change_s(state: &State) -> f64 {
             _ => f64::INFINITY,
         },
     });
-    let ends = loads.chain(supports).map(end).chain(of_walls);
+    let let_go = state.supports.iter().map(|support| support.end_s);
+    let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));
+    let let_go = let_go.filter(|end_s| end_s.is_finite());
+    let ends = loads.chain(supports).map(end).chain(of_walls).chain(let_go);
     ends.fold(0.0, f64::max)
 }
 
@@ -173,41 +179,52 @@ impl Progress {
         self.step_changes += 1;
     }
 
-    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another rhythm.
-    ///
-    /// # Errors
-    /// The run is over.
-    pub(super) fn go_on(&mut self, state: &State, rhythm: Rhythm, scene: &Scene) -> Result<()> {
-        let over = |problem: String, remedy: &str| {
-            Err(Diagnostic::input(
-                "--resume",
-                problem,
-                format!("nothing is left to be done; to take it further, {remedy}"),
-            ))
-        };
+    /// Why a run that stands at the present of `state` has nothing left to do, and what would take it further. None: it has.
+    pub(super) fn is_over(
+        &self,
+        state: &State,
+        rhythm: Rhythm,
+        scene: &Scene,
+    ) -> Option<(String, &'static str)> {
         let before_s = state.time_s - 0.5 * state.previous_time_step_s;
         if before_s >= scene.run.end_time_s {
-            return over(
+            return Some((
                 format!(
                     "this run has reached {before_s:.6e} s, and run.end_time is {:.6e} s",
                     scene.run.end_time_s
                 ),
                 "set a later end: --set run.end_time=...",
-            );
+            ));
         }
-        if rhythm.rest != self.rhythm.rest {
-            self.calm_since_s = None;
-        } else if self.rested {
-            return over(
+        if self.rested && rhythm.rest == self.rhythm.rest {
+            return Some((
                 format!("this run has come to rest at {before_s:.6e} s"),
                 "set a smaller run.rest",
-            );
+            ));
         }
-        if self.broke {
-            return over(
+        self.broke.then(|| {
+            (
                 format!("the body of this test has broken at {before_s:.6e} s"),
                 "run its fragments in another scene",
-            );
+            )
+        })
+    }
+
+    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another rhythm.
+    ///
+    /// # Errors
+    /// The run is over.
+    pub(super) fn go_on(&mut self, state: &State, rhythm: Rhythm, scene: &Scene) -> Result<()> {
+        if let Some((problem, further)) = self.is_over(state, rhythm, scene) {
+            return Err(Diagnostic::input(
+                "--resume",
+                problem,
+                format!("nothing is left to be done; to take it further, {further}"),
+            ));
+        }
+        let before_s = state.time_s - 0.5 * state.previous_time_step_s;
+        if rhythm.rest != self.rhythm.rest {
+            self.calm_since_s = None;
         }
         self.rested = false;
         if rhythm != self.rhythm {
@@ -226,6 +243,7 @@ impl Progress {
             momentum * balance.momentum_error,
             angular_momentum * balance.angular_momentum_error,
         ];
+        self.seen.note_kinetic(balance.kinetic_j);
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }

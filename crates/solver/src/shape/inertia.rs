@@ -1,75 +1,10 @@
 //! Mass properties of a rigid body made of spheres.
 
-use nalgebra::{Matrix3, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
+use dem_io::body::inertia::of_moments;
+pub use dem_io::body::inertia::{MassProperties, of_spheres};
+use nalgebra::Vector3;
 
 use super::union;
-
-/// Products of inertia below this part of the trace are rounding.
-const ROUNDING: f64 = 4e-16;
-
-/// Mass, centre of mass and principal axes of a rigid body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MassProperties {
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Centre of mass, m.
-    pub centre_m: [f64; 3],
-    /// Principal moments of inertia about the centre of mass, rising, kg m^2.
-    pub moments_kg_m2: [f64; 3],
-    /// Rotation from the principal axes, in the order of the moments, to the axes of the input: unit quaternion x, y, z, w.
-    ///
-    /// The axes are right-handed; the first two have their component of largest size positive, and w is not negative. Where moments are equal, the axes are some of the many right ones, the same in each run.
-    pub axes: [f64; 4],
-}
-
-/// The mass properties of rigidly joined spheres, each with its own mass and moment of inertia: the sum, with overlaps counted as often as they are there.
-///
-/// A cluster of bonded spheres has the same mass, centre of mass and inertia, so that one can stand for the other without a change of momentum or kinetic energy.
-///
-/// `centres_m`, m, `masses_kg` and `own_inertias_kg_m2` (about the centre of the sphere; for a full one 2/5 m r^2) have one entry per sphere; entries without partners are left out. All sums are taken about the mean. A body without mass has zero moments; numbers that are not finite give moments that are no numbers.
-pub fn of_spheres(
-    centres_m: &[[f64; 3]],
-    masses_kg: &[f64],
-    own_inertias_kg_m2: &[f64],
-) -> MassProperties {
-    let spheres = || centres_m.iter().zip(masses_kg).zip(own_inertias_kg_m2);
-    let Some(&origin) = centres_m.first() else {
-        return properties(Vector3::zeros(), 0.0, Matrix3::zeros());
-    };
-    let origin = Vector3::from(origin);
-    let mut mass = Sum::<1>::default();
-    let mut first = Sum::<3>::default();
-    for ((centre, &m), _) in spheres() {
-        mass.add([m]);
-        first.add(((Vector3::from(*centre) - origin) * m).into());
-    }
-    let mass = mass.total()[0];
-    if mass.is_nan() || mass <= 0.0 {
-        return properties(origin, 0.0, Matrix3::zeros());
-    }
-    let mean = Vector3::from(first.total()) / mass;
-    // What rounding leaves of the first moment about the mean.
-    let mut rest = Sum::<3>::default();
-    let mut second = Sum::<6>::default();
-    for ((centre, &m), &own) in spheres() {
-        let v = Vector3::from(*centre) - origin - mean;
-        rest.add((v * m).into());
-        // Half the own inertia along each axis adds up to all of it about each.
-        let own = 0.5 * own;
-        second.add([
-            m * v.x * v.x + own,
-            m * v.y * v.y + own,
-            m * v.z * v.z + own,
-            m * v.x * v.y,
-            m * v.x * v.z,
-            m * v.y * v.z,
-        ]);
-    }
-    let [xx, yy, zz, xy, xz, yz] = second.total();
-    let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let centre = origin + (mean + Vector3::from(rest.total()) / mass);
-    properties(centre, mass, second)
-}
 
 /// The mass properties of the union of spheres of one density: each overlap counts once.
 ///
@@ -79,7 +14,7 @@ pub fn of_spheres(
 pub fn of_union(centres_m: &[[f64; 3]], radii_m: &[f64], density_kg_m3: f64) -> MassProperties {
     let count = centres_m.len().min(radii_m.len());
     let Some(&origin) = centres_m.first().filter(|_| count > 0) else {
-        return properties(Vector3::zeros(), 0.0, Matrix3::zeros());
+        return of_moments([0.0; 3], 0.0, [[0.0; 3]; 3]);
     };
     let origin = Vector3::from(origin);
     let offsets = || {
@@ -91,89 +26,13 @@ pub fn of_union(centres_m: &[[f64; 3]], radii_m: &[f64], density_kg_m3: f64) -> 
     let centred: Vec<[f64; 3]> = offsets().map(|v| (v - mean).into()).collect();
     let solid = union::solid(&centred, &radii_m[..count]);
     if solid.volume.is_nan() || solid.volume <= 0.0 {
-        return properties(origin + mean, 0.0, Matrix3::zeros());
+        return of_moments((origin + mean).into(), 0.0, [[0.0; 3]; 3]);
     }
     let centre = solid.first / solid.volume;
     let second = solid.second - centre * solid.first.transpose();
-    properties(
-        origin + (mean + centre),
+    of_moments(
+        (origin + (mean + centre)).into(),
         density_kg_m3 * solid.volume,
-        second * density_kg_m3,
+        (second * density_kg_m3).into(),
     )
-}
-
-/// From the second moments of the mass about the centre of mass, kg m^2.
-fn properties(centre: Vector3<f64>, mass_kg: f64, second: Matrix3<f64>) -> MassProperties {
-    let mut inertia = Matrix3::from_diagonal_element(second.trace()) - second;
-    let least = ROUNDING * inertia.trace().abs();
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let mean = 0.5 * (inertia[(row, column)] + inertia[(column, row)]);
-        let product = if mean.abs() > least { mean } else { 0.0 };
-        inertia[(row, column)] = product;
-        inertia[(column, row)] = product;
-    }
-    let (moments, axes) = principal(inertia);
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
-    let sign = 1.0_f64.copysign(turn.w);
-    MassProperties {
-        mass_kg,
-        centre_m: centre.into(),
-        moments_kg_m2: moments,
-        axes: [turn.i, turn.j, turn.k, turn.w].map(|q| q * sign),
-    }
-}
-
-/// The moments, rising, and the axes as columns.
-fn principal(inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
-    if !inertia.iter().all(|value| value.is_finite()) {
-        return ([f64::NAN; 3], Matrix3::identity());
-    }
-    let eigen = SymmetricEigen::new(inertia);
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let axis = |k: usize| {
-        let v = eigen.eigenvectors.column(order[k]).normalize();
-        v * 1.0_f64.copysign(v[v.iamax()])
-    };
-    let first = axis(0);
-    let second = axis(1);
-    let second = (second - first * first.dot(&second)).normalize();
-    (
-        order.map(|k| eigen.eigenvalues[k]),
-        Matrix3::from_columns(&[first, second, first.cross(&second)]),
-    )
-}
-
-/// Sums that carry along what rounding takes away (Neumaier 1974).
-struct Sum<const N: usize> {
-    sum: [f64; N],
-    lost: [f64; N],
-}
-
-impl<const N: usize> Default for Sum<N> {
-    fn default() -> Self {
-        Self {
-            sum: [0.0; N],
-            lost: [0.0; N],
-        }
-    }
-}
-
-impl<const N: usize> Sum<N> {
-    fn add(&mut self, terms: [f64; N]) {
-        for (k, term) in terms.into_iter().enumerate() {
-            let old = self.sum[k];
-            let new = old + term;
-            self.lost[k] += if old.abs() >= term.abs() {
-                (old - new) + term
-            } else {
-                (term - new) + old
-            };
-            self.sum[k] = new;
-        }
-    }
-
-    fn total(&self) -> [f64; N] {
-        std::array::from_fn(|k| self.sum[k] + self.lost[k])
-    }
 }

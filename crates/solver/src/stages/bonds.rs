@@ -35,18 +35,24 @@ pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrench
 
 /// Largest change of length over initial length of the bonds that are not broken.
 pub fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
+    most_strained(bonds, poses).map_or(0.0, |(strain, _)| strain)
+}
+
+/// The bond that is strained most, and its strain. None: no bond is whole.
+pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     let strain = |at: usize| {
-        if bonds.is_broken(at) {
-            return 0.0;
-        }
         let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
-        ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs()
+        (
+            ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs(),
+            at,
+        )
     };
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)
+        .filter(|&at| !bonds.is_broken(at))
         .map(strain)
-        .reduce(|| 0.0, f64::max)
+        .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
 /// The work on one share.

@@ -3,9 +3,9 @@
 mod close;
 mod stored;
 
-pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m};
+pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n};
 
-pub(in crate::stages) use self::stored::stored_energy_j;
+pub(in crate::stages) use self::stored::{stored_energy_j, stored_force_n};
 
 use self::close::{close_m, look};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;

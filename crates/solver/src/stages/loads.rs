@@ -16,6 +16,22 @@ pub struct SetLoad {
     pub torque_n_m: [f64; 3],
     /// Over time.
     pub factor: Factor,
+    /// From this time on it is zero, s; infinite: never.
+    pub end_s: f64,
+}
+
+impl SetLoad {
+    /// What the load is multiplied by in the kick at `time_s`, which makes up for half of the step
+    /// before and half of the one to come, `steps_s`. Where the load ends in between, its share of
+    /// that time: so its impulse is the same whatever the steps.
+    fn factor_in_kick(&self, time_s: f64, steps_s: [f64; 2]) -> f64 {
+        let factor = factor_at(&self.factor, time_s);
+        if self.end_s.is_infinite() {
+            return factor;
+        }
+        let [from_s, until_s] = [time_s - 0.5 * steps_s[0], time_s + 0.5 * steps_s[1]];
+        factor * ((self.end_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0)
+    }
 }
 
 /// Value of a factor at a time.
@@ -27,10 +43,11 @@ pub fn factor_at(factor: &Factor, time_s: f64) -> f64 {
     }
 }
 
-/// Adds the loads at this time to the wrenches.
-pub fn add_loads(loads: &[SetLoad], time_s: f64, wrenches: &mut [Wrench]) {
+/// Adds the loads of the kick at this time to the wrenches. `steps_s`: the step before and the one
+/// to come.
+pub fn add_loads(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], wrenches: &mut [Wrench]) {
     for load in loads {
-        let factor = factor_at(&load.factor, time_s);
+        let factor = load.factor_in_kick(time_s, steps_s);
         for &particle in &load.particles {
             let wrench = &mut wrenches[particle as usize];
             for k in 0..3 {
@@ -41,8 +58,8 @@ pub fn add_loads(loads: &[SetLoad], time_s: f64, wrenches: &mut [Wrench]) {
     }
 }
 
-/// Power of the loads on particles moving so, W.
-pub fn loads_power_w(loads: &[SetLoad], time_s: f64, motions: &[Motion]) -> f64 {
+/// Power of the loads of the kick at this time on particles moving so, W.
+pub fn loads_power_w(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], motions: &[Motion]) -> f64 {
     let power = |load: &SetLoad| {
         let of_one = |&particle: &u32| {
             let motion = &motions[particle as usize];
@@ -53,21 +70,22 @@ pub fn loads_power_w(loads: &[SetLoad], time_s: f64, motions: &[Motion]) -> f64 
                 })
                 .sum::<f64>()
         };
-        factor_at(&load.factor, time_s) * load.particles.iter().map(of_one).sum::<f64>()
+        load.factor_in_kick(time_s, steps_s) * load.particles.iter().map(of_one).sum::<f64>()
     };
     loads.iter().map(power).sum()
 }
 
-/// Force of all loads together, N, and their torque about a point, N m.
+/// Force of all loads of the kick at this time together, N, and their torque about a point, N m.
 pub fn loads_resultant(
     loads: &[SetLoad],
     time_s: f64,
+    steps_s: [f64; 2],
     poses: &[Pose],
     about_m: [f64; 3],
 ) -> [[f64; 3]; 2] {
     let mut total = [[0.0; 3]; 2];
     for load in loads {
-        let factor = factor_at(&load.factor, time_s);
+        let factor = load.factor_in_kick(time_s, steps_s);
         for &particle in &load.particles {
             let force = load.force_n.map(|f| factor * f);
             let torque = load.torque_n_m.map(|t| factor * t);

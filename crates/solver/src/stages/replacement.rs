@@ -78,6 +78,9 @@ pub enum Happened {
     },
 }
 
+/// Cause of the change of a body that comes through an inlet and starts as bonded.
+pub const STARTS_BONDED: &str = "start";
+
 /// Does to the bodies what the scene asks for, between a kick and the drift after it. None: nothing.
 pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
     if state.rules.are_none() {
@@ -123,7 +126,7 @@ fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
         let template = clump.template as usize;
         if rules.starts.get(template)?.bonded {
-            return Some((n, "start"));
+            return Some((n, STARTS_BONDED));
         }
         let trigger = rules.triggers.get(template)?.as_ref()?;
         Some((n, met(trigger, clump, state)?))
@@ -169,7 +172,9 @@ fn swap(
     causes: &[&'static str],
     happened: &mut Vec<Happened>,
 ) -> Renumbered {
-    state.rules.replaced += to_clusters.len() as u32;
+    // A body that an inlet feeds as bonded starts so.
+    let fired = causes.iter().filter(|cause| **cause != STARTS_BONDED);
+    state.rules.replaced += fired.count() as u32;
     let changes = Changes {
         to_clusters,
         ..Changes::default()

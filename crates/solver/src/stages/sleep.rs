@@ -87,9 +87,13 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
         return Vec::new();
     };
     let id = |i: u32| clusters.of_particle[i as usize];
-    let held = state.supports.iter().flat_map(|support| &support.held);
+    let held = state.supports.iter();
+    let held = held.filter(|support| state.time_s < support.end_s);
+    let held = held.flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
-    let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
+    let loaded = state.loads.iter();
+    let loaded = loaded.filter(|load| state.time_s < load.end_s);
+    let loaded = loaded.flat_map(|load| &load.particles).copied();
     for i in held.chain(loaded) {
         may[id(i) as usize] = false;
     }

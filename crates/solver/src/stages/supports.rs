@@ -15,6 +15,33 @@ pub struct SetSupport {
     pub factor: Factor,
     /// The particles.
     pub held: Vec<Held>,
+    /// From this time on the freedoms are free, s; infinite: never.
+    pub end_s: f64,
+}
+
+/// What a support does at a kick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Holds the freedoms in the step to come.
+    Holds,
+    /// Held them in the step before and holds them no more.
+    LetsGo,
+    /// Has let go of them before.
+    Over,
+}
+
+impl SetSupport {
+    /// What it does at the kick at `time_s` between the step before and the one to come, `steps_s`:
+    /// it holds in the steps whose middle comes before its end.
+    pub fn phase(&self, time_s: f64, [before_s, after_s]: [f64; 2]) -> Phase {
+        // Both kicks beside a step reckon with the same numbers, so they agree to the bit.
+        let holds = |until_s: f64, step_s: f64| until_s - 0.5 * step_s < self.end_s;
+        match [holds(time_s, before_s), holds(time_s + after_s, after_s)] {
+            [_, true] => Phase::Holds,
+            [true, false] => Phase::LetsGo,
+            [false, false] => Phase::Over,
+        }
+    }
 }
 
 /// A particle that is held, in the step that was kicked last.
@@ -50,12 +77,18 @@ pub fn hold(
 ) {
     let [before_s, time_step_s] = steps_s;
     let kick_s = 0.5 * (before_s + time_step_s);
-    for SetSupport {
-        holds,
-        factor,
-        held,
-    } in supports
-    {
+    for support in supports {
+        let phase = support.phase(time_s, steps_s);
+        if phase != Phase::Holds {
+            let_go(support, phase, particles, broken, steps_s);
+            continue;
+        }
+        let SetSupport {
+            holds,
+            factor,
+            held,
+            ..
+        } = support;
         let prescribed = holds.map(|hold| {
             hold.map(|hold| match hold {
                 Hold::Fixed => 0.0,
@@ -90,6 +123,39 @@ pub fn hold(
     }
 }
 
+/// Gives the freedoms of a support that has ended their own half of the kick at which it lets go of
+/// them: in the step before it held them, and exerted what that took.
+fn let_go(
+    support: &mut SetSupport,
+    phase: Phase,
+    particles: &mut Particles,
+    broken: &[Break],
+    [before_s, time_step_s]: [f64; 2],
+) {
+    let kick_s = 0.5 * (before_s + time_step_s);
+    for held in &mut support.held {
+        held.reactions = [[0.0; 6]; 2];
+        if phase == Phase::Over {
+            continue;
+        }
+        let parted = of_broken(broken, held.particle);
+        let motion = &mut particles.motions[held.particle as usize];
+        let mass = 1.0 / motion.inverse_mass;
+        let inertia = 1.0 / motion.inverse_inertia;
+        for k in (0..6).filter(|&k| support.holds[k].is_some()) {
+            let (now, inert) = if k < 3 {
+                (&mut motion.velocity_m_s[k], mass)
+            } else {
+                (&mut motion.spin_rad_s[k - 3], inertia)
+            };
+            let impulse = inert * (*now - held.before[k]) - 0.5 * before_s * parted[k];
+            let acting = impulse / kick_s;
+            held.reactions[0][k] = -(acting + parted[k]);
+            *now = held.before[k] + 0.5 * time_step_s * acting / inert;
+        }
+    }
+}
+
 /// Force and torque that bonds exerted on a particle until they broke, N and N m.
 fn of_broken(broken: &[Break], particle: u32) -> [f64; 6] {
     let mut sum = [0.0; 6];
@@ -118,10 +184,22 @@ pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
 pub fn reactions_work_j(
     supports: &[SetSupport],
     particles: &Particles,
+    time_s: f64,
     steps_s: [f64; 2],
 ) -> [f64; 2] {
     let mut work = [0.0; 2];
-    for SetSupport { holds, held, .. } in supports {
+    for support in supports {
+        let SetSupport { holds, held, .. } = support;
+        if support.phase(time_s, steps_s) != Phase::Holds {
+            // Nothing jumps where freedoms are let go, and what has been over exerts nothing.
+            let of_one = |held: &Held| {
+                (0..6)
+                    .map(|k| held.reactions[0][k] * held.before[k])
+                    .sum::<f64>()
+            };
+            work[0] += 0.5 * steps_s[0] * held.iter().map(of_one).sum::<f64>();
+            continue;
+        }
         for held in held {
             let i = held.particle as usize;
             let motion = &particles.motions[i];

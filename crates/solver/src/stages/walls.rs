@@ -13,7 +13,7 @@ use crate::physics::contact::touch::{Ball, Foot, Touch as Contact, torques, touc
 use crate::physics::contact::{History, NormalLaw, Response, response};
 use crate::physics::number::Triple;
 use crate::physics::rigid::turn;
-use crate::stages::contacts::stored_energy_j;
+use crate::stages::contacts::{stored_energy_j, stored_force_n};
 use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Push, Wall, WallTouch};
@@ -372,6 +372,34 @@ pub fn touch_energy_j(
         Law::HertzMindlin(law) => stored_j(law, &kind.rolling, particles, touch),
         Law::Linear(law) => stored_j(law, &kind.rolling, particles, touch),
     }
+}
+
+/// Force of a wall on a particle that touches it, as it was taken down, N.
+pub fn touch_force_n(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    old: &WallTouch,
+) -> Vector3<f64> {
+    let (i, memory) = (old.particle as usize, &old.memory);
+    let mut touch = wall_touch(particles, i, &old.normal.into(), memory.overlap_m());
+    touch.overlap_m = memory.overlap_m();
+    match &wall.kind(contacts.materials[i]).law {
+        Law::HertzMindlin(law) => stored_force_n(law, &touch, memory),
+        Law::Linear(law) => stored_force_n(law, &touch, memory),
+    }
+}
+
+/// How far a sphere is from a wall, m; infinite where that is more than its own radius.
+pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
+    let centre = wall.frame.to_wall(pose.place().into());
+    let mut touches = Vec::new();
+    let reach_m = 2.0 * pose.radius_m();
+    wall.shape.touches(centre, reach_m, &mut touches);
+    let gaps = touches
+        .iter()
+        .map(|touch| touch.distance_m - pose.radius_m());
+    gaps.fold(f64::INFINITY, f64::min)
 }
 
 /// Elastic energy of a contact with a wall as it was taken down, J.

@@ -72,6 +72,14 @@ impl Memory {
         }
     }
 
+    /// Of a pair whose law has been pressed by this overlap, m, and by nothing else.
+    pub fn pressed_by(overlap_m: f64) -> Self {
+        Self {
+            slid: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
+            ..Self::default()
+        }
+    }
+
     /// The same of a pair that is named the other way round.
     pub fn turned_round(&self) -> Self {
         let back = |[x, y, z, last]: [f64; 4]| [-x, -y, -z, last];

@@ -29,7 +29,11 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
             });
             of_contacts + clusters_for(state, stage)
         }
-        Stage::Clusters | Stage::Output => clusters_for(state, stage),
+        Stage::Clusters => clusters_for(state, stage),
+        Stage::Output => {
+            let watched = state.watches.iter().map(|watch| watch.of.bytes());
+            clusters_for(state, stage) + watched.sum::<usize>()
+        }
         Stage::Contacts => state.contacts.as_ref().map_or(0, |c| {
             let of_shares = c.shares.iter().map(|share| {
                 size_of_val(&share.border[..])
@@ -109,4 +113,9 @@ impl Template {
             + size_of_val(&self.bonds.damping[..])
             + size_of_val(&self.bonds.histories[..])
     }
+}
+
+/// What all arrays of a state take, bytes.
+pub fn all_bytes(state: &State) -> usize {
+    Stage::ALL.iter().map(|&stage| bytes(state, stage)).sum()
 }

@@ -323,7 +323,7 @@ impl Search<'_> {
 /// Loads and gravity on every particle at `end_s`, N and N m.
 pub(super) fn loads(state: &State, end_s: f64) -> Vec<[f64; 6]> {
     let mut wrenches = vec![Wrench::default(); state.particles.len()];
-    add_loads(&state.loads, end_s, &mut wrenches);
+    add_loads(&state.loads, end_s, [0.0; 2], &mut wrenches);
     let with_weight = |(wrench, motion): (&Wrench, &Motion)| {
         let mut load = six(wrench);
         for (k, g) in state.gravity_m_s2.iter().enumerate() {

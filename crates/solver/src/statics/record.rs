@@ -1,10 +1,13 @@
 //! What a static run leaves: its summary, its text, its files.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use dem_io::Result;
+use dem_io::body::mass::BodyMass;
 use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
 use dem_io::scene::Scene;
+use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::Serialize;
 
@@ -15,10 +18,12 @@ use crate::machine::machine;
 use crate::measure::Gauge;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
+use crate::output::inputs::Inputs;
 use crate::output::series;
 use crate::output::summary::{Summary, Verdict, measure_lines};
 use crate::physics::bond::failure::CauseCounts;
 use crate::run::RunSettings;
+use crate::stages::bonds::largest_strain;
 use crate::state::State;
 
 /// Residual over the largest bond force that is worth a word.
@@ -98,10 +103,10 @@ impl EquilibriumSummary {
         writeln!(
             f,
             "{}: equilibrium at {} s in {} s{}",
-            summary.scene,
+            visible(&summary.scene),
             significant(summary.simulated_s, 6),
             significant(summary.wall_s, 3),
-            results.map_or(String::new(), |folder| format!(" -> {folder}")),
+            results.map_or(String::new(), |folder| format!(" -> {}", visible(folder))),
         )?;
         measure_lines(&summary.measures, f)?;
         let steps = |count: usize, what: &str| {
@@ -122,6 +127,7 @@ impl EquilibriumSummary {
             "solved       {} unknowns; {} freedoms held",
             self.unknowns, self.held
         )?;
+        summary.write_masses(f)?;
         summary.write_verdict(f)
     }
 }
@@ -132,6 +138,7 @@ pub(super) struct AtRest<'a> {
     pub(super) scene: &'a Scene,
     pub(super) gauges: &'a [Gauge],
     pub(super) balance: &'a Balance,
+    pub(super) masses: &'a BTreeMap<String, BodyMass>,
 }
 
 impl AtRest<'_> {
@@ -141,7 +148,7 @@ impl AtRest<'_> {
         settings: &RunSettings<'_>,
         found: EquilibriumSummary,
         (wall_s, processor_s): (f64, Option<f64>),
-        notes: Vec<String>,
+        (notes, inputs): (Vec<String>, Inputs),
     ) -> Summary {
         let state = self.state;
         let fragments = state.clusters.as_ref().map(|clusters| {
@@ -153,6 +160,8 @@ impl AtRest<'_> {
             scene: self.scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
             ended_by: "equilibrium".to_owned(),
+            problem: None,
+            inputs,
             simulated_s: state.time_s,
             wall_s,
             processor_s,
@@ -160,7 +169,10 @@ impl AtRest<'_> {
             machine: machine(),
             particles: state.particles.len(),
             bonds: state.bonds.len(),
+            bodies: self.masses.clone(),
             broken_bonds: 0,
+            largest_bond_strain: largest_strain(&state.bonds, &state.particles.poses),
+            largest_overlap: 0.0,
             broken_by_cause: CauseCounts::default(),
             fragments,
             population: None,

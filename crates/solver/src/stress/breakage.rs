@@ -63,7 +63,7 @@ fn breaks(what: String, body: Body, end_time: &str) -> Member {
 run = {{ end_time = \"{end_time}\" }}
 materials.rock = {{ density = {DENSITY}, young_modulus = \"1 GPa\", poisson_ratio = 0.25 }}
 contacts.rock-rock = {{ restitution = 0.5, friction = 0.5 }}
-bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, failure = {{ tension = \"1 Pa\" }} }}
+bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, failure = {{ tension = \"1 Pa\", compression = \"1 Pa\" }} }}
 bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\", angular_velocity = [0, 0, {spin_rad_s}] }}
 measures.largest_kinetic_energy = {{ quantity = \"kinetic_energy\", at = \"largest\" }}
 measures.smallest_kinetic_energy = {{ quantity = \"kinetic_energy\", at = \"smallest\" }}

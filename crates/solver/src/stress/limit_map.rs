@@ -75,7 +75,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
             return Ok(true);
         }
         if interrupted.load(Ordering::Relaxed) {
-            return Err(Diagnostic::failed("", "interrupted", ""));
+            return Err(Diagnostic::interrupted("interrupted", ""));
         }
     }
     Ok(false)

@@ -93,7 +93,7 @@ impl Trial {
             Err(error) => match error.kind {
                 Kind::Input => Ok(Outcome::Refused(error.to_string())),
                 Kind::Unstable => Ok(Outcome::Stopped(error.to_string())),
-                Kind::Failed => Err(error),
+                Kind::Failed | Kind::Interrupted => Err(error),
             },
         }
     }

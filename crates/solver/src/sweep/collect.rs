@@ -56,7 +56,8 @@ pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
     let summary = fs::read(job.folder(runs).join("summary.json"));
     let summary = summary
         .ok()
-        .and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+        .filter(|summary: &Value| summary["problem"].is_null());
     let Some(summary) = summary else {
         let said = fs::read_to_string(job.complaint(runs)).unwrap_or_default();
         let last = said.lines().rev().find(|line| !line.trim().is_empty());

@@ -6,7 +6,9 @@ use dem_io::{Diagnostic, Result};
 /// Most processes that are started without being asked twice.
 pub const MOST_UNASKED: u64 = 10_000;
 /// Most processes at all.
-pub const MOST: u64 = 10_000_000;
+pub const MOST: u64 = 1_000_000;
+/// Most runs times axes, which are kept in memory.
+const MOST_CHOICES: u64 = 10_000_000;
 
 /// One choice of values.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,6 +65,16 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
                 study.repeats
             ),
             remedy,
+        ));
+    }
+    if count.saturating_mul(lengths.len() as u64) > MOST_CHOICES {
+        return Err(Diagnostic::input(
+            &study.source,
+            format!(
+                "{count} runs with {} axes each are more than {MOST_CHOICES} values",
+                lengths.len()
+            ),
+            "vary less, or join axes in [together.NAME]",
         ));
     }
     // Not above MOST.
@@ -191,7 +203,7 @@ mod tests {
             "{said}"
         );
         assert_eq!(runs(&million, true).unwrap().len(), 1_000_000);
-        let more = study(&many.replace("COUNT", "100000"));
+        let more = study(&many.replace("COUNT", "99000"));
         assert!(runs(&more, true).is_err());
     }
 }

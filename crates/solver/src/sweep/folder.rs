@@ -3,14 +3,24 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use dem_io::results::write_json;
+use dem_io::results::{Existing, ResultsFolder, write_json};
+use dem_io::safe_write::is_same_file;
 use dem_io::scene::study::{Setting, Study};
 use dem_io::{Diagnostic, Result};
 use serde_json::{Value, json};
 
+use super::jobs::Job;
+use super::plot::is_plot;
+
 const IDENTITY: &str = "study.json";
 const RUNS: &str = "runs";
 const LOCK: &str = ".lock";
+/// Keys of [`IDENTITY`].
+const SCENE_TEXT: &str = "text of the scene";
+const VARY: &str = "[vary]";
+
+/// Files of which a sweep makes one each, besides [`IDENTITY`].
+const TABLES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.html"];
 
 /// The folder of a sweep, and of no other as long as this lives.
 #[derive(Debug)]
@@ -39,7 +49,7 @@ impl SweepFolder {
     /// An earlier sweep by `earlier`, or other files are in it; another sweep is writing into it; it cannot be written to.
     pub fn create(path: &Path, earlier: Earlier, study: &Study, scene_text: &str) -> Result<Self> {
         let place = path.display().to_string();
-        let is_sweep = path.join(IDENTITY).exists();
+        let is_sweep = is_identity(&path.join(IDENTITY));
         if !is_sweep && earlier == Earlier::Collect {
             let remedy = "run the sweep or its --list first, or name its folder with --out";
             return Err(Diagnostic::input(
@@ -67,17 +77,91 @@ impl SweepFolder {
             path: path.to_owned(),
             _lock: lock(path)?,
         };
+        if earlier != Earlier::Collect {
+            folder.refuse_living()?;
+        }
         let identity = identity(study, scene_text);
         if is_sweep && earlier != Earlier::Replace {
             folder.refuse_another(&identity, study)?;
             return Ok(folder);
         }
-        let runs = path.join(RUNS);
-        fs::remove_dir_all(&runs)
-            .and_then(|()| fs::create_dir(&runs))
-            .map_err(|error| cannot(&runs, &error))?;
+        if is_sweep {
+            folder.remove_sweep()?;
+        }
         write_json(&path.join(IDENTITY), &identity)?;
         Ok(folder)
+    }
+
+    /// Removes what an earlier sweep has made, and nothing else.
+    fn remove_sweep(&self) -> Result<()> {
+        for path in entries(&self.path)? {
+            let name = path.file_name().and_then(|name| name.to_str());
+            let is_table = name.is_some_and(|name| TABLES.contains(&name));
+            if is_plain_file(&path) && (is_table || (is_svg(&path) && is_plot(&path))) {
+                fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
+            }
+        }
+        for path in entries(&self.runs())? {
+            let name = path.file_name().and_then(|name| name.to_str());
+            if name.and_then(Job::named).is_none() {
+                continue;
+            }
+            if is_plain_file(&path) {
+                fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
+            } else if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
+                ResultsFolder::create(&path, Existing::Replace)?.remove()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a sweep of which a process goes on, as after a kill of the program that had started it.
+    fn refuse_living(&self) -> Result<()> {
+        let runs = self.runs();
+        for path in entries(&runs)? {
+            let name = path.file_name().and_then(|name| name.to_str());
+            let Some(job) = name.and_then(Job::named) else {
+                continue;
+            };
+            if job.is_alive(&runs) {
+                return Err(Diagnostic::input(
+                    job.folder(&runs).display().to_string(),
+                    format!("run {} of this sweep is still going on", job.run + 1),
+                    "wait until it has ended, or end its process; then say the same again",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a folder in which the sweep would remove or overwrite what it reads. `inputs`: the study, the scene and its files.
+    ///
+    /// # Errors
+    /// One of them stands there under a name that a sweep gives (exit code 2).
+    pub fn refuse_inputs(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+        let is_made = |path: &PathBuf| {
+            let name = path.file_name().and_then(|name| name.to_str());
+            name.is_some_and(|name| TABLES.contains(&name) || name == IDENTITY) || is_svg(path)
+        };
+        let of_sweep = entries(path).unwrap_or_default();
+        let made: Vec<PathBuf> = of_sweep.into_iter().filter(is_made).collect();
+        let runs = path.join(RUNS);
+        let within = |input: &PathBuf| {
+            let whole = (input.canonicalize(), runs.canonicalize());
+            made.iter().any(|file| is_same_file(file, input))
+                || matches!(&whole, (Ok(input), Ok(runs)) if input.starts_with(runs))
+        };
+        match inputs.iter().find(|input| within(input)) {
+            None => Ok(()),
+            Some(input) => Err(Diagnostic::input(
+                input.display().to_string(),
+                format!(
+                    "this is an input of the study, and the sweep in '{}' would replace it",
+                    path.display()
+                ),
+                "name another folder with --out, or copy the file elsewhere and name the copy",
+            )),
+        }
     }
 
     /// The folder.
@@ -107,6 +191,33 @@ impl SweepFolder {
     }
 }
 
+/// Whether this file says what a sweep is of.
+fn is_identity(path: &Path) -> bool {
+    let value: Option<Value> =
+        (fs::read(path).ok()).and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    value.is_some_and(|value| {
+        [SCENE_TEXT, VARY]
+            .iter()
+            .all(|key| value.get(key).is_some())
+    })
+}
+
+fn is_svg(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "svg")
+}
+
+/// A file itself, and no link to one.
+fn is_plain_file(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file())
+}
+
+/// What is in a folder.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let read = fs::read_dir(folder).map_err(|error| cannot(folder, &error))?;
+    let paths: std::io::Result<Vec<PathBuf>> = read.map(|entry| Ok(entry?.path())).collect();
+    paths.map_err(|error| cannot(folder, &error))
+}
+
 /// What decides what runs give: not how often they are done, nor what is made of them.
 fn identity(study: &Study, scene_text: &str) -> Value {
     let settings = |settings: &[Setting]| -> Vec<[String; 2]> {
@@ -120,11 +231,11 @@ fn identity(study: &Study, scene_text: &str) -> Value {
         .collect();
     json!({
         "scene": study.scene.display().to_string(),
-        "text of the scene": scene_text,
+        SCENE_TEXT: scene_text,
         "number of threads": study.threads,
         "combine": format!("{:?}", study.combine),
         "[set]": settings(&study.fixed),
-        "[vary]": axes,
+        VARY: axes,
     })
 }
 

@@ -8,8 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
+use dem_io::results::folder::{is_locked, is_written_to};
 use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
+use serde_json::Value;
 
 use super::collect::Outcome;
 use super::expand::Run;
@@ -40,10 +42,31 @@ impl Job {
         runs.join(format!("{:04}-{}.txt", self.run + 1, self.repeat))
     }
 
+    /// The job whose folder or complaint has this name, such as `0007-2` or `0007-2.txt`.
+    pub fn named(name: &str) -> Option<Self> {
+        let (run, repeat) = name.strip_suffix(".txt").unwrap_or(name).split_once('-')?;
+        let job = Self {
+            run: run.parse::<usize>().ok()?.checked_sub(1)?,
+            repeat: repeat.parse().ok()?,
+        };
+        let is_same = |path: PathBuf| path.as_os_str() == name;
+        let own = [job.folder(Path::new("")), job.complaint(Path::new(""))];
+        own.into_iter().any(is_same).then_some(job)
+    }
+
+    /// Whether its process goes on at this moment, although the sweep that started it may have ended.
+    pub fn is_alive(&self, runs: &Path) -> bool {
+        is_locked(&self.complaint(runs)) || is_written_to(&self.folder(runs))
+    }
+
     /// Whether it has come to its end.
     pub fn is_done(&self, runs: &Path) -> bool {
         let summary = fs::read(self.folder(runs).join("summary.json"));
-        summary.is_ok_and(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).is_ok())
+        let summary = summary
+            .ok()
+            .and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok());
+        // A run that fails leaves a summary, too, which says why.
+        summary.is_some_and(|summary| summary["problem"].is_null())
     }
 }
 
@@ -94,7 +117,10 @@ pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String>
 
 /// The scene and its values.
 pub fn scene_arguments(study: &Study, run: &Run) -> Vec<String> {
-    let mut arguments = vec![study.scene.display().to_string()];
+    let scene = study.scene.display().to_string();
+    // Not to be taken for an option.
+    let here = if scene.starts_with('-') { "./" } else { "" };
+    let mut arguments = vec![format!("{here}{scene}")];
     for setting in run.settings(study) {
         match setting.path.strip_prefix(BODY) {
             Some(body) => {
@@ -124,6 +150,23 @@ pub fn shell_line(program: &str, arguments: &[String], complaint: Option<&Path>)
         line += &format!(" 2> {}", shell_word(&path.display().to_string()));
     }
     line
+}
+
+/// Refuses what a command of `--list` cannot hold: it stands on one line, and is text.
+///
+/// # Errors
+/// The name or value `text`, which stands at `place`, has control characters or is not UTF-8 (exit code 2).
+pub fn refuse_unlistable(place: &str, text: &Path) -> Result<()> {
+    let problem = match text.to_str() {
+        None => "is not UTF-8",
+        Some(text) if text.chars().any(char::is_control) => "holds a control character",
+        Some(_) => return Ok(()),
+    };
+    Err(Diagnostic::input(
+        place,
+        format!("'{}' {problem}", text.display()),
+        "rename it: the command of each run is one line of text",
+    ))
 }
 
 fn shell_word(text: &str) -> String {
@@ -166,8 +209,7 @@ pub fn work(
     let mut done = 0;
     loop {
         if interrupted.load(Ordering::Relaxed) {
-            return Err(Diagnostic::failed(
-                "",
+            return Err(Diagnostic::interrupted(
                 format!("interrupted after {done} of {} runs", todo.len()),
                 "go on with --resume",
             ));
@@ -180,6 +222,9 @@ pub fn work(
                 let problem = format!("cannot be written: {error}");
                 Diagnostic::failed(complaint.display().to_string(), problem, "")
             })?;
+            // The process inherits the lock with its standard error, and holds it as long as it lives. Where the disk
+            // knows no locks, that of its folder is left.
+            let _ = say.try_lock();
             let child = Command::new(&program)
                 .args(arguments(study, &all[job.run], job, runs))
                 .stdin(Stdio::null())
@@ -237,6 +282,81 @@ mod tests {
             (2, 3),
         ];
         assert_eq!(order, wanted);
+    }
+
+    #[test]
+    fn jobs_are_known_by_the_names_of_their_files() {
+        let job = Job { run: 6, repeat: 2 };
+        assert_eq!(Job::named("0007-2"), Some(job));
+        assert_eq!(Job::named("0007-2.txt"), Some(job));
+        let long = Job {
+            run: 12344,
+            repeat: 11,
+        };
+        assert_eq!(Job::named("12345-11"), Some(long));
+        for other in [
+            "",
+            "7-2",
+            "0007",
+            "0000-1",
+            "0007-02",
+            "0007-2.csv",
+            "00007-2",
+            "a-b",
+        ] {
+            assert_eq!(Job::named(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn what_would_split_a_line_is_refused() {
+        for good in ["a b.toml", "it's $(x) `y` \\ \"z\" *é", ""] {
+            assert_eq!(refuse_unlistable("here", Path::new(good)), Ok(()));
+        }
+        for bad in ["a\nreboot", "a\rb", "\u{1b}[2J", "a\tb", "\u{85}"] {
+            let said = refuse_unlistable("here", Path::new(bad)).map_err(|error| error.to_string());
+            let said = said.err().unwrap_or_default();
+            assert!(
+                said.starts_with("here: 'a") || said.starts_with("here: '\\u{"),
+                "{said}"
+            );
+            assert!(
+                said.contains("' holds a control character; rename it"),
+                "{said}"
+            );
+            assert!(!said.chars().any(char::is_control), "{said}");
+        }
+    }
+
+    proptest::proptest! {
+        /// Each line, read by sh, is the command that is meant and no other.
+        #[cfg(unix)]
+        #[test]
+        fn sh_splits_no_line_of_any_names(
+            lines in proptest::collection::vec(
+                proptest::collection::vec("[ -~é\u{202e}\u{2028}$`'\"\\\\;&|<>*?!#~(){}\\[\\]-]{0,12}", 0..6),
+                1..20,
+            )
+        ) {
+            let mut script = String::new();
+            let mut wanted = Vec::new();
+            for arguments in &lines {
+                let mut all = vec!["%s\\0".to_owned()];
+                all.extend(arguments.iter().cloned());
+                // Without any, printf writes its format once.
+                all.push("end".to_owned());
+                script += &shell_line("printf", &all, None);
+                script.push('\n');
+                for argument in &all[1..] {
+                    wanted.extend(argument.bytes());
+                    wanted.push(0);
+                }
+            }
+            let output = Command::new("sh").arg("-c").arg(&script).output();
+            let output = output.map_err(|error| proptest::test_runner::TestCaseError::fail(error.to_string()))?;
+            proptest::prop_assert_eq!(output.stdout, wanted);
+            proptest::prop_assert!(output.stderr.is_empty());
+        }
     }
 
     #[test]

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
+use dem_io::text::for_page;
 use dem_io::units::significant;
 
 use super::curves;
-use super::plot::{escaped, svg};
+use super::plot::svg;
 use super::table::{Judged, Row, SweepTable};
 use super::text::front_of;
 
@@ -25,7 +26,7 @@ pub fn page(table: &SweepTable) -> String {
 }
 
 fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
-    let title = escaped(&format!("Error against run time: {}", table.scene));
+    let title = for_page(&format!("Error against run time: {}", table.scene));
     writeln!(
         out,
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>"
@@ -33,13 +34,13 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
     writeln!(
         out,
         "<p>{}: {} runs, {} each, on {} thread{}. {}; {}.</p>",
-        escaped(&table.study),
+        for_page(&table.study),
         table.runs.len(),
         table.times(),
         table.threads,
         if table.threads == 1 { "" } else { "s" },
-        escaped(&table.machines.join("; ")),
-        escaped(&table.program)
+        for_page(&table.machines.join("; ")),
+        for_page(&table.program)
     )?;
     writeln!(
         out,
@@ -49,8 +50,12 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
          Times hold for this sweep on this machine.</p>"
     )?;
     for (at, measure) in table.measures.iter().enumerate() {
-        writeln!(out, "<h2>{}</h2>", escaped(&measure.name.replace('_', " ")))?;
-        writeln!(out, "<p>Against {}.</p>", escaped(&measure.reference))?;
+        writeln!(
+            out,
+            "<h2>{}</h2>",
+            for_page(&measure.name.replace('_', " "))
+        )?;
+        writeln!(out, "<p>Against {}.</p>", for_page(&measure.reference))?;
         writeln!(out, "{}", svg(table, at, false))?;
         if let Some(plot) = curves::plot(table, at) {
             writeln!(out, "{}", dem_io::results::svg(&plot))?;
@@ -62,7 +67,7 @@ fn write_page(out: &mut String, table: &SweepTable) -> std::fmt::Result {
     if !table.notes.is_empty() {
         writeln!(out, "<h2>Notes</h2>\n<ul>")?;
         for note in &table.notes {
-            writeln!(out, "<li>{}</li>", escaped(note))?;
+            writeln!(out, "<li>{}</li>", for_page(note))?;
         }
         writeln!(out, "</ul>")?;
     }
@@ -74,7 +79,7 @@ fn heads(out: &mut String, names: &[(&str, bool)]) -> std::fmt::Result {
     write!(out, "<tr>")?;
     for (name, is_number) in names {
         let class = if *is_number { " class=\"n\"" } else { "" };
-        write!(out, "<th{class}>{}</th>", escaped(name))?;
+        write!(out, "<th{class}>{}</th>", for_page(name))?;
     }
     writeln!(out, "</tr>")
 }
@@ -87,7 +92,7 @@ fn number(out: &mut String, value: Option<f64>, digits: usize) -> std::fmt::Resu
 fn settings(out: &mut String, row: &Row) -> std::fmt::Result {
     row.settings
         .iter()
-        .try_for_each(|value| write!(out, "<td>{}</td>", escaped(value)))
+        .try_for_each(|value| write!(out, "<td>{}</td>", for_page(value)))
 }
 
 fn write_front(out: &mut String, table: &SweepTable, measure: usize) -> std::fmt::Result {
@@ -144,9 +149,9 @@ fn write_orders(out: &mut String, table: &SweepTable) -> std::fmt::Result {
         writeln!(
             out,
             "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"n\">{:.2}</td><td class=\"n\">{}</td><td>{}</td></tr>",
-            escaped(&order.measure),
-            escaped(&order.along),
-            escaped(&order.of.join(", ")),
+            for_page(&order.measure),
+            for_page(&order.along),
+            for_page(&order.of.join(", ")),
             order.order,
             order.runs,
             order.by
@@ -168,7 +173,7 @@ fn write_failed(out: &mut String, table: &SweepTable) -> std::fmt::Result {
         write!(out, "<tr class=\"bad\"><td class=\"n\">{}</td>", row.number)?;
         settings(out, row)?;
         let why = row.failed.as_deref().unwrap_or_default();
-        writeln!(out, "<td>{}</td></tr>", escaped(why))?;
+        writeln!(out, "<td>{}</td></tr>", for_page(why))?;
     }
     writeln!(out, "</table></div>")
 }

@@ -1,6 +1,11 @@
 //! Error against run time as SVG: both axes logarithmic, series told apart by colour and shape, the front filled and joined.
 
 use std::fmt::Write;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use dem_io::text::for_page;
 
 use super::scale::{Scale, tick};
 use super::table::{Row, SweepTable};
@@ -27,6 +32,15 @@ const SHAPES: usize = 5;
 
 /// How the picture begins.
 const BEGIN: &str = "<!-- dem-run sweep -->\n";
+
+/// Whether a file is a plot of a sweep, of errors or of curves.
+pub(super) fn is_plot(path: &Path) -> bool {
+    [BEGIN, dem_io::results::plots::BEGIN].iter().any(|begin| {
+        let mut found = vec![0; begin.len()];
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut found));
+        read.is_ok() && found == begin.as_bytes()
+    })
+}
 
 /// A run in the plot.
 struct Mark<'a> {
@@ -88,7 +102,7 @@ fn write_svg(
         column.name.replace('_', " "),
         table.time
     );
-    writeln!(out, "<title>{}</title>", escaped(&title))?;
+    writeln!(out, "<title>{}</title>", for_page(&title))?;
     writeln!(
         out,
         "<rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#ffffff\"/>"
@@ -97,7 +111,7 @@ fn write_svg(
         out,
         "<text x=\"{:.1}\" y=\"27\" text-anchor=\"middle\" font-size=\"15\" font-weight=\"bold\">{}</text>",
         f64::midpoint(LEFT, RIGHT),
-        escaped(&shortened(&title, 60))
+        for_page(&shortened(&title, 60))
     )?;
     write_axes(out, &x, &y)?;
     let is_difference = marks.iter().any(|mark| {
@@ -281,7 +295,7 @@ fn write_mark(
         out,
         "<title>run {}: {}; {} s, error {}</title>",
         mark.row.number,
-        escaped(&table.named(mark.row)),
+        for_page(&table.named(mark.row)),
         short(mark.time_s),
         short(mark.error)
     )?;
@@ -316,7 +330,7 @@ fn write_legend(out: &mut String, table: &SweepTable, marks: &[Mark<'_>]) -> std
     let mut y = TOP + 8.0;
     writeln!(out, "<g class=\"legend\">")?;
     let text = |x: f64, y: f64, text: &str| {
-        let text = escaped(&shortened(text, LETTERS));
+        let text = for_page(&shortened(text, LETTERS));
         format!("<text x=\"{x}\" y=\"{:.1}\">{text}</text>", y + 4.0)
     };
     if let Some(axis) = table.series.map(|at| &table.axes[at]) {
@@ -373,18 +387,4 @@ fn shortened(text: &str, letters: usize) -> String {
     let mut short: String = text.chars().take(letters - 1).collect();
     short.push('…');
     short
-}
-
-/// Text as it may stand in HTML and SVG.
-pub(super) fn escaped(text: &str) -> String {
-    text.chars()
-        .filter(|letter| !letter.is_control())
-        .map(|letter| match letter {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            '>' => "&gt;".to_owned(),
-            '"' => "&quot;".to_owned(),
-            other => other.to_string(),
-        })
-        .collect()
 }

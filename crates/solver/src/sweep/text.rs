@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::table::{Row, SweepTable};
@@ -102,14 +103,14 @@ impl fmt::Display for SweepTable {
         writeln!(
             f,
             "{}: {} runs of {}, {} each, on {} thread{}",
-            self.study,
+            visible(&self.study),
             self.runs.len(),
-            self.scene,
+            visible(&self.scene),
             self.times(),
             self.threads,
             if self.threads == 1 { "" } else { "s" },
         )?;
-        writeln!(f, "machine      {}", self.machines.join("; "))?;
+        writeln!(f, "machine      {}", visible(&self.machines.join("; ")))?;
         for (at, measure) in self.measures.iter().enumerate() {
             let front = front_of(self, at);
             writeln!(
@@ -131,7 +132,7 @@ impl fmt::Display for SweepTable {
                         "  {:>9} s  error {:<9} {}{faster}",
                         significant(row.time_s.unwrap_or(f64::NAN), 3),
                         significant(judged.sure_error().unwrap_or(f64::NAN), 2),
-                        self.named(row)
+                        visible(&self.named(row))
                     )
                 })
                 .collect();
@@ -145,7 +146,7 @@ impl fmt::Display for SweepTable {
                 let of = if of.is_empty() {
                     of
                 } else {
-                    format!(" ({of})")
+                    format!(" ({})", visible(&of))
                 };
                 format!(
                     "order        {} along {}{of}: {:.2} from {} runs",
@@ -157,11 +158,11 @@ impl fmt::Display for SweepTable {
         let lines: Vec<String> = self
             .failed()
             .map(|row| {
-                let why = row.failed.as_deref().unwrap_or_default();
+                let why = visible(row.failed.as_deref().unwrap_or_default());
                 format!(
                     "failed       run {}, {}: {why}",
                     row.number,
-                    self.named(row)
+                    visible(&self.named(row))
                 )
             })
             .collect();
@@ -169,7 +170,7 @@ impl fmt::Display for SweepTable {
         let lines: Vec<String> = self
             .notes
             .iter()
-            .map(|note| format!("note         {note}"))
+            .map(|note| format!("note         {}", visible(note)))
             .collect();
         cut(f, &lines)
     }

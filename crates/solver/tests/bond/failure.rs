@@ -361,10 +361,10 @@ fn causes_are_counted_and_said() {
 
 /// Loads, and radii of bonds.
 fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
-    let modes = (-1e3..1e3, 0.0..1e3, 0.0..3.0, 0.0..3.0, 1e-4..1e-2);
+    let any = (-1e3..1e3, 0.0..1e3, 0.0..3.0, 0.0..3.0, 1e-4..1e-2);
     // Axial force and bending that nearly cancel at an edge, too.
-    let cancel = prop::option::of((any::<bool>(), -15..0));
-    (modes, cancel).prop_map(
+    let cancel = prop::option::of((proptest::bool::ANY, -15..0));
+    (any, cancel).prop_map(
         |((normal_n, shear_n, torsion_n_m, bending_n_m, radius_m), cancel)| {
             let normal_n = match cancel {
                 Some((is_pulled, digits)) => {

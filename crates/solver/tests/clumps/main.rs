@@ -12,6 +12,7 @@ mod again;
 mod books;
 mod carried;
 mod inlets;
+mod masses;
 mod outer;
 mod refused;
 mod regions;

@@ -7,6 +7,7 @@
 )]
 
 mod books;
+mod documented;
 mod hertz;
 mod impact;
 mod keeping;

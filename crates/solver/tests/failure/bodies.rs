@@ -118,6 +118,7 @@ pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, spee
         ..Held::default()
     };
     state.supports.push(SetSupport {
+        end_s: f64::INFINITY,
         holds,
         factor: Factor::One,
         held: particles.map(held).collect(),
@@ -143,6 +144,7 @@ pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n
     let points =
         (0..=3 * SOFT_STEPS).map(|step| [f64::from(step) * state.time_step_s, factor(step)]);
     state.loads.push(SetLoad {
+        end_s: f64::INFINITY,
         particles: vec![particle],
         force_n,
         torque_n_m,

@@ -44,6 +44,7 @@ fn shaken(incremental: bool, besides: Besides) -> State {
     match besides {
         Besides::Nothing => {}
         Besides::Load => state.loads.push(SetLoad {
+            end_s: f64::INFINITY,
             particles: vec![6],
             force_n: [
                 0.5 * STRENGTH_PA * area_m2(),

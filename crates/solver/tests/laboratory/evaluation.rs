@@ -94,6 +94,9 @@ pub(crate) fn evaluated(test: &Test, setup: &Setup, record: &Record, broken: boo
     evaluated_at(40.0, test, setup, record, broken)
 }
 
+/// Bonds of the body, broken ones included.
+const ALL_BONDS: usize = 20;
+
 fn evaluated_at(
     lowest_frequency_hz: f64,
     test: &Test,
@@ -110,6 +113,7 @@ fn evaluated_at(
         bonds: Some(&bonds),
         lowest_frequency_hz,
         broken,
+        all_bonds: ALL_BONDS,
     })
 }
 
@@ -269,10 +273,23 @@ fn a_body_that_holds_has_no_strength() {
         assert_eq!(result.figure(name), None, "{name}");
     }
     assert_near(result.figure("largest force"), 50.0);
-    assert!(result.to_string().contains("the stroke was done first"));
+    let [broken_bonds, all_bonds] = result.broken_bonds;
+    assert_eq!((broken_bonds, all_bonds), (record.broken.len(), ALL_BONDS));
+    let text = result.to_string();
+    let share = format!(
+        "the load did not fall to half of its largest; {broken_bonds} of {ALL_BONDS} bonds broke"
+    );
+    assert!(text.contains(&share), "{text}");
     let doubts = result.doubts();
     assert_eq!(doubts.len(), 1, "{doubts:?}");
-    assert!(doubts[0].contains("the body did not break"), "{doubts:?}");
+    let said =
+        "the load did not fall to half of its largest within the stroke, so there is no strength";
+    assert!(doubts[0].starts_with(said), "{doubts:?}");
+    let share = 100.0 * broken_bonds as f64 / ALL_BONDS as f64;
+    assert!(
+        doubts[0].contains(&format!("although {share:.0} % of the bonds are broken")),
+        "{doubts:?}"
+    );
     // Whoever asks for a stiffness alone has it.
     let mut elastic = test.clone();
     elastic.strength_pa = None;
@@ -291,6 +308,7 @@ fn bonds_without_strength_are_not_calibrated() {
         bonds: Some(&clay(&SCENE.replace("0.185 MPa", "0 Pa"))),
         lowest_frequency_hz: 40.0,
         broken: true,
+        all_bonds: ALL_BONDS,
     });
     assert!(!result.calibration.is_empty());
     assert!(result.calibration.iter().all(|f| f.value.is_finite()));

@@ -259,7 +259,7 @@ fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search
     let extra = "clusters.interval = 1\nrun.gravity = [0, 0, -9.81]\n\
          walls.floor = { plane = { point = [0, 0, -4e-3], normal = [0.2, 0.1, 1] }, material = \"cake\" }";
     let text = cube(0.25, extra)
-        .replace("tension = 1e9", "tension = 1.5e5, weibull_modulus = 2")
+        .replace("tension = 1e9", "tension = 5e4, weibull_modulus = 2")
         .replace("bodies.cube = {", "bodies.cube = { velocity = [0, 0, -2],");
     let Plan { mut state, .. } = planned(&text);
     let mut looks = 0;

@@ -47,6 +47,7 @@ fn hold(state: &mut State, particles: &[u32], holds: [Option<Hold>; 6], factor: 
         ..Held::default()
     };
     state.supports.push(SetSupport {
+        end_s: f64::INFINITY,
         holds,
         factor,
         held: particles.iter().map(held).collect(),
@@ -61,6 +62,7 @@ fn fix(state: &mut State, particles: &[u32]) {
 /// Loads each of these particles.
 fn load(state: &mut State, particles: &[u32], force_n: [f64; 3], torque_n_m: [f64; 3]) {
     state.loads.push(SetLoad {
+        end_s: f64::INFINITY,
         particles: particles.to_vec(),
         force_n,
         torque_n_m,

@@ -216,6 +216,7 @@ fn a_chain_rings_with_the_modes_of_the_reference() {
                 let mut state = bar(model(&name), ELASTIC, step_s);
                 if clamped {
                     state.supports = vec![SetSupport {
+                        end_s: f64::INFINITY,
                         holds: [Some(Hold::Fixed); 6],
                         factor: Factor::One,
                         held: vec![Held::default()],

@@ -15,6 +15,7 @@ const LENGTH: f64 = 300.0 * BAR_LIMIT_S;
 
 fn load(particle: u32, factor: Factor) -> SetLoad {
     SetLoad {
+        end_s: f64::INFINITY,
         particles: vec![particle, 7],
         force_n: [3e5, -2e6, 1e6],
         torque_n_m: [1e5, 5e4, -2e5],
@@ -24,6 +25,7 @@ fn load(particle: u32, factor: Factor) -> SetLoad {
 
 fn support(particle: u32, holds: [Option<Hold>; 6], factor: Factor) -> SetSupport {
     SetSupport {
+        end_s: f64::INFINITY,
         holds,
         factor,
         held: vec![Held {

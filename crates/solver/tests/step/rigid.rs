@@ -70,6 +70,7 @@ fn scene(
     damp(&mut state, BondDamping::ChenByMode(0.05));
     state.gravity_m_s2 = gravity.into();
     state.loads = vec![SetLoad {
+        end_s: f64::INFINITY,
         particles: vec![pulled],
         force_n: by[0].into(),
         torque_n_m: by[1].into(),

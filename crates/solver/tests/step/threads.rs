@@ -66,12 +66,14 @@ fn scene(shares: usize) -> State {
     damp_particles(&mut state, 0.1);
     state.gravity_m_s2 = [1.0, 2.0, -9.81];
     state.loads = vec![SetLoad {
+        end_s: f64::INFINITY,
         particles: (100..1400).step_by(7).collect(),
         force_n: [1e-3, 2e-3, 0.0],
         torque_n_m: [0.0, 1e-7, 0.0],
         factor: Factor::Ramp { until_s: 1e-4 },
     }];
     state.supports = vec![SetSupport {
+        end_s: f64::INFINITY,
         holds: [
             Some(Hold::Fixed),
             None,

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{STEPS, bad, bench, csv, good, json};
+use super::{STEPS, bad, bench, csv, good, json, partly};
 use crate::Bench;
 
 #[test]
@@ -20,12 +20,34 @@ names = ["a,b", "c"]
 reference = { value = 1 }
 "#;
     let bench = bench(study);
-    let said = good(&bench, &[]);
+    let (table, said) = partly(&bench, &[]);
     assert!(
-        said.contains("failed       run 3, run.time_step 900 us, breaks a,b: "),
+        table.contains("failed       run 3, run.time_step 900 us, breaks a,b: "),
+        "{table}"
+    );
+    assert!(table.contains("the largest stable"), "{table}");
+    assert!(
+        said.contains("2 of 4 runs did not come to their end; the first: run 3, run.time_step 900 us, breaks a,b: ")
+            && said.contains("the largest stable")
+            && said.ends_with("--resume tries them again\n"),
         "{said}"
     );
-    assert!(said.contains("the largest stable"), "{said}");
+    // The same where nothing is run, and where nothing else is said; the tables are written all the same.
+    let written = fs::read(bench.path("study-sweep/sweep.csv")).unwrap();
+    for options in [
+        &["--collect"][..],
+        &["--collect", "--quiet"],
+        &["--collect", "--json"],
+    ] {
+        fs::remove_file(bench.path("study-sweep/sweep.csv")).unwrap();
+        let (table, again) = partly(&bench, options);
+        assert_eq!(again, said);
+        assert_eq!(table.is_empty(), options.contains(&"--quiet"), "{table}");
+        assert_eq!(
+            fs::read(bench.path("study-sweep/sweep.csv")).unwrap(),
+            written
+        );
+    }
     let rows = csv(&bench.path("study-sweep/sweep.csv"));
     assert_eq!(rows[0]["breaks"], "a,b");
     assert_eq!(rows[0]["pieces_error"], "0e0");
@@ -37,7 +59,7 @@ reference = { value = 1 }
     bench.write("study.toml", all);
     let said = bad(&bench, &["--force"], 1);
     assert!(
-        said.contains("study.toml: no run came to its end; the first: "),
+        said.contains("study.toml: no run came to its end; the first: run 1, run.time_step 800 us, breaks a,b: "),
         "{said}"
     );
 }
@@ -75,7 +97,7 @@ quantity = "position_x"
         "study.toml",
         "version = 1\nscene = \"spring.toml\"\n[vary]\n\"inlets.feed.start\" = [\"0 s\", \"20 ms\"]\n[measures.place]\nreference = { value = \"2 cm\" }\n",
     );
-    let said = good(&bench, &[]);
+    let (said, _) = partly(&bench, &[]);
     assert!(
         said.contains(
             "failed       run 2, inlets.feed.start 20 ms: the measure 'place' is not a number"
@@ -103,12 +125,18 @@ fn steps_above_the_limit_are_for_trials() {
             "repeats = 1\nset = { \"run.end_time\" = \"0.2 s\", \"loads.tip.torque\" = [1e3, 1e3, 1e3] }",
         );
     let forced = bench(&study.replace("repeats = 1", "repeats = 1\nforce_step = true"));
-    let said = good(&forced, &[]);
+    let (said, _) = partly(&forced, &[]);
     assert!(said.contains("1.05: unstable at step"), "{said}");
     let table = json(&forced);
     assert!(table["runs"][0]["failed"].is_null() && table["runs"][1]["failed"].is_string());
+    // What failed is tried again.
+    let failed = (table["runs"].as_array().unwrap().iter())
+        .filter(|run| run["failed"].is_string())
+        .count();
+    let list = good(&forced, &["--list", "--resume"]);
+    assert_eq!(list.lines().count(), failed, "{list}");
     let refused = bench(&study);
-    let said = good(&refused, &[]);
+    let (said, _) = partly(&refused, &[]);
     assert!(
         said.contains("run.safety: 1.05 is no share of the largest stable step"),
         "{said}"

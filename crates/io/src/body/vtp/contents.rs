@@ -4,7 +4,7 @@ use super::decode::{DAMAGED, Number, Values};
 use super::header::{Array, Counts, Role};
 use super::{
     BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
-    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
+    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use crate::body::{Body, Parts};
 use crate::results::stored_frame::{self as frame, StoredFrame};
@@ -43,6 +43,30 @@ impl Contents {
             ));
         }
         Ok(())
+    }
+
+    /// How many values an array can have at most.
+    pub(super) fn most_values(&self, role: Role) -> u64 {
+        // A field holds a text at most; what others add may be larger.
+        const OF_FIELD: u64 = 1 << 14;
+        const OF_OTHER: u64 = 1 << 16;
+        const OF_OTHER_PER_CELL: u64 = 1 << 10;
+        let counts = self.counts.unwrap_or_default();
+        let others = counts.cells_before.saturating_add(counts.cells_after);
+        let cells = counts.lines.saturating_add(others);
+        match role {
+            Role::Positions => counts.points.saturating_mul(3),
+            Role::Radii | Role::Clusters | Role::Densities => counts.points,
+            Role::Connectivity => counts.lines.saturating_mul(2),
+            Role::Offsets => counts.lines,
+            Role::BondRadii | Role::BondLengths | Role::Broken => cells,
+            Role::Field(_) => OF_FIELD,
+            Role::Other => {
+                let all = counts.points.saturating_add(cells);
+                all.saturating_mul(OF_OTHER_PER_CELL)
+                    .saturating_add(OF_OTHER)
+            }
+        }
     }
 
     /// Takes in that there is point data of this name.
@@ -172,6 +196,7 @@ impl Contents {
             PARTICLE_DENSITY => about.particle_density_kg_m3 = first.map(float),
             OVERLAP => about.overlap = first.map(float),
             BONDING_RADIUS => about.bonding_radius = first.map(float),
+            WARNINGS => about.warnings = texts(&numbers)?,
             frame::TIME => self.of_frame.time_s = first.map(float),
             _ => {}
         }
@@ -359,6 +384,14 @@ fn whole(number: Number) -> Result<u64> {
         format!("{} is not a whole number of 64 bits", float(number)),
         DAMAGED,
     ))
+}
+
+/// Texts of one line, each of which ends at a zero.
+fn texts(numbers: &[Number]) -> Result<Vec<String>> {
+    let each = numbers.split(|number| *number == Number::Integer(0));
+    let each = each.filter(|text| !text.is_empty()).map(text);
+    let on_one_line = |text: String| text.replace(char::is_control, " ");
+    each.map(|text| text.map(on_one_line)).collect()
 }
 
 /// A text, which ends at the first zero. Its bytes may be signed or not.

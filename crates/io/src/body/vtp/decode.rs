@@ -43,7 +43,7 @@ impl Scalar {
         })
     }
 
-    fn bytes(self) -> usize {
+    pub(super) fn bytes(self) -> usize {
         match self {
             Self::Int8 | Self::UInt8 => 1,
             Self::Int16 | Self::UInt16 => 2,
@@ -180,8 +180,14 @@ fn each_chunk<const SIZE: usize>(
         .try_for_each(|&value| take(number(value)))
 }
 
-/// What an error while reading means: an early end, or a disk that does not answer.
+/// What an error while reading means: an early end, bytes that are no body, or a disk that does not answer.
 pub(super) fn unreadable(error: &io::Error) -> Diagnostic {
+    let refused = error
+        .get_ref()
+        .and_then(|inner| inner.downcast_ref::<Diagnostic>());
+    if let Some(refused) = refused {
+        return refused.clone();
+    }
     if error.kind() == ErrorKind::UnexpectedEof {
         return truncated();
     }

@@ -5,7 +5,7 @@ use quick_xml::events::BytesStart;
 use super::decode::{DAMAGED, Scalar};
 use super::{
     BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM,
-    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION,
+    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use crate::results::stored_frame as frame;
 use crate::{Diagnostic, Result};
@@ -101,7 +101,7 @@ impl Array {
 }
 
 fn role_of(section: &str, name: &str) -> Role {
-    const FIELDS: [&str; 10] = [
+    const FIELDS: [&str; 11] = [
         VERSION,
         LENGTH_UNIT,
         PROGRAM,
@@ -112,6 +112,7 @@ fn role_of(section: &str, name: &str) -> Role {
         OVERLAP,
         BONDING_RADIUS,
         SEED,
+        WARNINGS,
     ];
     match (section, name) {
         ("Points", _) => Role::Positions,
@@ -252,6 +253,15 @@ fn count(element: &BytesStart<'_>, name: &str) -> Result<Option<u64>> {
 
 fn missing(name: &str) -> Diagnostic {
     Diagnostic::input("", format!("the attribute {name} is missing"), DAMAGED)
+}
+
+/// The file is none of VTK.
+pub(super) fn not_vtp() -> Diagnostic {
+    Diagnostic::input(
+        "",
+        "this is not a VTK XML file",
+        "a .vtp file begins with <VTKFile type=\"PolyData\" ...>",
+    )
 }
 
 /// XML that is not well formed.

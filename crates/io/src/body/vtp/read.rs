@@ -6,8 +6,11 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::contents::Contents;
-use super::decode::{DAMAGED, Values, array_bytes, base64_array, skip, truncated, unreadable};
-use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged};
+use super::decode::{
+    DAMAGED, Scalar, Values, array_bytes, base64_array, skip, truncated, unreadable,
+};
+use super::guard::Guarded;
+use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged, not_vtp};
 use crate::body::Body;
 use crate::results::stored_frame::StoredFrame;
 use crate::{Diagnostic, Result};
@@ -37,11 +40,11 @@ fn contents(input: &mut dyn BufRead, layout: Layout) -> Result<Contents> {
         layout,
         ..File::default()
     };
-    let mut xml = Reader::from_reader(input);
+    let mut xml = Reader::from_reader(Guarded::new(input));
     match read_xml(&mut xml, &mut file)? {
         Appended::None => {}
-        Appended::Raw => read_raw(xml.into_inner(), &mut file)?,
-        Appended::Base64 => read_base64(xml.into_inner(), &mut file)?,
+        Appended::Raw => read_raw(xml.into_inner().into_input(), &mut file)?,
+        Appended::Base64 => read_base64(xml.into_inner().into_input(), &mut file)?,
     }
     Ok(file.contents)
 }
@@ -64,7 +67,7 @@ struct File {
 }
 
 /// Reads the XML up to the appended data, or to its end if there are none.
-fn read_xml(xml: &mut Reader<&mut dyn BufRead>, file: &mut File) -> Result<Appended> {
+fn read_xml(xml: &mut Reader<Guarded<'_>>, file: &mut File) -> Result<Appended> {
     let mut buffer = Vec::new();
     let mut open: Vec<String> = Vec::new();
     // The array that is open, and its text so far.
@@ -92,7 +95,12 @@ fn read_xml(xml: &mut Reader<&mut dyn BufRead>, file: &mut File) -> Result<Appen
                 };
             }
             Event::Start(element) => {
-                if let Some(declared) = file.element(&element, open.last())? {
+                let declared = file.element(&element, open.last())?;
+                xml.get_mut().begin();
+                if let Some(declared) = declared {
+                    let most = file.contents.most_values(declared.role);
+                    let is_decimal = declared.format == Format::Ascii;
+                    xml.get_mut().expect_values(most, is_decimal);
                     array = Some((declared, String::new()));
                 }
                 open.push(element.name().as_ref().to_owned());
@@ -129,19 +137,13 @@ fn read_xml(xml: &mut Reader<&mut dyn BufRead>, file: &mut File) -> Result<Appen
             }
             _ => {}
         }
+        let in_values = array.is_some() && open.last().is_some_and(|name| is_array(name));
+        xml.get_mut().set_in_values(in_values);
     }
 }
 
 fn is_array(element: &str) -> bool {
     matches!(element, "DataArray" | "Array")
-}
-
-fn not_vtp() -> Diagnostic {
-    Diagnostic::input(
-        "",
-        "this is not a VTK XML file",
-        "a .vtp file begins with <VTKFile type=\"PolyData\" ...>",
-    )
 }
 
 impl File {
@@ -195,6 +197,23 @@ impl File {
         )
     }
 
+    /// How many bytes an array can have at most.
+    fn most_bytes(&self, array: &Array) -> u64 {
+        let of_value = array.scalar().map_or(8, Scalar::bytes);
+        let most = self.contents.most_values(array.role);
+        most.saturating_mul(of_value as u64)
+    }
+
+    /// Whether an array can have so many bytes.
+    fn check_size(&self, array: &Array, bytes: u64) -> Result<()> {
+        let most = self.most_bytes(array);
+        if bytes <= most {
+            return Ok(());
+        }
+        let problem = format!("{bytes} bytes, but the header says {most}");
+        Err(Diagnostic::input("", problem, DAMAGED))
+    }
+
     fn header_bytes(&self) -> usize {
         self.encoding.map_or(8, |encoding| encoding.header_bytes)
     }
@@ -220,6 +239,8 @@ fn read_raw(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
         })?;
         skip(input, gap)?;
         let bytes = array_bytes(input, file.header_bytes()).map_err(|error| array.within(error))?;
+        file.check_size(&array, bytes)
+            .map_err(|error| array.within(error))?;
         if array.role == Role::Other {
             skip(input, bytes)?;
         } else {
@@ -240,13 +261,20 @@ fn read_raw(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
 fn read_base64(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
     to_appended_data(input)?;
     let mut text = Vec::new();
-    input
+    let arrays = file.appended.iter();
+    let most = arrays.fold(1 << 16, |sum: u64, (_, array)| {
+        sum.saturating_add(file.most_bytes(array).saturating_mul(2))
+    });
+    Read::take(&mut *input, most)
+        .read_until(b'<', &mut text)
+        .map_err(|error| unreadable(&error))?;
+    if !text.ends_with(b"<") {
+        return Err(truncated());
+    }
+    let end = text.len() - 1;
+    Read::take(&mut *input, 1 << 16)
         .read_to_end(&mut text)
         .map_err(|error| unreadable(&error))?;
-    let end = text
-        .iter()
-        .position(|&byte| byte == b'<')
-        .ok_or_else(truncated)?;
     check_end(&text[end..])?;
     for (offset, array) in file.take_appended() {
         let start = usize::try_from(offset).unwrap_or(end).min(end);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::text::{shortened, width};
 use super::{Area, HEIGHT, WIDTH};
-use crate::xml::escaped;
+use crate::text::for_page;
 
 const FONT: f64 = 12.0;
 const ROW: f64 = 17.0;
@@ -126,7 +126,7 @@ impl Legend {
                 out,
                 "<path d=\"M{x:.2} {y:.2}H{end:.2}\" fill=\"none\" {stroke}/>"
             )?;
-            let name = escaped(&shortened(&entry.name, FONT, NAME));
+            let name = for_page(&shortened(&entry.name, FONT, NAME));
             writeln!(
                 out,
                 "<text x=\"{:.2}\" y=\"{:.2}\">{name}</text>",

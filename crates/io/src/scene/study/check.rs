@@ -77,13 +77,14 @@ pub fn override_text(setting: &Setting) -> String {
 
 /// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it for a new one.
 fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
-    const NAMED: [&str; 11] = [
+    const NAMED: [&str; 12] = [
         "materials",
         "contacts",
         "bonds",
         "bodies",
         "walls",
         "sets",
+        "initial",
         "supports",
         "loads",
         "regions",

@@ -6,37 +6,12 @@ use super::{Axis, AxisValue, BODY, Setting, key, tidy};
 use crate::Result;
 use crate::scene::field::Field;
 use crate::scene::tree::{Node, Value, shortened};
-use crate::units::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, DENSITY, Dimension, ENERGY, ENERGY_PER_MASS, FORCE,
-    LENGTH, MASS, MASS_RATE, NUMBER, RATE, STIFFNESS, STRESS, TIME, TORQUE, VELOCITY,
-    VISCOUS_DAMPING, quantity,
-};
+use crate::units::{DIMENSIONS, quantity};
 
-/// Most values of a range.
-const MOST_VALUES: u64 = 1_000_000;
+/// Most values of a range, and of all axes of a study.
+pub(super) const MOST_VALUES: u64 = 100_000;
 /// Longest label, in characters.
 const LONGEST_LABEL: usize = 40;
-
-const DIMENSIONS: [Dimension; 18] = [
-    NUMBER,
-    LENGTH,
-    TIME,
-    DENSITY,
-    ANGLE,
-    VELOCITY,
-    ANGULAR_VELOCITY,
-    ACCELERATION,
-    STRESS,
-    FORCE,
-    TORQUE,
-    MASS,
-    STIFFNESS,
-    ENERGY,
-    ENERGY_PER_MASS,
-    MASS_RATE,
-    RATE,
-    VISCOUS_DAMPING,
-];
 
 /// The axis of one path: a list, `{ values, size, names }`, or `{ from, to, count, spacing }`.
 pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis> {

@@ -6,6 +6,7 @@ use crate::physics::contact::touch::{Touch, touch};
 use crate::stages::motion::{ordered_sum, ordered_sums};
 use crate::state::contacts::{Contacts, Law, Memory, Rolling};
 use crate::state::particles::{Particles, Pose};
+use nalgebra::Vector3;
 
 /// Overlap of two particles, m; below 0 where they are apart.
 pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
@@ -53,6 +54,36 @@ fn stored_j(
     let mut touch = touch((b - a).into(), balls, 0.0);
     touch.overlap_m = memory.overlap_m();
     stored_energy_j(law, rolling, &touch, memory)
+}
+
+/// Force of a contact on the second of a pair, N, from what it remembers.
+pub fn pair_force_n(
+    contacts: &Contacts,
+    particles: &Particles,
+    pair: [u32; 2],
+    memory: &Memory,
+) -> Vector3<f64> {
+    let ends = pair.map(|end| end as usize);
+    let [a, b] = ends.map(|i| particles.poses[i].place());
+    let balls = ends.map(|i| particles.ball_at_rest(i));
+    let mut touch = touch((b - a).into(), balls, 0.0);
+    touch.overlap_m = memory.overlap_m();
+    match &contacts.kinds[contacts.kind(pair)].law {
+        Law::HertzMindlin(law) => stored_force_n(law, &touch, memory),
+        Law::Linear(law) => stored_force_n(law, &touch, memory),
+    }
+}
+
+/// Force of a touch on its second end, be it of two particles or of a wall and a particle, from what it remembers, N.
+pub(in crate::stages) fn stored_force_n(
+    law: &impl NormalLaw<f64>,
+    touch: &Touch,
+    memory: &Memory,
+) -> Vector3<f64> {
+    let grip = law.grip(touch, touch.overlap_m, 0.0);
+    let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
+    let normal = Vector3::from(touch.normal) * grip.elastic_n;
+    normal - vector(memory.slid) * grip.tangential_n_m[1] + vector(memory.damped)
 }
 
 /// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.

@@ -1,0 +1,39 @@
+//! What both programs do alike: signals, completions of shells, man pages.
+
+use clap::Command;
+pub use clap_complete::Shell;
+
+use crate::Result;
+use crate::safe_write::write_standard_output;
+
+/// Lets a file that grows beyond a limit of the shell (`ulimit -f`) be an error of the write, as a
+/// full disk is, and not the end of the program.
+pub fn take_size_limits_as_errors() {
+    #[cfg(unix)]
+    {
+        // Once it is caught, the write fails; nobody looks at the flag. Without the handler the
+        // program would be ended and leave an unfinished file, no more.
+        let caught = std::sync::Arc::default();
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, caught);
+    }
+}
+
+/// Prints a script with which a shell completes the options of a program.
+///
+/// # Errors
+/// As [`write_standard_output`].
+pub fn print_completions(shell: Shell, mut command: Command) -> Result<()> {
+    let name = command.get_name().to_owned();
+    // Its writer may not fail.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, name, &mut script);
+    write_standard_output(|out| out.write_all(&script))
+}
+
+/// Prints the man page of a program.
+///
+/// # Errors
+/// As [`write_standard_output`].
+pub fn print_man_page(command: Command) -> Result<()> {
+    write_standard_output(|mut out| clap_mangen::Man::new(command).render(&mut out))
+}

@@ -1,0 +1,103 @@
+//! Text of others on a terminal and on a page. Names of files and what scenes say may hold anything: nothing in them
+//! may move a cursor, begin a line, turn the direction of writing or open a tag.
+
+use std::borrow::Cow;
+
+use crate::xml::escaped;
+
+/// Whether a terminal would obey this character instead of showing it: control characters, separators of lines, and
+/// those that turn the direction of writing.
+fn is_obeyed(letter: char) -> bool {
+    let turns_or_separates = matches!(
+        letter,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    letter.is_control() || turns_or_separates
+}
+
+/// `text` on one line, with each character that a terminal would obey as `\u{1b}`.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    escape(text, is_obeyed)
+}
+
+/// The same of several lines, which stay lines, with tabs in them.
+pub(crate) fn visible_lines(text: &str) -> Cow<'_, str> {
+    escape(text, |letter| {
+        !matches!(letter, '\n' | '\t') && is_obeyed(letter)
+    })
+}
+
+fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.chars().any(&is_escaped) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        if is_escaped(letter) {
+            shown.extend(letter.escape_unicode());
+        } else {
+            shown.push(letter);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// JSON with the characters that a terminal would obey as `\u001b`, which mean the same there.
+pub(crate) fn visible_json(json: &str) -> Cow<'_, str> {
+    let is_escaped = |letter: char| letter != '\n' && is_obeyed(letter);
+    if !json.chars().any(is_escaped) {
+        return Cow::Borrowed(json);
+    }
+    let mut shown = String::with_capacity(json.len() + 16);
+    for letter in json.chars() {
+        if is_escaped(letter) {
+            // All of them are below U+FFFF.
+            shown += &format!("\\u{:04x}", u32::from(letter));
+        } else {
+            shown.push(letter);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// `text` as it may stand in HTML and SVG, between tags or in an attribute in double quotes.
+pub fn for_page(text: &str) -> String {
+    escaped(&visible(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NASTY: &str = "a\u{1b}[31m\n\u{9b}\u{202e}\u{2066}\u{7f}<script>\"&é";
+
+    #[test]
+    fn what_a_terminal_would_obey_is_shown() {
+        assert!(matches!(visible("a.toml, 5 µm"), Cow::Borrowed(_)));
+        assert_eq!(
+            visible(NASTY),
+            "a\\u{1b}[31m\\u{a}\\u{9b}\\u{202e}\\u{2066}\\u{7f}<script>\"&é"
+        );
+        assert_eq!(visible(&visible(NASTY)), visible(NASTY));
+        assert_eq!(visible_lines("a\n\tb\r"), "a\n\tb\\u{d}");
+    }
+
+    #[test]
+    fn pages_hold_neither_tags_nor_control_characters_of_others() {
+        assert_eq!(
+            for_page(NASTY),
+            "a\\u{1b}[31m\\u{a}\\u{9b}\\u{202e}\\u{2066}\\u{7f}&lt;script&gt;&quot;&amp;é"
+        );
+    }
+
+    #[test]
+    fn json_means_the_same() {
+        let json = serde_json::to_string(NASTY).unwrap_or_default();
+        let shown = visible_json(&json);
+        assert!(!shown.chars().any(is_obeyed), "{shown}");
+        assert_eq!(
+            serde_json::from_str::<String>(&shown).ok().as_deref(),
+            Some(NASTY)
+        );
+    }
+}

@@ -1,0 +1,363 @@
+//! Bodies in free flight: which wall they meet first, and when.
+//!
+//! A body that nothing holds, pushes or has touched yet moves on a parabola and turns evenly. The
+//! meeting is found by conservative advancement: the body moves on by the time in which no point of
+//! it could cross the gap to the wall, until the gap is closed. It is exact but for two things that
+//! are left open: walls that move, and other bodies that come near.
+
+use std::collections::BTreeSet;
+
+use dem_io::scene::{Scene, WallMotion};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::geometry::Shape;
+use crate::plan::bodies::PlacedBody;
+use crate::stages::population::GONE;
+use crate::state::State;
+use crate::state::clumps::Clump;
+use crate::state::walls::Wall;
+
+/// A gap that is smaller than this share of the body's extent is closed.
+const CLOSED: f64 = 1e-6;
+/// Moves towards a wall before it is given up: the body grazes it.
+const MOVES: usize = 2000;
+
+/// A body that flies freely, as a rigid assembly of spheres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flyer {
+    /// Name of the body in the scene.
+    pub name: String,
+    /// Centre of mass, m.
+    centre_m: Vector3<f64>,
+    velocity_m_s: Vector3<f64>,
+    spin_rad_s: Vector3<f64>,
+    gravity_m_s2: Vector3<f64>,
+    /// Centres from the centre of mass, m, and radii, m.
+    spheres: Vec<(Vector3<f64>, f64)>,
+    /// Largest distance of a point of it from the centre of mass, m.
+    reach_m: f64,
+}
+
+/// What a flying body meets.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Meeting {
+    /// A wall, after this time, s, and with this speed of its centre, m/s.
+    At {
+        /// From the present, s.
+        after_s: f64,
+        /// Name of the wall.
+        wall: String,
+        /// m/s.
+        speed_m_s: f64,
+    },
+    /// Nothing, however long it flies.
+    Never,
+    /// It depends on a wall that moves or on another body.
+    Unknown,
+}
+
+/// Whether bodies can touch walls or each other at all.
+pub fn can_meet(state: &State, scene: &Scene) -> bool {
+    let others = scene.bodies.len() > 1 || state.clumps.all.len() > 1 || !scene.inlets.is_empty();
+    state.contacts.is_some() && (!state.walls.is_empty() || others)
+}
+
+/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their velocities
+/// stand `ahead_s` after their places.
+pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> {
+    let held = state.supports.iter().flat_map(|support| &support.held);
+    let held = held.map(|held| held.particle);
+    let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
+    let bound: BTreeSet<u32> = held.chain(loaded).collect();
+    let is_free = |i: &u32| !bound.contains(i) && !state.particles.sleeps(*i as usize);
+    let of_bodies = bodies.iter().filter_map(|body| {
+        let living = body.particles.iter().copied();
+        let living: Vec<u32> = living.filter(|i| *i != GONE).collect();
+        let flies = !living.is_empty() && living.iter().all(is_free);
+        flies.then(|| Flyer::of_particles(state, &body.name, &living))
+    });
+    let awake = state.clumps.all.iter().filter(|clump| !clump.asleep);
+    let of_clumps = awake.map(|clump| Flyer::of_clump(state, clump));
+    let mut flyers: Vec<Flyer> = of_bodies.chain(of_clumps).collect();
+    for flyer in &mut flyers {
+        flyer.velocity_m_s -= ahead_s * flyer.gravity_m_s2;
+    }
+    flyers
+}
+
+impl Flyer {
+    fn of_particles(state: &State, name: &str, particles: &[u32]) -> Self {
+        let p = &state.particles;
+        let (mut mass_kg, mut moment, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
+        let mut spin = Vector3::zeros();
+        for &i in particles {
+            let i = i as usize;
+            let motion = &p.motions[i];
+            let own_kg = 1.0 / motion.inverse_mass;
+            mass_kg += own_kg;
+            moment += own_kg * p.poses[i].place();
+            momentum += own_kg * Vector3::from(motion.velocity_m_s);
+            spin += own_kg * Vector3::from(motion.spin_rad_s);
+        }
+        let centre_m = moment / mass_kg;
+        let spheres = particles.iter().map(|&i| {
+            let pose = &p.poses[i as usize];
+            (pose.place() - centre_m, pose.radius_m())
+        });
+        let gravity_m_s2 = state.gravity_m_s2.into();
+        let velocity_m_s = momentum / mass_kg;
+        Self::new(name, spheres.collect(), gravity_m_s2).moving(
+            centre_m,
+            velocity_m_s,
+            spin / mass_kg,
+        )
+    }
+
+    fn of_clump(state: &State, clump: &Clump) -> Self {
+        let template = state.clumps.template(clump);
+        let centre_m = Vector3::from(clump.place_m);
+        let spheres = template.outer.iter().map(|&sphere| {
+            let pose = template.pose(sphere as usize, clump);
+            (pose.place() - centre_m, template.scale * pose.radius_m())
+        });
+        Self::new(&template.body, spheres.collect(), state.gravity_m_s2.into()).moving(
+            centre_m,
+            clump.velocity_m_s.into(),
+            clump.spin_rad_s(template),
+        )
+    }
+
+    fn new(name: &str, spheres: Vec<(Vector3<f64>, f64)>, gravity_m_s2: Vector3<f64>) -> Self {
+        let reach_m = spheres.iter().map(|(arm, radius_m)| arm.norm() + radius_m);
+        Self {
+            name: name.to_owned(),
+            centre_m: Vector3::zeros(),
+            velocity_m_s: Vector3::zeros(),
+            spin_rad_s: Vector3::zeros(),
+            gravity_m_s2,
+            reach_m: reach_m.fold(0.0, f64::max),
+            spheres,
+        }
+    }
+
+    fn moving(mut self, centre: Vector3<f64>, velocity: Vector3<f64>, spin: Vector3<f64>) -> Self {
+        self.centre_m = centre;
+        self.velocity_m_s = velocity;
+        self.spin_rad_s = spin;
+        self
+    }
+
+    /// Centre of mass after a time, s, in m.
+    pub fn centre_after(&self, time_s: f64) -> Vector3<f64> {
+        self.centre_m + time_s * (self.velocity_m_s + 0.5 * time_s * self.gravity_m_s2)
+    }
+
+    fn velocity_after(&self, time_s: f64) -> Vector3<f64> {
+        self.velocity_m_s + time_s * self.gravity_m_s2
+    }
+
+    /// What it meets first, of the walls and of the others.
+    pub fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
+        let mut first = Meeting::Never;
+        let mut first_s = f64::INFINITY;
+        for wall in walls {
+            match self.meeting(wall) {
+                Meeting::Unknown => return Meeting::Unknown,
+                Meeting::At { after_s, .. } if after_s >= first_s => {}
+                Meeting::Never => {}
+                meeting => {
+                    if let Meeting::At { after_s, .. } = &meeting {
+                        first_s = *after_s;
+                    }
+                    first = meeting;
+                }
+            }
+        }
+        let others = others.iter().filter(|other| *other != self);
+        let may_meet = |other: &Self| self.comes_near_after(other).is_some_and(|s| s < first_s);
+        if others.into_iter().any(may_meet) {
+            return Meeting::Unknown;
+        }
+        first
+    }
+
+    /// What comes of it and this wall alone.
+    fn meeting(&self, wall: &Wall) -> Meeting {
+        if wall.motion != WallMotion::Fixed {
+            return Meeting::Unknown;
+        }
+        let mut after_s = 0.0;
+        for _ in 0..MOVES {
+            let gap_m = self.gap_after(wall, after_s);
+            if gap_m <= CLOSED * self.reach_m {
+                let speed_m_s = self.velocity_after(after_s).norm();
+                let wall = wall.name.clone();
+                return Meeting::At {
+                    after_s,
+                    wall,
+                    speed_m_s,
+                };
+            }
+            if self.leaves(wall, after_s) {
+                return Meeting::Never;
+            }
+            after_s += self.time_for(gap_m, after_s);
+            if !after_s.is_finite() {
+                return Meeting::Never;
+            }
+        }
+        Meeting::Unknown
+    }
+
+    /// Gap between its surface and a wall after a time, s, in m; at most 0 where they touch.
+    pub fn gap_after(&self, wall: &Wall, time_s: f64) -> f64 {
+        let to_wall = wall.frame.all_to_wall();
+        let centre = self.centre_after(time_s);
+        let mut found = Vec::new();
+        wall.shape
+            .touches(to_wall(centre.into()), f64::INFINITY, &mut found);
+        let nearest = found.iter().map(|touch| touch.distance_m);
+        let from_centre_m = nearest.fold(f64::INFINITY, f64::min);
+        let sure_m = from_centre_m - self.reach_m;
+        if sure_m > self.reach_m || !from_centre_m.is_finite() {
+            return sure_m;
+        }
+        let turned = UnitQuaternion::from_scaled_axis(time_s * self.spin_rad_s);
+        let mut gap_m = f64::INFINITY;
+        for (arm, radius_m) in &self.spheres {
+            let place = centre + turned * arm;
+            found.clear();
+            // Every sphere is within twice the reach of what is nearest to the centre.
+            let within_m = (gap_m + radius_m).min(from_centre_m.abs() + 2.0 * self.reach_m);
+            wall.shape
+                .touches(to_wall(place.into()), within_m, &mut found);
+            for touch in &found {
+                gap_m = gap_m.min(touch.distance_m - radius_m);
+            }
+        }
+        gap_m
+    }
+
+    /// Time in which no point of it moves farther than this, s, from a moment on. Infinite: it does
+    /// not move.
+    fn time_for(&self, way_m: f64, from_s: f64) -> f64 {
+        let speed = self.velocity_after(from_s).norm() + self.spin_rad_s.norm() * self.reach_m;
+        let gravity = self.gravity_m_s2.norm();
+        2.0 * way_m / (speed + (speed * speed + 2.0 * gravity * way_m).sqrt())
+    }
+
+    /// Whether it moves away from a wall from a moment on, for ever.
+    fn leaves(&self, wall: &Wall, from_s: f64) -> bool {
+        let velocity = self.velocity_after(from_s);
+        let centre = self.centre_after(from_s);
+        if let Shape::Plane(_) = wall.shape {
+            let mut found = Vec::new();
+            let to_wall = wall.frame.all_to_wall();
+            wall.shape
+                .touches(to_wall(centre.into()), f64::INFINITY, &mut found);
+            return found.iter().all(|touch| {
+                let into_wall = Vector3::from(wall.frame.touch_to_space(touch).normal);
+                let turns = self.spin_rad_s.norm() * self.reach_m > 0.0;
+                let beyond_reach = !turns || touch.distance_m > self.reach_m;
+                beyond_reach
+                    && velocity.dot(&into_wall) <= 0.0
+                    && self.gravity_m_s2.dot(&into_wall) <= 0.0
+            });
+        }
+        let bounds = wall.bounds_in_space();
+        (0..3).any(|k| {
+            let is_above = centre[k] - self.reach_m > bounds.high[k]
+                && velocity[k] >= 0.0
+                && self.gravity_m_s2[k] >= 0.0;
+            let is_below = centre[k] + self.reach_m < bounds.low[k]
+                && velocity[k] <= 0.0
+                && self.gravity_m_s2[k] <= 0.0;
+            is_above || is_below
+        })
+    }
+
+    /// When the balls around it and another body first touch, s; both fall alike. None: never.
+    fn comes_near_after(&self, other: &Self) -> Option<f64> {
+        let apart = other.centre_m - self.centre_m;
+        let velocity = other.velocity_m_s - self.velocity_m_s;
+        let reach_m = self.reach_m + other.reach_m;
+        let c = apart.norm_squared() - reach_m * reach_m;
+        if c <= 0.0 {
+            return Some(0.0);
+        }
+        let (a, b) = (velocity.norm_squared(), apart.dot(&velocity));
+        let root = b * b - a * c;
+        (b < 0.0 && root >= 0.0).then(|| (-b - root.sqrt()) / a)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+    use super::*;
+    use crate::geometry::{Frame, Plane, SolidBox};
+
+    fn ball(at: [f64; 3], velocity: [f64; 3], gravity: [f64; 3]) -> Flyer {
+        let spheres = vec![(Vector3::zeros(), 0.1)];
+        Flyer::new("ball", spheres, gravity.into()).moving(
+            at.into(),
+            velocity.into(),
+            Vector3::zeros(),
+        )
+    }
+
+    fn floor() -> Wall {
+        let plane = Plane::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap();
+        let mut wall = Wall::standing(Shape::Plane(plane), Frame::default());
+        wall.name = "floor".to_owned();
+        wall
+    }
+
+    #[test]
+    fn a_ball_falls_as_galilei_says() {
+        let g = [0.0, 0.0, -9.81];
+        let falling = ball([0.0, 0.0, 1.1], [3.0, 0.0, 0.0], g);
+        let Meeting::At {
+            after_s, speed_m_s, ..
+        } = falling.first_meeting(&[floor()], &[])
+        else {
+            panic!("it meets the floor");
+        };
+        assert!(
+            (after_s - (2.0_f64 / 9.81).sqrt()).abs() < 1e-6,
+            "{after_s}"
+        );
+        assert!((speed_m_s - (9.0 + 2.0 * 9.81_f64).sqrt()).abs() < 1e-5);
+    }
+
+    #[test]
+    fn what_flies_away_or_falls_beside_meets_nothing() {
+        let up = ball([0.0, 0.0, 1.1], [0.0, 0.0, 1.0], [0.0; 3]);
+        assert_eq!(up.first_meeting(&[floor()], &[]), Meeting::Never);
+        let still = ball([0.0, 0.0, 1.1], [0.0; 3], [0.0; 3]);
+        assert_eq!(still.first_meeting(&[floor()], &[]), Meeting::Never);
+        let plate = SolidBox::new([-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]).unwrap();
+        let plate = Wall::standing(Shape::Box(plate), Frame::default());
+        let g = [0.0, 0.0, -9.81];
+        let beside = ball([1.2, 0.0, 1.0], [0.0; 3], g);
+        assert_eq!(beside.first_meeting(&[plate.clone()], &[]), Meeting::Never);
+        let over = ball([1.05, 0.0, 1.0], [0.0; 3], g);
+        let at = over.first_meeting(&[plate], &[]);
+        assert!(matches!(at, Meeting::At { .. }), "{at:?}");
+    }
+
+    #[test]
+    fn another_body_in_the_way_leaves_it_open() {
+        let g = [0.0, 0.0, -9.81];
+        let one = ball([0.0, 0.0, 1.1], [1.0, 0.0, 0.0], g);
+        let mut other = ball([0.3, 0.0, 1.1], [0.0; 3], g);
+        let walls = [floor()];
+        assert_eq!(
+            one.first_meeting(&walls, std::slice::from_ref(&other)),
+            Meeting::Unknown
+        );
+        other.velocity_m_s.x = 1.0;
+        assert_ne!(one.first_meeting(&walls, &[other]), Meeting::Unknown);
+    }
+}

@@ -1,0 +1,286 @@
+//! A set as a whole: its centre of mass, how that moves, and how the set turns.
+//!
+//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that takes
+//! its place has the same of all its particles, so that every value is the same before and after,
+//! but for rounding.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::members::Members;
+use crate::physics::rigid::rotation_vector;
+use crate::plan::bodies::PlacedBody;
+use crate::stages::population::GONE;
+use crate::state::State;
+use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::particles::Motion;
+
+/// Where bodies stood at the start, by their names.
+pub(super) type Starts = BTreeMap<String, Start>;
+
+/// Where a body stood at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Start {
+    /// Its particles, by their numbers in its file, m.
+    places: Vec<Vector3<f64>>,
+    /// Its centre, if it was a clump, m.
+    centre: Option<Vector3<f64>>,
+    /// How a clump was turned against its file. Particles of other bodies are taken as not turned.
+    turned: UnitQuaternion<f64>,
+}
+
+/// Velocities at the moment of the places: one for each particle, and each clump as it moves.
+#[derive(Debug, Default)]
+pub(super) struct Motions {
+    pub(super) particles: Vec<Motion>,
+    pub(super) clumps: Vec<Clump>,
+}
+
+/// Where the bodies of a state stand that has not been stepped.
+pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
+    let place = |i: &u32| state.particles.poses[*i as usize].place();
+    let placed = bodies.iter().map(|body| {
+        let start = Start {
+            places: body.particles.iter().map(place).collect(),
+            centre: None,
+            turned: UnitQuaternion::identity(),
+        };
+        (body.name.clone(), start)
+    });
+    let clumps = state.clumps.all.iter().map(|clump| {
+        let template = state.clumps.template(clump);
+        let mut places = vec![Vector3::zeros(); template.spheres.len()];
+        for (sphere, &number) in template.file_number.iter().enumerate() {
+            places[number as usize] = template.pose(sphere, clump).place();
+        }
+        let start = Start {
+            places,
+            centre: Some(clump.place_m.into()),
+            turned: turned(clump, template),
+        };
+        (template.body.clone(), start)
+    });
+    placed.chain(clumps).collect()
+}
+
+/// How a clump is turned against the file of its body.
+fn turned(clump: &Clump, template: &Template) -> UnitQuaternion<f64> {
+    rotation(clump.turned) * rotation(template.axes).inverse()
+}
+
+/// Centre of mass of where the members stood at the start, m. Those that were not there then do not
+/// count.
+pub(super) fn start_centre(
+    members: &Members,
+    starts: &Starts,
+    bodies: &[PlacedBody],
+    state: &State,
+) -> Vector3<f64> {
+    let mut parts: Vec<(f64, Vector3<f64>)> = Vec::new();
+    for body in bodies {
+        let Some(start) = starts.get(&body.name) else {
+            continue;
+        };
+        for (place, i) in start.places.iter().zip(&body.particles) {
+            if *i != GONE && members.particles.binary_search(i).is_ok() {
+                let motion = &state.particles.motions[*i as usize];
+                parts.push((1.0 / motion.inverse_mass, *place));
+            }
+        }
+    }
+    for (_, template) in members.clumps(state, &state.clumps.all) {
+        match starts.get(&template.body) {
+            Some(Start {
+                centre: Some(centre),
+                places,
+                ..
+            }) if places.len() == template.spheres.len() => {
+                parts.push((template.mass_kg, *centre));
+            }
+            // A fragment.
+            Some(start) => {
+                let spheres = template.spheres.iter().zip(&template.file_number);
+                parts.extend(spheres.map(|(s, n)| (s.mass_kg, start.places[*n as usize])));
+            }
+            None => {}
+        }
+    }
+    // In the order of the file or of the state: the same mean, but for rounding.
+    mean(&parts)
+}
+
+/// The mean of vectors, each with a weight.
+fn mean(parts: &[(f64, Vector3<f64>)]) -> Vector3<f64> {
+    let Some(&(_, origin)) = parts.first() else {
+        return Vector3::repeat(f64::NAN);
+    };
+    let weight: f64 = parts.iter().map(|(weight, _)| weight).sum();
+    let sum: Vector3<f64> = parts.iter().map(|(w, x)| *w * (x - origin)).sum();
+    origin + sum / weight
+}
+
+/// Centre of mass, m.
+pub(super) fn centre(members: &Members, state: &State) -> Vector3<f64> {
+    mean(&places(members, state))
+}
+
+/// How far the centre of mass is from a place, m.
+pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
+    let mut places = places(members, state);
+    for (_, place) in &mut places {
+        *place -= from;
+    }
+    mean(&places)
+}
+
+/// Masses, kg, and places, m, of particles and clumps.
+fn places(members: &Members, state: &State) -> Vec<(f64, Vector3<f64>)> {
+    let p = &state.particles;
+    let free = members.free(state);
+    let free = free.map(|i| (1.0 / p.motions[i].inverse_mass, p.poses[i].place()));
+    let clumps = members.clumps(state, &state.clumps.all);
+    let clumps = clumps.map(|(clump, template)| (template.mass_kg, clump.place_m.into()));
+    free.chain(clumps).collect()
+}
+
+/// Velocity of the centre of mass, m/s.
+pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+    let p = &state.particles;
+    let free = members.free(state).map(|i| {
+        let velocity = Vector3::from(motions.particles[i].velocity_m_s);
+        (1.0 / p.motions[i].inverse_mass, velocity)
+    });
+    let clumps = members.clumps(state, &motions.clumps);
+    let clumps = clumps.map(|(clump, template)| (template.mass_kg, clump.velocity_m_s.into()));
+    let parts: Vec<_> = free.chain(clumps).collect();
+    mean(&parts)
+}
+
+/// Kinetic energy, J.
+pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
+    let free = members.free(state);
+    let free = free.map(|i| state.particles.kinetic_j(i, &motions.particles[i]));
+    let clumps = members.clumps(state, &motions.clumps);
+    free.sum::<f64>()
+        + clumps
+            .map(|(c, template)| c.kinetic_j(template))
+            .sum::<f64>()
+}
+
+/// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
+/// mass, rad/s. Of a single particle or clump, its own.
+pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+    let p = &state.particles;
+    let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
+    if let [Some(i), None] = [free.next(), free.next()]
+        && clumps.next().is_none()
+    {
+        return motions.particles[i].spin_rad_s.into();
+    }
+    let about = centre(members, state);
+    let velocity = velocity(members, state, motions);
+    let (mut inertia, mut angular) = (Matrix3::zeros(), Vector3::zeros());
+    let mut add = |mass: f64, place: Vector3<f64>, moving: [f64; 3], own: Matrix3<f64>, l| {
+        let arm = place - about;
+        inertia +=
+            mass * (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose());
+        inertia += own;
+        angular += mass * arm.cross(&(Vector3::from(moving) - velocity)) + l;
+    };
+    for i in members.free(state) {
+        let (own, motion) = (&p.motions[i], &motions.particles[i]);
+        let moment = 1.0 / own.inverse_inertia;
+        let l = moment * Vector3::from(motion.spin_rad_s);
+        let moments = Matrix3::from_diagonal_element(moment);
+        let place = p.poses[i].place();
+        add(
+            1.0 / own.inverse_mass,
+            place,
+            motion.velocity_m_s,
+            moments,
+            l,
+        );
+    }
+    for (clump, template) in members.clumps(state, &motions.clumps) {
+        let to_space = rotation(clump.turned).to_rotation_matrix();
+        let moments = Matrix3::from_diagonal(&template.moments_kg_m2.into());
+        let own = to_space * moments * to_space.transpose();
+        let l = Vector3::from(clump.angular_momentum);
+        add(
+            template.mass_kg,
+            clump.place_m.into(),
+            clump.velocity_m_s,
+            own,
+            l,
+        );
+    }
+    // Every sphere has a moment of inertia of its own, so that of the whole can be inverted.
+    let solved = inertia.cholesky().map(|inertia| inertia.solve(&angular));
+    solved.unwrap_or_else(|| Vector3::repeat(f64::NAN))
+}
+
+/// Mean by mass of the rotation vectors since the start, rad, of 180 degrees at most.
+/// `turned_before`: of particles that were turned at the start.
+pub(super) fn turn(
+    members: &Members,
+    state: &State,
+    starts: &Starts,
+    turned_before: &BTreeMap<u32, UnitQuaternion<f64>>,
+) -> Vector3<f64> {
+    let p = &state.particles;
+    let mut first: Option<Vector3<f64>> = None;
+    let mut parts = Vec::new();
+    let mut add = |mass_kg: f64, turned: [f64; 4]| {
+        let near = *first.get_or_insert_with(|| rotation_vector(turned).into());
+        parts.push((mass_kg, nearest(rotation_vector(turned).into(), &near)));
+    };
+    for i in members.free(state) {
+        let before = turned_before.get(&(i as u32));
+        let turned = p.poses[i].turned;
+        let since = before.map_or(turned, |b| numbers(&(rotation(turned) * b.inverse())));
+        add(1.0 / p.motions[i].inverse_mass, since);
+    }
+    for (clump, template) in members.clumps(state, &state.clumps.all) {
+        let before = (starts.get(&template.body)).map_or(UnitQuaternion::identity(), |s| s.turned);
+        for sphere in &template.spheres {
+            let now = rotation(clump.turned) * rotation(sphere.turned);
+            add(sphere.mass_kg, numbers(&(now * before.inverse())));
+        }
+    }
+    let mean = mean(&parts);
+    nearest(mean, &Vector3::zeros())
+}
+
+/// Of the vectors of one rotation that are shorter than a full turn, the one nearer to another.
+fn nearest(turn: Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
+    let angle = turn.norm();
+    if angle == 0.0 {
+        return turn;
+    }
+    let other = turn * (1.0 - TAU / angle);
+    if (other - to).norm() < (turn - to).norm() {
+        other
+    } else {
+        turn
+    }
+}
+
+/// How those of the members' particles were turned at the start that were turned then.
+pub(super) fn turned_before(
+    members: &Members,
+    starts: &Starts,
+    bodies: &[PlacedBody],
+) -> BTreeMap<u32, UnitQuaternion<f64>> {
+    let turned = bodies.iter().filter_map(|body| {
+        let turned = starts.get(&body.name)?.turned;
+        (turned != UnitQuaternion::identity()).then_some((body, turned))
+    });
+    let particles = turned.flat_map(|(body, turned)| {
+        let own = body.particles.iter();
+        let own = own.filter(|i| members.particles.binary_search(i).is_ok());
+        own.map(move |&i| (i, turned))
+    });
+    particles.collect()
+}

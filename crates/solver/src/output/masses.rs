@@ -1,0 +1,136 @@
+//! What the bodies of a scene weigh, beside what their shapes would.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use dem_io::body::About;
+use dem_io::body::inertia::MassProperties;
+use dem_io::body::mass::{BodyMass, percent_text};
+use dem_io::scene::{BodySource, Scene, WholeMass};
+use dem_io::units::significant;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::plan::bodies::{PlacedBody, material_density_kg_m3};
+use crate::shape::inertia::of_spheres;
+use crate::state::clumps::{Template, numbers, rotation};
+use crate::state::particles::Particles;
+
+/// A difference that is worth a note, percent.
+const WORTH_A_NOTE: f64 = 5.0;
+/// Most bodies that a person is told of.
+const LISTED: usize = 8;
+
+/// What each body of a scene weighs, by its name, where it stands at the start; a body that comes through an inlet as it
+/// stands in its file. `about`: what is known of the bodies.
+pub fn masses(
+    scene: &Scene,
+    about: &BTreeMap<String, About>,
+    templates: &[Arc<Template>],
+    bodies: &[PlacedBody],
+    particles: &Particles,
+) -> BTreeMap<String, BodyMass> {
+    let fed = scene.inlets.values().flat_map(|inlet| &inlet.bodies);
+    let fed: BTreeSet<&String> = fed.map(|(name, _)| name).collect();
+    let of_templates = templates.iter().map(|template| {
+        let is_fed = fed.contains(&template.body);
+        (&template.body, of_template(scene, template, is_fed))
+    });
+    let of_bodies = bodies.iter();
+    let of_bodies = of_bodies.map(|body| (&body.name, of_particles(body, particles)));
+    let mut masses = BTreeMap::new();
+    for (name, properties) in of_templates.chain(of_bodies) {
+        let (Some(entry), Some(about)) = (scene.bodies.get(name), about.get(name)) else {
+            continue;
+        };
+        let fill = match entry.whole_mass {
+            Some(WholeMass::Density(density)) => Some(density),
+            _ => material_density_kg_m3(scene, entry, about),
+        };
+        let mass = BodyMass::new(&properties, fill, about.shape_volume_m3);
+        masses.insert(name.clone(), mass);
+    }
+    masses
+}
+
+fn of_template(scene: &Scene, template: &Template, is_fed: bool) -> MassProperties {
+    let in_file = MassProperties {
+        mass_kg: template.mass_kg,
+        centre_m: template.centre_m,
+        moments_kg_m2: template.moments_kg_m2,
+        axes: template.axes,
+    };
+    match scene.bodies.get(&template.body).filter(|_| !is_fed) {
+        None => in_file,
+        Some(entry) => {
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
+            let centre = turn * Vector3::from(in_file.centre_m) + Vector3::from(entry.position_m);
+            MassProperties {
+                centre_m: centre.into(),
+                axes: numbers(&(turn * rotation(in_file.axes))),
+                ..in_file
+            }
+        }
+    }
+}
+
+fn of_particles(body: &PlacedBody, particles: &Particles) -> MassProperties {
+    let own = || body.particles.iter().map(|&i| i as usize);
+    let centres: Vec<[f64; 3]> = own().map(|i| particles.poses[i].place().into()).collect();
+    let inert = own().map(|i| &particles.motions[i]);
+    let (masses, inertias): (Vec<f64>, Vec<f64>) = inert
+        .map(|motion| (1.0 / motion.inverse_mass, 1.0 / motion.inverse_inertia))
+        .unzip();
+    of_spheres(&centres, &masses, &inertias)
+}
+
+/// Bodies that weigh other than their shapes, although the scene does not say what they weigh: a sentence each.
+pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> {
+    let is_said = |name: &String| (scene.bodies.get(name)).is_some_and(|b| b.whole_mass.is_some());
+    let unsaid = masses.iter().filter(|(name, _)| !is_said(name));
+    let note = |(name, mass): (&String, &BodyMass)| {
+        let percent = mass.difference_percent.filter(|d| d.abs() > WORTH_A_NOTE)?;
+        let density = significant(mass.fill_density_kg_m3?, 6);
+        Some(format!(
+            "body '{name}' weighs {} kg, {} against its shape filled with {density} kg/m3: bodies.{name}.body_density = \"{density} kg/m3\" gives it that mass",
+            significant(mass.mass_kg, 4),
+            percent_text(percent),
+        ))
+    };
+    unsaid.filter_map(note).collect()
+}
+
+/// What the programs that made the bodies warned of, a sentence each.
+pub fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (name, about) in about {
+        let file = scene
+            .bodies
+            .get(name)
+            .and_then(|entry| match &entry.source {
+                BodySource::File(path) => Some(path.display().to_string()),
+                BodySource::Inline { .. } => None,
+            });
+        let file = file.map_or(String::new(), |file| format!(" ({file})"));
+        let by = about.program.as_deref().unwrap_or_default();
+        let by = by.split(' ').next().filter(|by| !by.is_empty());
+        let by = by.unwrap_or("the program that made it");
+        let said = about.warnings.iter();
+        warnings.extend(said.map(|text| format!("body '{name}'{file}: {by} warned: {text}")));
+    }
+    warnings
+}
+
+/// Lines for a person, the first with a name in front: two for each body.
+pub fn lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    for (name, mass) in masses.iter().take(LISTED) {
+        let head = if lines.is_empty() { "mass" } else { "" };
+        let [mass, centre] = mass.lines();
+        lines.push((head, format!("{name} {mass}")));
+        lines.push(("", format!("  {centre}")));
+    }
+    if masses.len() > LISTED {
+        lines.push(("", format!("... ({} bodies in all)", masses.len())));
+    }
+    lines
+}

@@ -1,0 +1,173 @@
+//! What will happen in a run, as far as it can be told before: which bodies meet what and when, what
+//! inlets will feed, and what of it speaks against running the scene as it stands.
+
+use dem_io::scene::{FeedRate, Scene};
+use dem_io::units::significant;
+use serde::Serialize;
+
+use super::bodies::PlacedBody;
+use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
+use crate::check::laws::foreseen;
+use crate::state::State;
+use crate::state::memory::all_bytes;
+
+/// Bodies of which it is said what they meet first; of others it is not looked at.
+const MOST_BODIES: usize = 8;
+/// Moments at which it is looked whether a flying body is in a region.
+const MOMENTS: usize = 10_000;
+
+/// What will happen in a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Forecast {
+    /// What bodies meet first, a sentence each.
+    pub first_contacts: Vec<String>,
+    /// What inlets will feed.
+    pub to_come: Vec<ToCome>,
+    /// What speaks against running the scene as it stands, a sentence each. The run says at its end
+    /// what came of it.
+    pub warnings: Vec<String>,
+}
+
+/// What an inlet will feed until the end, if all find their place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ToCome {
+    /// Name of the inlet.
+    pub inlet: String,
+    /// Number of bodies.
+    pub bodies: f64,
+    /// Their spheres, once they are bonded.
+    pub spheres: f64,
+    /// Their bonds.
+    pub bonds: f64,
+    /// What they take once they are bonded, if none leaves, bytes.
+    pub bytes: f64,
+}
+
+/// Foretells what comes of a scene that is ready to step and whose impacts are at most this fast,
+/// m/s. `arriving` has one body of each shape that may come, bonded.
+pub(super) fn forecast(
+    scene: &Scene,
+    state: &State,
+    bodies: &[PlacedBody],
+    impact_speed_m_s: f64,
+    arriving: Option<&State>,
+) -> Forecast {
+    let meets = can_meet(state, scene);
+    let mut forecast = Forecast {
+        warnings: foreseen(state, meets.then_some(impact_speed_m_s)),
+        to_come: to_come(scene, state, arriving),
+        ..Forecast::default()
+    };
+    if scene.test.is_none() && meets {
+        meetings(scene, state, bodies, &mut forecast);
+    }
+    forecast
+}
+
+fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut Forecast) {
+    let flying = flyers(state, bodies, 0.0);
+    let end_s = scene.run.end_time_s;
+    let end = significant(end_s, 4);
+    let mut seen: Vec<&str> = Vec::new();
+    for flyer in &flying {
+        let name = flyer.name.as_str();
+        if seen.contains(&name) || seen.len() == MOST_BODIES {
+            continue;
+        }
+        seen.push(name);
+        let meets_after_s = match flyer.first_meeting(&state.walls, &flying) {
+            Meeting::Unknown => continue,
+            Meeting::Never => {
+                let line = format!("'{name}' never meets anything in free flight");
+                if scene.inlets.is_empty() {
+                    forecast.warnings.push(format!(
+                        "{line}: check its position and velocity, gravity and the walls"
+                    ));
+                }
+                forecast.first_contacts.push(line);
+                f64::INFINITY
+            }
+            Meeting::At {
+                after_s,
+                wall,
+                speed_m_s,
+            } => {
+                let [at, speed] = [after_s, speed_m_s].map(|x| significant(x, 4));
+                if after_s > end_s {
+                    forecast.warnings.push(format!(
+                        "'{name}' would meet the wall '{wall}' at {at} s, and the run ends at {end} s: nothing will have touched it; set run.end_time later"
+                    ));
+                }
+                let line = format!("'{name}' meets the wall '{wall}' at {at} s, {speed} m/s fast");
+                forecast.first_contacts.push(line);
+                after_s
+            }
+        };
+        regions(scene, state, flyer, meets_after_s, forecast);
+    }
+}
+
+/// When a body that is replaced in a region comes there, if it does so in free flight.
+fn regions(scene: &Scene, state: &State, flyer: &Flyer, until_s: f64, forecast: &mut Forecast) {
+    let rule = scene.replacement.get(&flyer.name);
+    let Some(name) = rule.and_then(|rule| rule.enters.as_ref()) else {
+        return;
+    };
+    let Some(number) = scene.regions.keys().position(|region| region == name) else {
+        return;
+    };
+    let region = &state.rules.regions[number];
+    let end_s = until_s.min(scene.run.end_time_s);
+    let mut moments = (0..=MOMENTS).map(|n| end_s * n as f64 / MOMENTS as f64);
+    let body = &flyer.name;
+    match moments.find(|&at_s| region.contains(flyer.centre_after(at_s).into())) {
+        Some(at_s) => forecast.first_contacts.push(format!(
+            "'{body}' enters the region '{name}' at {} s",
+            significant(at_s, 4)
+        )),
+        None if until_s > scene.run.end_time_s => forecast.warnings.push(format!(
+            "'{body}' does not enter the region '{name}' by the end of the run, {} s, and stays rigid: set run.end_time later, or check the region",
+            significant(scene.run.end_time_s, 4)
+        )),
+        None => {}
+    }
+}
+
+fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<ToCome> {
+    let bytes_each = arriving.map_or(0.0, |arriving| {
+        let items = arriving.particles.len() + arriving.bonds.len();
+        all_bytes(arriving) as f64 / items.max(1) as f64
+    });
+    let inlets = state.rules.inlets.iter().zip(scene.inlets.values());
+    inlets
+        .map(|(inlet, asked)| {
+            let mean = |of: &dyn Fn(&crate::state::clumps::Template) -> f64| -> f64 {
+                let each = inlet.templates.iter();
+                each.map(|(t, share)| share * of(&state.clumps.templates[*t as usize]))
+                    .sum()
+            };
+            let mass_kg = mean(&|template| template.mass_kg);
+            let per_s = match asked.rate {
+                FeedRate::Number(per_s) => per_s,
+                FeedRate::Mass(kg_s) => kg_s / mass_kg,
+            };
+            let [start_s, end_s] = inlet.between_s;
+            let for_s = end_s.min(scene.run.end_time_s) - start_s;
+            let bodies = if for_s < 0.0 {
+                0.0
+            } else {
+                (for_s * per_s).floor() + 1.0
+            };
+            let bodies = bodies.min(f64::from(inlet.count));
+            let spheres = bodies * mean(&|template| template.spheres.len() as f64);
+            let bonds = bodies * mean(&|template| template.bonds.len() as f64);
+            ToCome {
+                inlet: inlet.name.clone(),
+                bodies,
+                spheres,
+                bonds,
+                bytes: bytes_each * (spheres + bonds),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,98 @@
+//! Measures that can have no value, as the plan knows.
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{Measure, Quantity, Scene};
+use dem_io::{Diagnostic, Result};
+
+use crate::measure::FEWEST_IN_HEAP;
+use crate::state::State;
+
+/// Refuses a force or a contact where nothing can touch, a contact between two that share
+/// particles, and a slope of a heap of few particles.
+///
+/// # Errors
+/// Names the measure.
+pub(super) fn refuse_valueless(
+    scene: &Scene,
+    sets: &BTreeMap<String, Vec<u32>>,
+    state: &State,
+) -> Result<()> {
+    for (name, measure) in &scene.measures {
+        let refuse = |problem: String, remedy: &str| {
+            let place = format!("{}: [measures.{name}]", scene.source);
+            Err(Diagnostic::input(place, problem, remedy))
+        };
+        let (of, quantity) = (&measure.of, measure.quantity);
+        let is_force = matches!(quantity, Quantity::Force(_) | Quantity::ForceMagnitude);
+        if (is_force || quantity.is_of_contact()) && state.contacts.is_none() {
+            return refuse(
+                format!(
+                    "\"{}\" is of contacts, and nothing can touch",
+                    quantity.name()
+                ),
+                "say in [contacts] how materials meet, or ask for a reaction of supports",
+            );
+        }
+        if let Some(with) = &measure.with
+            && let Some(shared) = shared(of, with, scene, sets)
+        {
+            return refuse(
+                format!("\"{of}\" and \"{with}\" share {shared}"),
+                "measure the contact of two that have no particle in common",
+            );
+        }
+        if let Some(count) = few(measure, scene, sets, state) {
+            return refuse(
+                format!(
+                    "an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {count}"
+                ),
+                "name a larger heap, or ask for a position",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// What two of the scene have in common, for a person.
+fn shared(
+    of: &str,
+    with: &str,
+    scene: &Scene,
+    sets: &BTreeMap<String, Vec<u32>>,
+) -> Option<String> {
+    if of == "all" && !scene.walls.contains_key(with) {
+        return Some(format!("all particles of \"{with}\""));
+    }
+    let [of, with] = [of, with].map(|name| sets.get(name).map_or(&[][..], Vec::as_slice));
+    let both = of.iter().filter(|i| with.binary_search(i).is_ok()).count();
+    match both {
+        0 => None,
+        1 => Some("a particle".to_owned()),
+        _ => Some(format!("{both} particles")),
+    }
+}
+
+/// How many particles there are of which a measure is the slope, if they are too few and no more
+/// can come.
+fn few(
+    measure: &Measure,
+    scene: &Scene,
+    sets: &BTreeMap<String, Vec<u32>>,
+    state: &State,
+) -> Option<usize> {
+    if measure.quantity != Quantity::AngleOfRepose {
+        return None;
+    }
+    let of = &measure.of;
+    let means = |name: &String| of == "all" || name == of;
+    let mut fed = scene.inlets.values().flat_map(|inlet| &inlet.bodies);
+    if fed.any(|(name, _)| means(name)) {
+        return None;
+    }
+    let standing = sets.get(of).map_or(0, Vec::len);
+    let clumps = state.clumps.templates.iter();
+    let clumps = clumps.filter(|template| means(&template.body));
+    let count = standing + clumps.map(|template| template.spheres.len()).sum::<usize>();
+    (count < FEWEST_IN_HEAP).then_some(count)
+}

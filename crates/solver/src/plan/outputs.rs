@@ -1,0 +1,61 @@
+//! How often a run writes: an interval with which it would fill the disk is refused.
+
+use dem_io::scene::Scene;
+use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+
+/// Most frames, and most pictures: each is a file.
+const MOST_FILES: f64 = 1e5;
+/// Most rows of the time series.
+const MOST_ROWS: f64 = 1e7;
+/// Most checkpoints: each replaces the one before.
+const MOST_CHECKPOINTS: f64 = 1e6;
+
+/// Refuses intervals of `[output]` in which a run with this step, s, would write too often.
+///
+/// # Errors
+/// More frames, pictures, rows or checkpoints than a run may write (exit code 2).
+pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
+    let Some(output) = &scene.output else {
+        return Ok(());
+    };
+    let end_s = scene.run.end_time_s;
+    // Nothing is written more than once a step. An adaptive step may become shorter than it is now.
+    let steps = if scene.run.adaptive {
+        f64::INFINITY
+    } else {
+        (end_s / step_s).ceil()
+    };
+    let intervals = [
+        ("frames", output.frames_s, MOST_FILES, "frames"),
+        ("pictures", output.pictures_s, MOST_FILES, "pictures"),
+        ("series", output.series_s, MOST_ROWS, "rows"),
+        (
+            "checkpoint",
+            output.checkpoint_s,
+            MOST_CHECKPOINTS,
+            "checkpoints",
+        ),
+    ];
+    for (key, interval_s, most, what) in intervals {
+        let Some(interval_s) = interval_s else {
+            continue;
+        };
+        let count = (end_s / interval_s).floor().min(steps);
+        if count > most {
+            // Two digits of a twentieth more are never less than the shortest interval itself.
+            let shortest_s = 1.05 * end_s / most;
+            return Err(Diagnostic::input(
+                format!("{}: output.{key}", scene.source),
+                format!(
+                    "an interval of {} s in a run of {} s makes {} {what}, more than {most}",
+                    significant(interval_s, 3),
+                    significant(end_s, 3),
+                    significant(count, 3),
+                ),
+                format!("write {key} = \"{shortest_s:.1e} s\" or more"),
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,166 @@
+//! What a run writes once it has ended, and how that is made up for where the run was killed in the midst of it.
+
+use dem_io::results::ResultsFolder;
+use dem_io::safe_write::write_file;
+use dem_io::scene::Scene;
+use dem_io::{Diagnostic, Result};
+use serde::{Deserialize, Serialize};
+
+use super::RunSettings;
+use super::pictures::{Order, Pictures};
+use super::progress::Rhythm;
+use crate::clusters::fragments as fragments_of;
+use crate::laboratory::watch::Watch;
+use crate::measure::{Gauge, gauges};
+use crate::output::fragments::{write_fragment_plots, write_tree};
+use crate::output::plots::{plots_of_every_run, write_plots};
+use crate::output::summary::Summary;
+use crate::plan::Plan;
+use crate::state::State;
+
+/// What a run that has come to its end leaves beside its last checkpoint, before it writes plots,
+/// film and summary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct End {
+    /// `summary.json`.
+    summary: String,
+    simulated_s: f64,
+}
+
+impl End {
+    pub(super) fn of(summary: &Summary) -> Result<Self> {
+        let json = serde_json::to_string_pretty(summary)
+            .map_err(|error| Diagnostic::failed("summary.json", error.to_string(), ""))?;
+        Ok(Self {
+            summary: format!("{json}\n"),
+            simulated_s: summary.simulated_s,
+        })
+    }
+
+    /// Writes plots, fragments and film of a run that ends in this state, and its summary at last: where that is, all is.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn write(
+        &self,
+        folder: &ResultsFolder,
+        state: &State,
+        gauges: &[Gauge],
+        pictures: Option<&Pictures>,
+    ) -> Result<()> {
+        write_plots(folder, gauges)?;
+        if let Some(clusters) = &state.clusters {
+            let fragments = fragments_of(clusters, &state.particles, &state.clumps, None);
+            write_tree(folder, clusters)?;
+            write_fragment_plots(folder, clusters, &fragments, self.simulated_s)?;
+        }
+        if let Some(pictures) = pictures {
+            pictures.finish()?;
+        }
+        write_file(&folder.summary(), |out| {
+            out.write_all(self.summary.as_bytes())
+        })
+    }
+}
+
+/// What [`finish`] has made up for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finished {
+    /// The files that were missing, by their names in the folder of results.
+    pub missing: Vec<String>,
+    /// The summary of the run, as JSON.
+    pub summary: String,
+}
+
+/// Writes the files that a run has not written that had come to its end when it was killed, or that have been removed since.
+/// None: the run has not come to its end, or all of them are there.
+///
+/// # Errors
+/// The scene is not that of the run; those of the files.
+pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<Option<Finished>> {
+    let (Some(folder), Some(snapshot)) = (settings.folder, &settings.resume) else {
+        return Ok(None);
+    };
+    let progress = &snapshot.progress;
+    let ended = std::fs::read(folder.ended()).ok();
+    let ended = ended.and_then(|bytes| serde_json::from_slice::<End>(&bytes).ok());
+    let Some(end) = &ended else {
+        return Ok(None);
+    };
+    let (mut state, mut bodies) = (plan.state.clone(), plan.bodies.clone());
+    let rhythm = Rhythm::of(
+        scene,
+        plan.step.step_s,
+        state.particles.len() + state.bonds.len(),
+    );
+    snapshot
+        .check_scene(&scene.describe())
+        .and_then(|()| snapshot.restore(&mut state, &mut bodies))
+        .map_err(|error| error.within(&folder.checkpoint().display().to_string()))?;
+    if progress.is_over(&state, rhythm, scene).is_none() {
+        return Ok(None);
+    }
+    let order = Order::of(scene, &plan.state);
+    let gauges = gauges(scene, plan);
+    let missing = missing(
+        folder,
+        end,
+        &state,
+        &gauges,
+        order.is_some(),
+        scene.test.is_some(),
+    );
+    if missing.is_empty() {
+        return Ok(None);
+    }
+    if let (Some(test), Some(setup), Some(of_test)) = (&scene.test, &plan.test, &settings.test) {
+        Watch::new(scene, test, setup.clone(), of_test.clone(), plan).finish(
+            &progress.test,
+            &state,
+            progress.broke,
+            Some(folder),
+        )?;
+    }
+    let pictures = order
+        .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
+        .transpose()?;
+    end.write(folder, &state, &gauges, pictures.as_ref())?;
+    let summary = end.summary.clone();
+    Ok(Some(Finished { missing, summary }))
+}
+
+/// Names of the files at the end of a run that are not there. A summary of another run is none.
+fn missing(
+    folder: &ResultsFolder,
+    end: &End,
+    state: &State,
+    gauges: &[Gauge],
+    has_pictures: bool,
+    has_test: bool,
+) -> Vec<String> {
+    let summary = std::fs::read(folder.summary()).unwrap_or_default();
+    let mut wanted = Vec::new();
+    if has_pictures {
+        wanted.extend([folder.film(), folder.film_strip()]);
+    }
+    if state.clusters.is_some() {
+        wanted.push(folder.fragment_tree());
+    }
+    if has_test {
+        wanted.extend([folder.test_page(), folder.test_curve()]);
+    }
+    wanted.extend(
+        plots_of_every_run(gauges)
+            .iter()
+            .map(|name| folder.plot(name)),
+    );
+    wanted.retain(|path| !path.is_file());
+    if summary != end.summary.as_bytes() {
+        wanted.push(folder.summary());
+    }
+    let name = |path: &std::path::PathBuf| {
+        let name = path.strip_prefix(folder.path()).unwrap_or(path);
+        name.display().to_string()
+    };
+    wanted.iter().map(name).collect()
+}

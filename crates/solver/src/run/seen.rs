@@ -1,0 +1,414 @@
+//! What a run sees beside its measures, and what of it speaks against trusting the result: bodies
+//! that nothing touched, laws used beyond what they mean, breakage that is not over.
+
+use std::collections::BTreeSet;
+
+use dem_io::scene::{Scene, StartAs};
+use dem_io::units::{show_length, significant};
+use serde::{Deserialize, Serialize};
+
+use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
+use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
+use crate::clusters::fragments::Fragment;
+use crate::plan::bodies::{PlacedBody, called};
+use crate::stages::bonds::most_strained;
+use crate::stages::population::GONE;
+use crate::stages::replacement::{Happened, STARTS_BONDED};
+use crate::state::State;
+use crate::state::rules::Inlet;
+
+/// Share of the run at its end in which a breaking bond says that breakage is not over.
+const LATE: f64 = 0.05;
+/// Share of the largest kinetic energy in the motion of pieces apart that says the same.
+const FLYING: f64 = 0.05;
+/// Bodies that a warning names; the others are counted.
+const NAMED: usize = 3;
+
+/// The largest value of something, and where it was.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Extreme {
+    /// The value.
+    pub(super) largest: f64,
+    /// s.
+    pub(super) time_s: f64,
+    /// m. Length 3.
+    pub(super) place_m: [f64; 3],
+    /// Between what, in words; empty below what the laws mean.
+    pub(super) between: String,
+}
+
+/// What has been seen so far.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Seen {
+    /// Names of bodies that something has touched.
+    touched: BTreeSet<String>,
+    /// Overlap over the smaller radius.
+    pub(super) overlap: Extreme,
+    /// Elongation of a bond, of either sign.
+    pub(super) bond_strain: Extreme,
+    /// Names of bodies of which a clump was replaced.
+    replaced: BTreeSet<String>,
+    /// When a bond broke last, s.
+    last_break_s: Option<f64>,
+    /// Largest kinetic energy at a row of the time series, J.
+    largest_kinetic_j: f64,
+}
+
+impl Seen {
+    /// Takes down that bonds have broken in this step.
+    pub(super) fn note_breaks(&mut self, state: &State) {
+        if !state.broken.is_empty() {
+            self.last_break_s = Some(state.time_s);
+        }
+    }
+
+    /// Takes down which clumps have been replaced.
+    pub(super) fn note_happened(&mut self, happened: &[Happened]) {
+        for one in happened {
+            if let Happened::Replaced { body, cause, .. } = one
+                && *cause != STARTS_BONDED
+            {
+                self.replaced.insert(body.clone());
+            }
+        }
+    }
+
+    /// Takes down the kinetic energy, J.
+    pub(super) fn note_kinetic(&mut self, kinetic_j: f64) {
+        self.largest_kinetic_j = self.largest_kinetic_j.max(kinetic_j);
+    }
+
+    /// Looks at who touches whom, and how deep. Cheap enough for every eighth step.
+    pub(super) fn look_at_contacts(&mut self, state: &State, scene: &Scene, bodies: &[PlacedBody]) {
+        let Some(contacts) = &state.contacts else {
+            return;
+        };
+        let p = &state.particles;
+        let radius = |i: u32| p.poses[i as usize].radius_m();
+        let misses_one = self.touched.len() < scene.bodies.len();
+        let mut touching = Vec::new();
+        // Particle and wall, or two particles.
+        let mut deepest: Option<(f64, u32, Result<usize, u32>)> = None;
+        let mut take = |ratio: f64, a: u32, other: Result<usize, u32>| {
+            if ratio > deepest.map_or(self.overlap.largest, |(largest, ..)| largest) {
+                deepest = Some((ratio, a, other));
+            }
+        };
+        for (n, wall) in state.walls.iter().enumerate() {
+            for touch in &wall.touching {
+                let overlap_m = touch.memory.overlap_m();
+                take(overlap_m / radius(touch.particle), touch.particle, Ok(n));
+                if misses_one && overlap_m > 0.0 {
+                    touching.push(touch.particle);
+                }
+            }
+        }
+        for share in contacts.shares.iter().filter(|share| share.computed > 0) {
+            for at in share.close.iter().flat_map(|[_, own]| own) {
+                let overlap_m = contacts.memories[*at as usize].overlap_m();
+                if overlap_m > 0.0 {
+                    let [a, b] = contacts.pairs[*at as usize];
+                    take(overlap_m / radius(a).min(radius(b)), a, Err(b));
+                    if misses_one {
+                        touching.extend([a, b]);
+                    }
+                }
+            }
+        }
+        if let Some((ratio, a, other)) = deepest {
+            let between = if ratio > LARGEST_OVERLAP {
+                let other = match other {
+                    Ok(wall) => format!("the wall '{}'", state.walls[wall].name),
+                    Err(b) => called(bodies, &state.clumps, b),
+                };
+                format!("{} and {other}", called(bodies, &state.clumps, a))
+            } else {
+                String::new()
+            };
+            self.overlap = Extreme {
+                largest: ratio,
+                time_s: state.time_s,
+                place_m: p.poses[a as usize].place().into(),
+                between,
+            };
+        }
+        if !touching.is_empty() {
+            self.note_touched(state, bodies, touching);
+        }
+    }
+
+    fn note_touched(&mut self, state: &State, bodies: &[PlacedBody], mut touching: Vec<u32>) {
+        touching.sort_unstable();
+        touching.dedup();
+        let is_touched = |i: &u32| touching.binary_search(i).is_ok();
+        for body in bodies {
+            let mut living = body.particles.iter().filter(|i| **i != GONE);
+            if !self.touched.contains(&body.name) && living.any(is_touched) {
+                self.touched.insert(body.name.clone());
+            }
+        }
+        for clump in &state.clumps.all {
+            let name = &state.clumps.template(clump).body;
+            let mut spheres = state.clumps.spheres_of(clump);
+            if !self.touched.contains(name) && spheres.any(|i| is_touched(&(i as u32))) {
+                self.touched.insert(name.clone());
+            }
+        }
+    }
+
+    /// Looks at how far bonds are stretched or pressed. The largest strain now.
+    pub(super) fn look_at_bonds(&mut self, state: &State, bodies: &[PlacedBody]) -> f64 {
+        let p = &state.particles;
+        let Some((strain, at)) = most_strained(&state.bonds, &p.poses) else {
+            return 0.0;
+        };
+        if strain <= self.bond_strain.largest {
+            return strain;
+        }
+        let [a, b] = state.bonds.ends[at];
+        let [place_a, place_b] = [a, b].map(|end| p.poses[end as usize].place());
+        self.bond_strain = Extreme {
+            largest: strain,
+            time_s: state.time_s,
+            place_m: (0.5 * (place_a + place_b)).into(),
+            between: if strain > LARGEST_STRAIN {
+                let [a, b] = [a, b].map(|end| called(bodies, &state.clumps, end));
+                format!("{a} and {b}")
+            } else {
+                String::new()
+            },
+        };
+        strain
+    }
+
+    /// What speaks against trusting the result at the end of a run, a sentence each.
+    pub(super) fn warnings(
+        &self,
+        state: &State,
+        scene: &Scene,
+        bodies: &[PlacedBody],
+        fragments: &[Fragment],
+    ) -> Vec<String> {
+        let mut warnings = self.beyond_the_laws();
+        warnings.extend(self.untouched(state, scene, bodies));
+        if scene.test.is_none() {
+            warnings.extend(self.not_over(state, scene, fragments));
+        }
+        warnings.extend(self.never_replaced(state, scene, bodies));
+        warnings.extend(unused_rules(state));
+        warnings
+    }
+
+    /// Clumps whose trigger never fired.
+    fn never_replaced(&self, state: &State, scene: &Scene, bodies: &[PlacedBody]) -> Vec<String> {
+        let fed = |name: &str| {
+            let inlets = &state.rules.inlets;
+            inlets.iter().any(|inlet| {
+                let mut own = inlet.templates.iter();
+                inlet.come.bodies > 0
+                    && own.any(|(t, _)| state.clumps.templates[*t as usize].body == name)
+            })
+        };
+        let mut warnings = Vec::new();
+        for (name, rule) in &scene.replacement {
+            let starts_rigid = scene.bodies[name].start_as != StartAs::Bonded;
+            let was_there = is_present(state, bodies, name) || fed(name);
+            if self.replaced.contains(name) || !starts_rigid || !was_there {
+                continue;
+            }
+            let trigger = [
+                rule.enters
+                    .as_ref()
+                    .map(|region| format!("it enters '{region}'")),
+                rule.force_n
+                    .map(|force| format!("a force above {} N", significant(force, 4))),
+                rule.impact_energy_j
+                    .map(|energy| format!("an impact energy above {} J", significant(energy, 4))),
+                rule.time_s
+                    .map(|time| format!("the time {} s", significant(time, 4))),
+            ];
+            let trigger: Vec<String> = trigger.into_iter().flatten().collect();
+            let joined = trigger.join(if rule.needs_all { " and " } else { " or " });
+            warnings.push(format!(
+                "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break"
+            ));
+        }
+        warnings
+    }
+
+    fn beyond_the_laws(&self) -> Vec<String> {
+        let where_ = |extreme: &Extreme| {
+            let [x, y, z] = extreme.place_m.map(|x| significant(x, 4));
+            let time = significant(extreme.time_s, 4);
+            format!(
+                " between {}, at ({x}, {y}, {z}) m, {time} s",
+                extreme.between
+            )
+        };
+        let (strain, overlap) = (&self.bond_strain, &self.overlap);
+        let strained = strain_warning(strain.largest, &where_(strain));
+        let pressed = overlap_warning(overlap.largest, &where_(overlap));
+        strained.into_iter().chain(pressed).collect()
+    }
+
+    /// Bodies that could have touched something and did not.
+    fn untouched(&self, state: &State, scene: &Scene, bodies: &[PlacedBody]) -> Vec<String> {
+        if !can_meet(state, scene) {
+            return Vec::new();
+        }
+        // Between a kick and the drift after it.
+        let flying = flyers(state, bodies, 0.5 * state.time_step_s);
+        let mut warnings = Vec::new();
+        let mut unnamed = 0;
+        for name in scene
+            .bodies
+            .keys()
+            .filter(|name| !self.touched.contains(*name))
+        {
+            let own = flying.iter().find(|flyer| flyer.name == *name);
+            let is_there = own.is_some() || !is_present(state, bodies, name);
+            // One that is held or loaded is not there to touch anything; one that no inlet has fed
+            // was not there at all.
+            if !is_there || never_came(state, name) {
+                continue;
+            }
+            if warnings.len() == NAMED {
+                unnamed += 1;
+                continue;
+            }
+            warnings.push(match own {
+                Some(flyer) => format!(
+                    "nothing touched the body '{name}': {}",
+                    outlook(flyer, state, &flying)
+                ),
+                None => format!("nothing touched the body '{name}', which is gone by the end"),
+            });
+        }
+        if unnamed > 0 {
+            warnings.push(format!("nothing touched {unnamed} other bodies"));
+        }
+        warnings
+    }
+
+    /// Breakage that goes on.
+    fn not_over(&self, state: &State, scene: &Scene, fragments: &[Fragment]) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let is_fed = state
+            .rules
+            .inlets
+            .iter()
+            .any(|inlet| inlet.between_s[1] >= state.time_s);
+        let Some(last_s) = self.last_break_s.filter(|_| !is_fed) else {
+            return warnings;
+        };
+        if last_s >= (1.0 - LATE) * state.time_s {
+            warnings.push(format!(
+                "bonds still broke at the end, the last at {} s of {} s: the breakage may not be over; set run.end_time later than {} s",
+                significant(last_s, 4),
+                significant(state.time_s, 4),
+                significant(scene.run.end_time_s, 4)
+            ));
+        }
+        let apart_j = kinetic_apart_j(fragments);
+        let share = apart_j / self.largest_kinetic_j;
+        if fragments.len() > 1 && share > FLYING {
+            warnings.push(format!(
+                "{} pieces still fly apart at the end, with {} % of the largest kinetic energy of the run: what they hit later may break them further; set run.end_time later than {} s",
+                fragments.len(),
+                significant(100.0 * share, 2),
+                significant(scene.run.end_time_s, 4)
+            ));
+        }
+        warnings
+    }
+}
+
+/// Whether anything of a body is in the scene.
+fn is_present(state: &State, bodies: &[PlacedBody], name: &str) -> bool {
+    let mut clumps = state.clumps.all.iter();
+    bodies.iter().any(|body| body.name == name)
+        || clumps.any(|clump| state.clumps.template(clump).body == name)
+}
+
+/// Whether inlets could have fed a body and did not.
+fn never_came(state: &State, name: &str) -> bool {
+    let feeds = |inlet: &&Inlet| {
+        let mut own = inlet.templates.iter();
+        own.any(|(t, _)| state.clumps.templates[*t as usize].body == name)
+    };
+    let mut feeding = state.rules.inlets.iter().filter(feeds).peekable();
+    feeding.peek().is_some() && feeding.all(|inlet| inlet.come.bodies == 0)
+}
+
+/// What will become of a body in flight, in words.
+fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
+    let gaps = state
+        .walls
+        .iter()
+        .map(|wall| (flyer.gap_after(wall, 0.0), wall));
+    let nearest = gaps.min_by(|a, b| a.0.total_cmp(&b.0));
+    let is = nearest.map_or("it".to_owned(), |(gap_m, wall)| {
+        format!(
+            "it is {} from the wall '{}' and",
+            show_length(gap_m),
+            wall.name
+        )
+    });
+    match flyer.first_meeting(&state.walls, flying) {
+        Meeting::At { after_s, wall, .. } => format!(
+            "at the end it is on its way to the wall '{wall}', {} away, which it would reach at {} s; set run.end_time later than that",
+            show_length(nearest.map_or(0.0, |(gap_m, _)| gap_m)),
+            significant(state.time_s + after_s, 4)
+        ),
+        Meeting::Never => format!(
+            "{is} would never meet anything as it moves; check its position and velocity, gravity and the walls"
+        ),
+        Meeting::Unknown => {
+            format!(
+                "at the end {is} has met nothing yet; check its position, or set run.end_time later"
+            )
+        }
+    }
+}
+
+/// Kinetic energy of the motion of pieces about their common centre of mass, J.
+fn kinetic_apart_j(fragments: &[Fragment]) -> f64 {
+    let (mut mass_kg, mut momentum, mut kinetic_j) = (0.0, [0.0; 3], 0.0);
+    for fragment in fragments {
+        mass_kg += fragment.mass_kg;
+        for (sum, v) in momentum.iter_mut().zip(fragment.velocity_m_s) {
+            *sum += fragment.mass_kg * v;
+            kinetic_j += 0.5 * fragment.mass_kg * v * v;
+        }
+    }
+    let of_all: f64 = momentum.iter().map(|p| 0.5 * p * p / mass_kg).sum();
+    (kinetic_j - of_all).max(0.0)
+}
+
+/// Triggers, inlets and outlets that did nothing.
+fn unused_rules(state: &State) -> Vec<String> {
+    let rules = &state.rules;
+    let mut warnings = Vec::new();
+    for inlet in rules.inlets.iter().filter(|inlet| inlet.come.bodies == 0) {
+        let start_s = inlet.between_s[0];
+        let why = if start_s >= state.time_s {
+            format!("it starts at {} s", significant(start_s, 4))
+        } else {
+            "no place became free in its region".to_owned()
+        };
+        warnings.push(format!(
+            "the inlet '{}' fed nothing up to {} s: {why}",
+            inlet.name,
+            significant(state.time_s, 4)
+        ));
+    }
+    for outlet in &rules.outlets {
+        if outlet.gone.0 == 0 && !outlet.removes_outside {
+            warnings.push(format!(
+                "the outlet '{}' removed nothing: no body reached its region",
+                outlet.name
+            ));
+        }
+    }
+    warnings
+}

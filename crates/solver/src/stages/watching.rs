@@ -1,0 +1,170 @@
+//! Follows forces and contacts that measures ask for, in every step: a peak between two rows of the
+//! time series is seen.
+
+use nalgebra::Vector3;
+
+use super::contacts::{overlap_m, pair_force_n};
+use super::walls::{gap_m, touch_force_n};
+use crate::clock::Stage;
+use crate::state::State;
+use crate::state::contacts::{Contacts, Memory};
+use crate::state::walls::{Wall, WallTouch};
+use crate::state::watches::{Seen, Watch, Watched};
+use dem_io::scene::Quantity;
+
+/// Contacts of what is watched, together.
+struct Met {
+    /// Force on it, N.
+    force_n: Vector3<f64>,
+    /// Deepest overlap, m; below 0 by the distance of what is near and apart.
+    overlap_m: f64,
+}
+
+/// Reads what is watched, between the forces of a step and its end.
+pub fn watch(state: &mut State) {
+    if state.watches.is_empty() {
+        return;
+    }
+    let mut watches = std::mem::take(&mut state.watches);
+    for watch in &mut watches {
+        if let Some(contacts) = &state.contacts {
+            let met = met(watch, state, contacts);
+            note(&mut watch.seen, watch.quantity, &met, state);
+        }
+    }
+    state.watches = watches;
+    state.clock.book(Stage::Output);
+}
+
+fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
+    // What is listed as near reaches so far for sure, be it listed now or in the step before.
+    let longest_s = state.time_step_s.max(state.previous_time_step_s);
+    let sure_m = 2.0 * state.fastest_m_s * longest_s;
+    let now_m = met.overlap_m.max(-sure_m);
+    if let Some(before_m) = seen.overlap_m {
+        seen.touched_s += state.previous_time_step_s * share_above_0(before_m, now_m);
+    }
+    seen.overlap_m = Some(now_m);
+    seen.value = match quantity {
+        Quantity::Force(k) | Quantity::ContactForce(k) => met.force_n[usize::from(k)],
+        Quantity::ContactOverlap => met.overlap_m.max(0.0),
+        Quantity::ContactDuration => seen.touched_s,
+        _ => met.force_n.norm(),
+    };
+    // Adding 0 takes the sign from a zero.
+    seen.value += 0.0;
+    seen.history.note(state.time_s, seen.value);
+}
+
+/// The share of a step in which something is above 0 that goes straight from one value to another.
+fn share_above_0(before: f64, now: f64) -> f64 {
+    match (before > 0.0, now > 0.0) {
+        (true, true) => 1.0,
+        (false, false) => 0.0,
+        _ => before.max(now) / (before - now).abs(),
+    }
+}
+
+fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
+    let mut met = Met {
+        force_n: Vector3::zeros(),
+        overlap_m: f64::NEG_INFINITY,
+    };
+    match &watch.of {
+        Watched::Wall(wall) => {
+            let wall = state.walls.get(*wall);
+            met.force_n = wall.map_or(met.force_n, |wall| -Vector3::from(wall.whole_push()[0]));
+        }
+        Watched::Particles(of) => {
+            let all = |[a, b]: [bool; 2]| (a != b).then_some(if b { 1.0 } else { -1.0 });
+            met.pairs(state, contacts, |pair| all(pair.map(|i| of[i as usize])));
+            for (number, wall) in state.walls.iter().enumerate() {
+                met.wall(state, contacts, (number, wall), of);
+            }
+        }
+        Watched::WithWall(of, number) => {
+            if let Some(wall) = state.walls.get(*number) {
+                met.wall(state, contacts, (*number, wall), of);
+                if watch.quantity == Quantity::ContactDuration && met.overlap_m <= 0.0 {
+                    let near = wall.near.iter().filter(|&&i| of[i as usize]);
+                    let gaps = near.map(|&i| gap_m(wall, &state.particles.poses[i as usize]));
+                    met.overlap_m = -gaps.fold(f64::INFINITY, f64::min).max(0.0);
+                }
+            }
+        }
+        Watched::Between([of, with]) => met.pairs(state, contacts, |[a, b]| {
+            let [a, b] = [a as usize, b as usize];
+            match (of[b] && with[a], of[a] && with[b]) {
+                (true, _) => Some(1.0),
+                (_, true) => Some(-1.0),
+                _ => None,
+            }
+        }),
+    }
+    met
+}
+
+impl Met {
+    /// Adds contacts between particles. `sign`: 1 where the force on the second of a pair is meant,
+    /// -1 where that on the first is, none where neither is.
+    fn pairs(
+        &mut self,
+        state: &State,
+        contacts: &Contacts,
+        sign: impl Fn([u32; 2]) -> Option<f64>,
+    ) {
+        let p = &state.particles;
+        for (&pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
+            let Some(sign) = sign(pair) else {
+                continue;
+            };
+            if memory.overlap_m() > 0.0 {
+                self.force_n += sign * pair_force_n(contacts, p, pair, memory);
+                self.overlap_m = self.overlap_m.max(memory.overlap_m());
+            } else if self.overlap_m <= 0.0 {
+                let apart_m = memory.origin_m() - overlap_m(&p.poses, pair);
+                self.overlap_m = self.overlap_m.max(-apart_m.max(0.0));
+            }
+        }
+        for kept in state.sleep.iter().flat_map(|sleep| &sleep.pairs) {
+            if let Some(sign) = sign(kept.pair) {
+                let memory = at_rest(&kept.memory);
+                self.force_n += sign * pair_force_n(contacts, p, kept.pair, &memory);
+                self.overlap_m = self.overlap_m.max(memory.overlap_m());
+            }
+        }
+    }
+
+    /// Adds contacts of those of the particles that `of` has with a wall and its number.
+    fn wall(
+        &mut self,
+        state: &State,
+        contacts: &Contacts,
+        (number, wall): (usize, &Wall),
+        of: &[bool],
+    ) {
+        let mut add = |touch: &WallTouch| {
+            if of[touch.particle as usize] && touch.memory.overlap_m() > 0.0 {
+                self.force_n += touch_force_n(wall, contacts, &state.particles, touch);
+                self.overlap_m = self.overlap_m.max(touch.memory.overlap_m());
+            }
+        };
+        wall.touching.iter().for_each(&mut add);
+        let kept = state.sleep.iter().flat_map(|sleep| &sleep.touches);
+        for kept in kept.filter(|kept| kept.wall == number) {
+            add(&WallTouch {
+                memory: at_rest(&kept.touch.memory),
+                ..kept.touch
+            });
+        }
+    }
+}
+
+/// What a contact of bodies that sleep remembers, without its damping: nothing moves.
+fn at_rest(memory: &Memory) -> Memory {
+    let [.., origin_m] = memory.damped;
+    Memory {
+        damped: [0.0, 0.0, 0.0, origin_m],
+        ..*memory
+    }
+}

@@ -1,0 +1,255 @@
+//! The angle of repose of cones of spheres: lattices and random packings, cut so that all spheres
+//! lie within the cone.
+
+use std::collections::BTreeMap;
+use std::f64::consts::SQRT_2;
+use std::fmt::Write;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::{Measured, assert_near};
+
+/// A sphere: centre and radius.
+type Sphere = (Vector3<f64>, f64);
+
+/// SplitMix64.
+struct Random(u64);
+
+impl Random {
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^= z >> 31;
+        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A cone of this height and slope that stands on the plane z = 0.
+#[derive(Clone, Copy)]
+struct Cone {
+    height: f64,
+    slope: f64,
+}
+
+impl Cone {
+    fn of(height: f64, degrees: f64) -> Self {
+        let slope = degrees.to_radians().tan();
+        Self { height, slope }
+    }
+
+    fn radius(&self) -> f64 {
+        self.height / self.slope
+    }
+
+    fn holds(&self, (place, radius): &Sphere) -> bool {
+        let room = self.height - place.z - self.slope * place.x.hypot(place.y);
+        room >= radius * self.slope.hypot(1.0)
+    }
+}
+
+/// Layers of spheres of radius 1: in squares or hexagons, how high a layer is, after how many they
+/// repeat.
+#[derive(Clone, Copy)]
+struct Lattice {
+    hexagonal: bool,
+    layer: f64,
+    repeats: i32,
+}
+
+const CUBIC: Lattice = Lattice {
+    hexagonal: false,
+    layer: 2.0,
+    repeats: 1,
+};
+const CENTRED: Lattice = Lattice {
+    hexagonal: false,
+    layer: SQRT_2,
+    repeats: 2,
+};
+const HEXAGONAL: Lattice = Lattice {
+    hexagonal: true,
+    layer: 1.632_993_161_855_452,
+    repeats: 2,
+};
+const FACES: Lattice = Lattice {
+    repeats: 3,
+    ..HEXAGONAL
+};
+
+/// A lattice that stands somehow in the cone. None: it has fewer layers or fewer than 200 spheres.
+fn regular(
+    lattice: &Lattice,
+    cone: &Cone,
+    fewest: usize,
+    random: &mut Random,
+) -> Option<Vec<Sphere>> {
+    let shift = Vector3::new(random.within(0.0, 2.0), random.within(0.0, 2.0), 1.0);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * random.within(0.0, 1.0));
+    let reach = cone.radius() as i32 + 4;
+    let mut spheres = Vec::new();
+    let mut layers = 0;
+    for k in 0..(cone.height / lattice.layer) as i32 + 1 {
+        let before = spheres.len();
+        let f = f64::from(k % lattice.repeats);
+        for i in -reach..=reach {
+            for j in -reach..=reach {
+                let (i, j, root) = (f64::from(i), f64::from(j), 3.0_f64.sqrt());
+                let (x, y) = if lattice.hexagonal {
+                    (2.0 * i + j + f, root * j + f / root)
+                } else {
+                    (2.0 * i + f, 2.0 * j + f)
+                };
+                let place = turn * (Vector3::new(x, y, lattice.layer * f64::from(k)) + shift);
+                if cone.holds(&(place, 1.0)) {
+                    spheres.push((place, 1.0));
+                }
+            }
+        }
+        layers += usize::from(spheres.len() > before);
+    }
+    (layers >= fewest && spheres.len() >= 200).then_some(spheres)
+}
+
+/// Spheres dropped one by one until 600 in succession find no place in the cone. Radii are `1 -
+/// spread` to `1 + spread`.
+fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
+    let cell = 2.0 * (1.0 + spread);
+    let column = |x: f64| (x / cell).floor() as i32;
+    let mut cells: BTreeMap<(i32, i32), Vec<Sphere>> = BTreeMap::new();
+    let mut all = Vec::new();
+    let mut failed = 0;
+    while failed < 600 {
+        let radius = random.within(1.0 - spread, 1.0 + spread);
+        let mut lowest: Option<Sphere> = None;
+        for _ in 0..8 {
+            let [x, y] = [0; 2].map(|_| random.within(-cone.radius(), cone.radius()));
+            let (i, j) = (column(x), column(y));
+            let near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| (i + a, j + b)));
+            let below = near.filter_map(|cell| cells.get(&cell)).flatten();
+            let z = below.fold(radius, |z, (place, other)| {
+                let square = (place.x - x).powi(2) + (place.y - y).powi(2);
+                let room = (other + radius).powi(2) - square;
+                if room > 0.0 {
+                    z.max(place.z + room.sqrt())
+                } else {
+                    z
+                }
+            });
+            let sphere = (Vector3::new(x, y, z), radius);
+            if cone.holds(&sphere) && lowest.is_none_or(|(place, _)| z < place.z) {
+                lowest = Some(sphere);
+            }
+        }
+        match lowest {
+            Some(sphere) => {
+                failed = 0;
+                let key = (column(sphere.0.x), column(sphere.0.y));
+                cells.entry(key).or_default().push(sphere);
+                all.push(sphere);
+            }
+            None => failed += 1,
+        }
+    }
+    all
+}
+
+/// The angle of repose of these spheres, degrees, under this gravity.
+fn angle_deg(spheres: &[Sphere], gravity: [f64; 3]) -> f64 {
+    let mut particles = String::new();
+    for (place, radius) in spheres {
+        let [x, y, z] = (*place).into();
+        write!(particles, "[{x:e}, {y:e}, {z:e}, {radius:e}],").unwrap();
+    }
+    let [x, y, z] = gravity;
+    let mut run = Measured::new(&format!(
+        "version = 1
+run = {{ end_time = 1, time_step = 1e-3, gravity = [{x:e}, {y:e}, {z:e}] }}
+materials.m = {{ density = 2000 }}
+bodies.heap = {{ particles = [{particles}], material = \"m\" }}
+measures.slope = {{ of = \"heap\", quantity = \"angle_of_repose\", reference = \"30 deg\" }}
+"
+    ));
+    run.act();
+    let value = run.read()["slope"];
+    let result = run.gauges[0].result();
+    assert_eq!(
+        (result.unit.as_str(), result.reference),
+        ("deg", Some(30.0))
+    );
+    value
+}
+
+const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
+
+#[test]
+fn lattices_cut_to_a_cone_have_its_slope() {
+    let mut random = Random(11);
+    let mut layers = [CUBIC, CENTRED, HEXAGONAL, FACES].into_iter().cycle();
+    for degrees in [10.0, 16.0, 22.0, 28.0, 34.0, 40.0] {
+        for lattice in layers.by_ref().take(4) {
+            // A steep cone of six layers is of 200 spheres, few enough to depend on where each is.
+            let fewest = if degrees > 25.0 { 8 } else { 6 };
+            let spheres = loop {
+                let top = lattice.layer * (fewest as f64 + random.within(-0.8, 3.0));
+                let cone = Cone::of(
+                    top + 1.0 + 1.0 / f64::cos(f64::to_radians(degrees)),
+                    degrees,
+                );
+                if let Some(spheres) = regular(&lattice, &cone, fewest, &mut random) {
+                    break spheres;
+                }
+            };
+            assert_near(angle_deg(&spheres, DOWN), degrees, 1.0);
+        }
+    }
+}
+
+#[test]
+fn dropped_spheres_within_a_cone_have_its_slope() {
+    let mut random = Random(5);
+    for spread in [0.0, 0.3] {
+        for degrees in [12.0, 20.0, 28.0, 40.0] {
+            let cone = Cone::of(random.within(16.0, 20.0), degrees);
+            let spheres = dropped(&cone, spread, &mut random);
+            assert!(spheres.len() >= 200, "{}", spheres.len());
+            assert_near(angle_deg(&spheres, DOWN), degrees, 1.0);
+        }
+    }
+}
+
+/// Where a heap stands and how the world is tilted does not matter, and a few that have rolled away
+/// hardly do.
+#[test]
+fn places_and_tilt_and_what_rolled_away_do_not_matter() {
+    let mut random = Random(3);
+    let mut spheres = dropped(&Cone::of(14.0, 25.0), 0.2, &mut random);
+    let angle = angle_deg(&spheres, DOWN);
+    assert_near(angle, 25.0, 1.0);
+    let tilt = UnitQuaternion::from_scaled_axis(Vector3::new(0.7, -1.1, 0.4));
+    let moved = Vector3::new(300.0, -200.0, 100.0);
+    let tilted: Vec<Sphere> = spheres
+        .iter()
+        .map(|(p, r)| (tilt * p + moved, *r))
+        .collect();
+    let down = tilt * Vector3::from(DOWN);
+    assert_near(angle_deg(&tilted, down.into()), angle, 1e-8);
+    for n in 0..5 {
+        let turn = f64::from(n);
+        spheres.push((Vector3::new(90.0 * turn.cos(), 70.0 * turn.sin(), 1.0), 1.0));
+    }
+    assert_near(angle_deg(&spheres, DOWN), angle, 0.1);
+}
+
+#[test]
+fn a_bed_that_is_flat_on_top_has_no_slope() {
+    for layers in [1, 5] {
+        let mut spheres = Vec::new();
+        for n in 0..20 * 20 * layers {
+            let [x, y, z] = [n % 20, n / 20 % 20, n / 400].map(|k| 2.0 * f64::from(k));
+            spheres.push((Vector3::new(x, y, z + 1.0), 1.0));
+        }
+        assert_near(angle_deg(&spheres, DOWN), 0.0, 1e-6);
+    }
+}

@@ -1,0 +1,112 @@
+//! Measures: of bodies as a whole, be they clumps or clusters; of contacts; of heaps.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod contacts;
+mod heaps;
+mod refused;
+mod whole;
+
+use std::collections::BTreeMap;
+
+use dem_io::scene::{BodySource, Scene};
+use dem_io::{Body, Result, scene_from_text};
+use dem_run::check::ledger::balance;
+use dem_run::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
+use dem_run::plan::bodies::{PlacedBody, renumber};
+use dem_run::plan::{Plan, plan};
+use dem_run::stages::clumps::place_all;
+use dem_run::stages::replacement::replace;
+use dem_run::state::State;
+use dem_run::step::{act, move_on};
+
+pub(crate) fn scene(text: &str) -> Scene {
+    scene_from_text(text, "scene.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+pub(crate) fn try_plan(scene: &Scene) -> Result<Plan> {
+    let body = |source: &BodySource| match source {
+        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
+        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
+    };
+    let bodies: BTreeMap<String, Body> = (scene.bodies.iter())
+        .map(|(name, entry)| (name.clone(), body(&entry.source)))
+        .collect();
+    plan(scene, bodies, 1, true)
+}
+
+/// A scene that is stepped, and its measures.
+pub(crate) struct Measured {
+    pub(crate) state: State,
+    pub(crate) gauges: Vec<Gauge>,
+    bodies: Vec<PlacedBody>,
+}
+
+impl Measured {
+    pub(crate) fn new(text: &str) -> Self {
+        let scene = scene(text);
+        let plan = try_plan(&scene).unwrap();
+        let gauges = gauges(&scene, &plan);
+        let mut state = plan.state;
+        place_watches(&gauges, &mut state);
+        let bodies = plan.bodies;
+        Self {
+            state,
+            gauges,
+            bodies,
+        }
+    }
+
+    /// First half of a step, after which everything can be read.
+    pub(crate) fn act(&mut self) {
+        act(&mut self.state);
+    }
+
+    /// What comes and goes. Whether anything did.
+    pub(crate) fn replace(&mut self) -> bool {
+        let Some((renumbered, _)) = replace(&mut self.state) else {
+            return false;
+        };
+        for by in &renumbered {
+            renumber(&mut self.bodies, by);
+        }
+        renumber_gauges(&mut self.gauges, &renumbered, &self.bodies, &mut self.state);
+        true
+    }
+
+    pub(crate) fn move_on(&mut self) {
+        move_on(&mut self.state);
+    }
+
+    /// All values by name.
+    pub(crate) fn read(&mut self) -> BTreeMap<String, f64> {
+        place_all(&self.state.clumps, &mut self.state.particles);
+        let balance = balance(&mut self.state);
+        let values = read_gauges(&mut self.gauges, &self.state, &balance);
+        let names = self.gauges.iter().map(|gauge| gauge.name.clone());
+        names.zip(values).collect()
+    }
+
+    /// Steps until this time, s, and reads there alone: the results by name.
+    pub(crate) fn run(&mut self, end_s: f64) -> BTreeMap<String, f64> {
+        loop {
+            self.act();
+            if self.state.time_s >= end_s {
+                self.read();
+                let results = self.gauges.iter().map(Gauge::result);
+                return results.map(|result| (result.name, result.value)).collect();
+            }
+            self.replace();
+            self.move_on();
+        }
+    }
+}
+
+#[track_caller]
+pub(crate) fn assert_near(value: f64, wanted: f64, off: f64) {
+    assert!((value - wanted).abs() <= off, "{value} for {wanted}, {off}");
+}

@@ -1,0 +1,97 @@
+//! How a scene starts and what ends in it: sets displaced and in motion, supports and loads that
+//! end, overlaps that are kept, a bounce; walls that are rigid and clumps that nothing replaces.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod bounce;
+mod ends;
+mod initial;
+mod keep;
+mod rigid;
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use dem_io::results::ResultsFolder;
+use dem_io::scene::{BodySource, Scene, scene_from_text};
+use dem_io::{Body, Result};
+use dem_run::output::summary::Summary;
+use dem_run::plan::{Plan, plan};
+use dem_run::run::{RunSettings, run};
+use dem_run::snapshot::Snapshot;
+use dem_run::state::State;
+use nalgebra::Vector3;
+
+/// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond is E A/L stiff with
+/// a radius of 1 mm.
+const PAIR: &str = "version = 1\nmaterials.m.density = 1000\n\
+     bonds.b = { model = \"parallel\", young_modulus = \"1 MPa\", poisson_ratio = 0.3, radius_factor = 1 }\n\
+     bodies.pair = { material = \"m\", bonds = \"b\", particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3]], bond_list = [[0, 1]] }\n\
+     sets.first = { body = \"pair\", particles = [0] }\n\
+     sets.second = { body = \"pair\", particles = [1] }\n";
+
+/// Stiffness of the bond of [`PAIR`], N/m.
+const STIFFNESS_N_M: f64 = 1e6 * std::f64::consts::PI * 1e-6 / 2e-3;
+/// Mass of one of its spheres, kg.
+const MASS_KG: f64 = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
+
+fn scene(text: &str) -> Scene {
+    scene_from_text(text, "test.toml", &[]).unwrap()
+}
+
+/// The plan of a scene whose particles stand in it.
+fn try_planned(text: &str) -> Result<Plan> {
+    let scene = scene(text);
+    let bodies: BTreeMap<String, Body> = (scene.bodies.iter())
+        .map(|(name, entry)| match &entry.source {
+            BodySource::Inline { particles, bonds } => {
+                (name.clone(), Body::from_spheres(particles, bonds).unwrap())
+            }
+            BodySource::File(path) => panic!("{path:?}"),
+        })
+        .collect();
+    plan(&scene, bodies, 1, false)
+}
+
+fn planned(text: &str) -> Plan {
+    try_planned(text).unwrap()
+}
+
+/// Runs a scene, into a folder or nowhere; it is interrupted at `stop_at` of its end time.
+fn run_of(
+    text: &str,
+    folder: Option<&ResultsFolder>,
+    resume: Option<Snapshot>,
+    stop_at: f64,
+) -> Result<Summary> {
+    let interrupted = AtomicBool::new(false);
+    let settings = RunSettings {
+        folder,
+        resume,
+        test: None,
+        threads: 1,
+        interrupted: &interrupted,
+    };
+    run(planned(text), &scene(text), settings, &|share| {
+        if share >= stop_at {
+            interrupted.store(true, Ordering::Relaxed);
+        }
+    })
+}
+
+/// Where the centre of a particle is, m.
+fn place(state: &State, particle: usize) -> Vector3<f64> {
+    state.particles.poses[particle].place()
+}
+
+fn assert_near(got: f64, wanted: f64, tolerance: f64) {
+    let off = (got / wanted - 1.0).abs();
+    assert!(
+        off <= tolerance,
+        "{got:e}, not {wanted:e}: off by {off:.1e}"
+    );
+}

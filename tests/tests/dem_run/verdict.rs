@@ -1,0 +1,248 @@
+//! Scenes that run and whose results mislead unless somebody says so: what the verdict says, and what
+//! `check` says beforehand, stands in the scene after `#!` and `#?`, a line for each warning.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{Bench, corpus};
+
+/// The texts after a mark, in order.
+fn expected(text: &str, mark: &str) -> Vec<String> {
+    let lines = text.lines();
+    lines
+        .filter_map(|line| Some(line.strip_prefix(mark)?.trim().to_owned()))
+        .collect()
+}
+
+fn strings(value: &Value) -> Vec<String> {
+    let values = value.as_array().unwrap().iter();
+    values.map(|one| one.as_str().unwrap().to_owned()).collect()
+}
+
+/// What is printed as JSON.
+fn json(bench: &Bench, scene: &Path, arguments: &[&str]) -> Value {
+    serde_json::from_str(&bench.good(scene, arguments)).unwrap()
+}
+
+#[test]
+fn every_doubtful_scene_is_called_so() {
+    let bench = Bench::new();
+    let scenes = corpus("doubtful");
+    assert!(scenes.len() >= 20, "{}", scenes.len());
+    let mut wrong = String::new();
+    for path in scenes {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        let summary = json(&bench, &path, &["--json", "--quiet"]);
+        let warnings = strings(&summary["verdict"]["warnings"]);
+        let said = expected(&text, "#! ");
+        assert_eq!(
+            summary["verdict"]["sound"],
+            Value::Bool(said.is_empty()),
+            "{name}"
+        );
+        assert!(!said.is_empty(), "{name} is not doubtful");
+        let output = super::dem_run()
+            .arg("check")
+            .arg(&path)
+            .arg("--json")
+            .output()
+            .unwrap();
+        let checked: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for (what, found, said) in [
+            ("run", warnings, said),
+            (
+                "check",
+                strings(&checked["warnings"]),
+                expected(&text, "#? "),
+            ),
+        ] {
+            if found != said {
+                wrong += &format!("{name}, {what}:\n  expected {said:#?}\n  found {found:#?}\n");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+#[test]
+fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
+    let bench = Bench::new();
+    let scene = bench.write("scene.toml", super::unstable::uneven());
+    let options = [
+        "--set",
+        "run.time_step=20 us",
+        "--force-step",
+        "--json",
+        "--out",
+        "out",
+    ];
+    let output = bench.run(&scene, &options);
+    assert_eq!(output.status.code(), Some(3));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let written = std::fs::read(bench.path("out/summary.json")).unwrap();
+    let written: Value = serde_json::from_slice(&written).unwrap();
+    assert_eq!(printed, written);
+    assert_eq!(written["ended_by"], "instability");
+    let problem = written["problem"].as_str().unwrap();
+    assert!(problem.contains("unstable at step "), "{problem}");
+    assert_eq!(written["verdict"]["sound"], false);
+    assert_eq!(written["verdict"]["warnings"][0], problem);
+    let inputs = &written["inputs"];
+    assert_eq!(inputs["set"], serde_json::json!(["run.time_step=20 us"]));
+    assert_eq!(inputs["scene"]["run.time_step"], "2e-5 s");
+    assert_eq!(inputs["seed"], 0);
+    // It is no result of a run that came to its end.
+    let said = bench.bad(&scene, &["--out", "out"], 2);
+    assert!(said.contains("--force"), "{said}");
+}
+
+#[test]
+fn bodies_are_told_apart_by_their_hashes() {
+    let bench = Bench::new();
+    bench.write("row.vtp", super::vtp_bytes(&super::row(5)));
+    bench.write("longer.vtp", super::vtp_bytes(&super::row(6)));
+    let scene = bench.write(
+        "scene.toml",
+        "version = 1\nrun.end_time = \"1 us\"\nmaterials.m.density = 1000\nbonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3 }\nbodies.row = { file = \"row.vtp\", material = \"m\", bonds = \"b\" }\n",
+    );
+    let hash = |options: &[&str]| {
+        let all = [&["--json", "--quiet"], options].concat();
+        let body = &json(&bench, &scene, &all)["inputs"]["bodies"]["row"];
+        body["hash"].as_str().unwrap().to_owned()
+    };
+    let first = hash(&[]);
+    assert_eq!(first.len(), 16);
+    assert_eq!(hash(&["--body", "row.vtp"]), first);
+    assert_ne!(hash(&["--body", "longer.vtp"]), first);
+}
+
+/// A bar that breaks at once: without a search at the end it would be one fragment to the last.
+#[test]
+fn the_end_of_a_run_looks_for_pieces() {
+    let bench = Bench::new();
+    let scene = bench.write(
+        "burst.toml",
+        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tension = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
+    );
+    let summary = json(&bench, &scene, &["--json", "--quiet", "--out", "out"]);
+    assert_eq!(summary["broken_bonds"], 1);
+    assert_eq!(summary["fragments"]["count"], 2);
+    let events = std::fs::read_to_string(bench.path("out/events.csv")).unwrap();
+    assert_eq!(
+        events.lines().filter(|line| line.contains("split")).count(),
+        1,
+        "{events}"
+    );
+    let (_, rows) = super::table(&bench.path("out/fragments.csv"));
+    let last = rows.last().unwrap()[0].clone();
+    assert_eq!(rows.iter().filter(|row| row[0] == last).count(), 2);
+}
+
+#[test]
+fn without_a_folder_the_last_line_says_so() {
+    let bench = Bench::new();
+    let scene = super::scene_of_data("cantilever.toml");
+    let said = bench.good(&scene, &["--set", "run.end_time=1 ms"]);
+    let last = "no files written: add --out FOLDER to keep the results";
+    assert_eq!(said.lines().last(), Some(last));
+    let short = ["--set", "run.end_time=1 ms", "--out", "out"];
+    assert!(!bench.good(&scene, &short).contains("no files written"));
+}
+
+/// Pebbles and bonded pairs, fed into a box.
+const FED: &str = r#"version = 1
+run = { end_time = "60 ms", gravity = [0, 0, -9.81] }
+[materials.stone]
+density = 2000
+young_modulus = "50 MPa"
+[materials.steel]
+young_modulus = "210 GPa"
+[contacts]
+stone-stone = { restitution = 0.5 }
+steel-stone = { restitution = 0.5 }
+[bonds.glue]
+young_modulus = "50 MPa"
+poisson_ratio = 0.3
+[bodies.pair]
+particles = [[0, 0, 0, 0.01], [0.02, 0, 0, 0.01]]
+bond_list = [[0, 1]]
+material = "stone"
+bonds = "glue"
+[bodies.pebble]
+particles = [[0, 0, 0, 0.01]]
+material = "stone"
+[regions.gate]
+box = { min = [-0.2, -0.2, 0.1], max = [0.2, 0.2, 0.2] }
+[inlets.pairs]
+bodies = ["pair"]
+region = "gate"
+rate = "40 /s"
+velocity = [0, 0, -2]
+[inlets.pebbles]
+bodies = ["pebble"]
+region = "gate"
+rate = "40 /s"
+velocity = [0, 0, -2]
+[walls.floor]
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+material = "steel"
+"#;
+
+#[test]
+fn what_an_inlet_feeds_bonded_is_no_replacement_and_a_sphere_no_clump() {
+    let bench = Bench::new();
+    let scene = bench.write("fed.toml", FED);
+    let summary = json(&bench, &scene, &["--json", "--quiet", "--out", "out"]);
+    let population = &summary["population"];
+    assert_eq!(population["came"], 6);
+    assert_eq!(population["replaced"], 0);
+    assert_eq!(population["clumps"], 0);
+    assert_eq!(population["single_spheres"], 3);
+    let (_, rows) = super::table(&bench.path("out/events.csv"));
+    let kinds = |kind: &str| {
+        rows.iter()
+            .filter(|row| row.iter().any(|cell| cell == kind))
+            .count()
+    };
+    assert_eq!((kinds("bonded"), kinds("replaced")), (3, 0));
+}
+
+/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766) with the material of the particles, which are not there yet.
+#[test]
+fn check_speaks_of_what_inlets_will_feed() {
+    let bench = Bench::new();
+    let scene = bench.write("fed.toml", FED);
+    let output = super::dem_run()
+        .arg("check")
+        .arg(&scene)
+        .arg("--json")
+        .output()
+        .unwrap();
+    let check: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let shear_pa: f64 = 50e6 / (2.0 * 1.3);
+    let rayleigh_s =
+        std::f64::consts::PI * 0.01 * (2000.0 / shear_pa).sqrt() / (0.1631 * 0.3 + 0.8766);
+    let said = check["rayleigh_s"].as_f64().unwrap();
+    assert!(
+        (said / rayleigh_s - 1.0).abs() < 1e-9,
+        "{said} {rayleigh_s}"
+    );
+    let pairs = &check["to_come"][0];
+    assert_eq!(pairs["inlet"], "pairs");
+    assert_eq!(
+        (&pairs["bodies"], &pairs["bonds"]),
+        (&3.0.into(), &3.0.into())
+    );
+    assert!(pairs["bytes"].as_f64().unwrap() > 0.0);
+    let output = super::dem_run().arg("check").arg(&scene).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    for said in [
+        "0 particles, 0 bonds at the start\n",
+        "3 bodies through the inlet 'pairs' until the end: 6 spheres and 3 bonds once they are bonded\n",
+        "if all that is fed is bonded and none leaves\n",
+    ] {
+        assert!(text.contains(said), "{text}");
+    }
+}
