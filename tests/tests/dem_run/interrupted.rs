@@ -100,10 +100,17 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
     sleep(Duration::from_millis(700));
     send("-INT", &child);
     child.try_wait().unwrap();
-    let output = child.wait_with_output().unwrap();
+    let mut output = child.wait_with_output().unwrap();
+    let printed = std::mem::take(&mut output.stdout);
+    let printed: serde_json::Value = serde_json::from_slice(&printed).unwrap();
+    assert_eq!(printed["ended_by"], "interruption");
     let (said, code) = super::refused(&output);
     assert_eq!(code, 130);
     assert!(said.starts_with("error: interrupted at "), "{said}");
+    assert_eq!(
+        format!("error: {}", printed["problem"].as_str().unwrap()),
+        said
+    );
     assert!(
         said.ends_with("with --out FOLDER its state would have been kept"),
         "{said}"
