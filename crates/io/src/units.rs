@@ -477,8 +477,14 @@ mod tests {
         let declared = include_str!("units.rs")
             .matches(": Dimension = Dimension {")
             .count();
-        // This test names the words once itself.
-        assert_eq!(declared - 1, DIMENSIONS.len());
+        // This test names the words once itself, and `ANGLE_DEG` has the units of `ANGLE`.
+        let names = |dimension: &Dimension| -> Vec<&str> {
+            let mut names: Vec<&str> = dimension.units.iter().map(|(unit, _)| *unit).collect();
+            names.sort_unstable();
+            names
+        };
+        assert_eq!(names(&ANGLE_DEG), names(&ANGLE));
+        assert_eq!(declared - 2, DIMENSIONS.len());
         let mut names: Vec<&str> = DIMENSIONS.iter().map(|d| d.name).collect();
         names.sort_unstable();
         names.dedup();

@@ -152,7 +152,10 @@ fn never_a_panic() {
     let counts = RefCell::new([0; 4]);
     let result = TestRunner::new(config).run(&(scene(), any::<bool>()), |(scene, forced)| {
         let code = run(&scene, forced)?;
-        counts.borrow_mut()[code as usize] += 1;
+        // Those that take too long end with 130.
+        if let Some(count) = counts.borrow_mut().get_mut(code as usize) {
+            *count += 1;
+        }
         Ok(())
     });
     if let Err(error) = result {
