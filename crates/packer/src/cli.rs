@@ -199,7 +199,7 @@ struct PackArguments {
     /// Print the report as JSON on standard output (the body then needs --output)
     #[arg(long, requires = "output", help_heading = "Running")]
     json: bool,
-    /// Say nothing unless something is wrong: no progress, no report; --json is printed all the same
+    /// Say nothing but errors: no progress, no report; --json is printed all the same
     #[arg(short, long, help_heading = "Running")]
     quiet: bool,
 }

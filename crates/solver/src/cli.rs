@@ -122,7 +122,7 @@ struct RunArguments {
     /// Go on with the run whose checkpoint is in the folder
     #[arg(long)]
     resume: bool,
-    /// Say nothing unless something is wrong: no progress, no summary; --json is printed all the same
+    /// Say nothing but errors: no progress, no warnings, no summary; --json is printed all the same
     #[arg(long, short)]
     quiet: bool,
 }

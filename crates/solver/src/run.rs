@@ -49,6 +49,10 @@ use self::progress::{Rhythm, due, next};
 /// Wall time between two checkpoints where the scene names no other rhythm.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
+/// Steps between two looks at how bonds are bent and twisted: each costs about five times what the
+/// bonds of a step do.
+const EDGES_EVERY: u64 = 1024;
+
 /// How a run is told to go.
 #[derive(Debug)]
 pub struct RunSettings<'a> {
@@ -257,7 +261,10 @@ pub fn run_as_far_as_it_goes(
             let problem = with_checkpoint(problem, files.as_ref());
             break Ended::before_the_end(&mut state, "instability", problem);
         }
-        progress.seen.note_breaks(&state);
+        progress.seen.note_breaks(&state, &bodies);
+        if state.steps.is_multiple_of(EDGES_EVERY) {
+            progress.seen.look_at_edges(&state, &bodies);
+        }
         if state.steps.is_multiple_of(LOOKS_EVERY) {
             progress.seen.look_at_contacts(&state, scene, &bodies);
         }
@@ -415,7 +422,10 @@ pub fn run_as_far_as_it_goes(
         .as_ref()
         .map(|clusters| fragments_of(clusters, &state.particles, &state.clumps, None));
     let pieces = fragments.as_deref().unwrap_or_default();
-    warnings.extend(progress.seen.warnings(&state, scene, &bodies, pieces));
+    progress.seen.look_at_edges(&state, &bodies);
+    let is_stopped = ended.problem.is_some();
+    let seen = &progress.seen;
+    warnings.extend(seen.warnings(&state, scene, &bodies, pieces, is_stopped));
     let of_state = state.clusters.as_ref().zip(fragments.as_ref());
     let mut summary = Summary {
         scene: scene.source.clone(),

@@ -4,11 +4,15 @@
 use dem_io::scene::Factor;
 use dem_io::units::{show_length, significant};
 use nalgebra::Vector3;
+use std::ops::Range;
 
 use crate::check::linear::overlap_at_impact;
+use crate::plan::bodies::PlacedBody;
+use crate::stages::population::GONE;
 use crate::state::State;
+use crate::state::bonds::Bonds;
 
-/// Elongation of a bond above which linear elasticity is doubtful: an error of the same order.
+/// Strain at the edge of a bond above which linear elasticity is doubtful: an error of the same order.
 pub const LARGEST_STRAIN: f64 = 0.1;
 /// Overlap over the smaller radius above which the contact laws are doubtful: the radius of Hertz's
 /// contact, which should be small, is 0.55 of the sphere's there.
@@ -37,74 +41,115 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
 
 /// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each. None:
 /// nothing can meet anything.
-pub fn foreseen(state: &State, impact_speed_m_s: Option<f64>) -> Vec<String> {
+pub fn foreseen(
+    state: &State,
+    bodies: &[PlacedBody],
+    impact_speed_m_s: Option<f64>,
+) -> Vec<String> {
     let mut warnings = Vec::new();
-    let softest = softest_bond(state);
-    if let Some((modulus_pa, density_kg_m3)) = softest {
-        let modulus = format!("a Young's modulus of {} Pa", significant(modulus_pa, 3));
-        let wave_m_s = (modulus_pa / density_kg_m3).sqrt();
-        if let Some(impact_speed_m_s) = impact_speed_m_s
-            && impact_speed_m_s > LARGEST_STRAIN * wave_m_s
+    let limit = format!(
+        "bonds are linear elastic, which holds up to about {} %",
+        100.0 * LARGEST_STRAIN
+    );
+    for body in assemblies(state, bodies) {
+        let of_bonds = format!(
+            "bonds of '{}', of a Young's modulus of {} Pa,",
+            body.name,
+            significant(body.modulus_pa, 3)
+        );
+        let wave_m_s = (body.modulus_pa / body.density_kg_m3).sqrt();
+        if let Some(speed_m_s) = impact_speed_m_s
+            && speed_m_s > LARGEST_STRAIN * wave_m_s
         {
             warnings.push(format!(
-                "an impact at {} m/s strains bonds of {modulus} by about {} %: bonds are linear elastic, which holds up to about {} %; check the modulus and its unit",
-                significant(impact_speed_m_s, 3),
-                significant(100.0 * impact_speed_m_s / wave_m_s, 2),
-                100.0 * LARGEST_STRAIN
+                "an impact at {} m/s strains {of_bonds} by about {} %: {limit}; check the modulus and its unit",
+                significant(speed_m_s, 3),
+                significant(100.0 * speed_m_s / wave_m_s, 2)
             ));
         }
-        let gravity = Vector3::from(state.gravity_m_s2);
-        let height_m = height_m(state, &gravity);
-        let by_weight = density_kg_m3 * gravity.norm() * height_m / modulus_pa;
+        let gravity = Vector3::from(state.gravity_m_s2).norm();
+        let by_weight = body.density_kg_m3 * gravity * body.height_m / body.modulus_pa;
         if by_weight > LARGEST_STRAIN {
             warnings.push(format!(
-                "its own weight strains a column of {} of bonds of {modulus} by about {} %: bonds are linear elastic, which holds up to about {} %; check the modulus and its unit",
-                show_length(height_m),
-                significant(100.0 * by_weight, 2),
-                100.0 * LARGEST_STRAIN
+                "the weight of a column of {} strains {of_bonds} by about {} %: {limit}; check the modulus and its unit",
+                show_length(body.height_m),
+                significant(100.0 * by_weight, 2)
             ));
         }
     }
     warnings.extend(by_loads(state));
-    if let Some(impact_speed_m_s) = impact_speed_m_s
-        && let overlap = overlap_at_impact(state, impact_speed_m_s)
+    if let Some(speed_m_s) = impact_speed_m_s
+        && let overlap = overlap_at_impact(state, speed_m_s)
         && overlap > LARGEST_OVERLAP
     {
         warnings.push(format!(
             "an impact at {} m/s presses a single particle in by about {} of its radius: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials and their units",
-            significant(impact_speed_m_s, 3),
+            significant(speed_m_s, 3),
             significant(overlap, 2)
         ));
     }
     warnings
 }
 
-/// Young's modulus, Pa, of the softest bond, and the density of a particle that it joins, kg/m3.
-fn softest_bond(state: &State) -> Option<(f64, f64)> {
-    let bonds = &state.bonds;
+/// A bonded body, or one that clumps become.
+struct Assembly<'a> {
+    name: &'a str,
+    /// Of its softest bond.
+    modulus_pa: f64,
+    /// Of a sphere that this bond joins.
+    density_kg_m3: f64,
+    /// Along gravity; of a body that may be turned any way, half its largest extent.
+    height_m: f64,
+}
+
+fn assemblies<'a>(state: &'a State, bodies: &'a [PlacedBody]) -> Vec<Assembly<'a>> {
+    let down = Vector3::from(state.gravity_m_s2).try_normalize(0.0);
+    let of_bodies = bodies.iter().filter_map(|body| {
+        let range = body.first_bond..body.first_bond + body.bonds.len();
+        let (modulus_pa, at) = softest_bond(&state.bonds, range)?;
+        let end = state.bonds.ends[at][0] as usize;
+        let depths = body.particles.iter().filter(|i| **i != GONE).map(|&i| {
+            let place = state.particles.poses[i as usize].place();
+            down.map_or(0.0, |down| place.dot(&down))
+        });
+        let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), depth| {
+            (low.min(depth), high.max(depth))
+        });
+        Some(Assembly {
+            name: &body.name,
+            modulus_pa,
+            density_kg_m3: state.density_kg_m3(end),
+            height_m: (high - low).max(0.0),
+        })
+    });
+    let templates = state.clumps.templates.iter().enumerate();
+    let of_templates = templates.filter_map(|(n, template)| {
+        let rules = &state.rules;
+        let becomes_bonded = rules.starts.get(n).is_some_and(|start| start.bonded)
+            || rules.triggers.get(n).is_some_and(Option::is_some);
+        let (modulus_pa, at) = softest_bond(&template.bonds, 0..template.bonds.len())?;
+        let sphere = &template.spheres[template.bonds.ends[at][0] as usize];
+        let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * sphere.radius_m.powi(3);
+        becomes_bonded.then(|| Assembly {
+            name: &template.body,
+            modulus_pa,
+            density_kg_m3: sphere.mass_kg / volume_m3,
+            height_m: template.reach_m,
+        })
+    });
+    of_bodies.chain(of_templates).collect()
+}
+
+/// The softest bond of some that is not broken, and its Young's modulus, Pa.
+fn softest_bond(bonds: &Bonds, range: Range<usize>) -> Option<(f64, usize)> {
     let modulus_pa = |at: usize| {
         let radius_m = bonds.radius_m(at);
         let area_m2 = std::f64::consts::PI * radius_m * radius_m;
         bonds.stiffness(at).normal * bonds.initial_length_m(at) / area_m2
     };
-    let whole = (0..bonds.len()).filter(|&at| !bonds.is_broken(at));
+    let whole = range.filter(|&at| !bonds.is_broken(at));
     let softest = whole.map(|at| (modulus_pa(at), at));
-    let (modulus_pa, at) = softest.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((modulus_pa, state.density_kg_m3(bonds.ends[at][0] as usize)))
-}
-
-/// Height of all bonded particles along gravity, m; 0 without gravity.
-fn height_m(state: &State, gravity: &Vector3<f64>) -> f64 {
-    let Some(down) = gravity.try_normalize(0.0) else {
-        return 0.0;
-    };
-    let bodies = state.bonds.ends.iter().flatten();
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for &end in bodies {
-        let depth_m = state.particles.poses[end as usize].place().dot(&down);
-        (low, high) = (low.min(depth_m), high.max(depth_m));
-    }
-    (high - low).max(0.0)
+    softest.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Largest value of a factor over time.

@@ -115,8 +115,8 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
                 "{} bodies through the inlet '{}' until the end: {} spheres and {} bonds once they are bonded",
                 fed.bodies,
                 fed.inlet,
-                significant(fed.spheres, 6),
-                significant(fed.bonds, 6)
+                fed.spheres.round(),
+                fed.bonds.round()
             ),
         );
     }

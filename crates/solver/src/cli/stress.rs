@@ -24,7 +24,7 @@ pub(super) struct StressArguments {
     /// Say all runs as JSON
     #[arg(long)]
     json: bool,
-    /// Say nothing unless something is wrong: no progress, no table; --json is printed all the same
+    /// Say nothing but errors: no progress, no table; --json is printed all the same
     #[arg(long, short)]
     quiet: bool,
 }

@@ -65,7 +65,7 @@ pub(super) struct SweepArguments {
     /// Say all of it as JSON
     #[arg(long)]
     json: bool,
-    /// Say nothing unless something is wrong: no progress, no table; --json is printed all the same
+    /// Say nothing but errors: no progress, no table; --json is printed all the same
     #[arg(long, short)]
     quiet: bool,
 }

@@ -60,7 +60,7 @@ pub struct Summary {
     pub bodies: BTreeMap<String, BodyMass>,
     /// Bonds that broke.
     pub broken_bonds: u64,
-    /// Largest elongation of a bond over its length, of either sign.
+    /// Largest strain at the edge of a bond, by elongation and bending or by shear and torsion.
     pub largest_bond_strain: f64,
     /// Largest overlap of a contact over the radius of its smaller sphere.
     pub largest_overlap: f64,
@@ -136,6 +136,8 @@ pub struct Unfinished {
     pub problem: String,
     /// What was run.
     pub inputs: Inputs,
+    /// None.
+    pub measures: BTreeMap<String, f64>,
     /// Not sound, because of the problem.
     pub verdict: Verdict,
 }
@@ -149,6 +151,7 @@ impl Unfinished {
             ended_by: "failure".to_owned(),
             problem: problem.to_string(),
             inputs,
+            measures: BTreeMap::new(),
             verdict: Verdict {
                 sound: false,
                 warnings: vec![problem.to_string()],
@@ -249,7 +252,8 @@ impl PopulationSummary {
             came_kg: (rules.inlets.iter()).fold(0.0, |sum, inlet| sum + inlet.come.mass_kg),
             delayed: rules.inlets.iter().map(|inlet| inlet.come.delayed).sum(),
             waiting: (rules.inlets.iter())
-                .map(|inlet| inlet.owed(state.time_s))
+                // Of what is due at the very end nothing has been tried.
+                .map(|inlet| inlet.owed(state.time_s - state.time_step_s))
                 .sum(),
             left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
             left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
@@ -262,8 +266,10 @@ impl PopulationSummary {
 impl Summary {
     /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks of.
     pub(crate) fn judge(&mut self, warnings: Vec<String>) {
-        let mut warnings = warnings;
-        warnings.extend(self.doubts());
+        let warnings: Vec<String> = (self.problem.iter().cloned())
+            .chain(warnings)
+            .chain(self.doubts())
+            .collect();
         self.verdict = Verdict {
             sound: warnings.is_empty(),
             warnings,
@@ -272,7 +278,7 @@ impl Summary {
 
     /// What of the summary speaks against trusting the result.
     fn doubts(&self) -> Vec<String> {
-        let mut doubts: Vec<String> = self.problem.iter().cloned().collect();
+        let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
                 "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
@@ -449,7 +455,7 @@ impl fmt::Display for Summary {
             )?;
         }
         let strained = [
-            ("bonds", self.largest_bond_strain, "of their length"),
+            ("bonds", self.largest_bond_strain, "of strain at the edge"),
             ("contacts", self.largest_overlap, "of the smaller radius"),
         ];
         let strained: Vec<String> = (strained.iter().filter(|(_, largest, _)| *largest > 0.0))

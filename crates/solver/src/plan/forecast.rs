@@ -54,7 +54,7 @@ pub(super) fn forecast(
 ) -> Forecast {
     let meets = can_meet(state, scene);
     let mut forecast = Forecast {
-        warnings: foreseen(state, meets.then_some(impact_speed_m_s)),
+        warnings: foreseen(state, bodies, meets.then_some(impact_speed_m_s)),
         to_come: to_come(scene, state, arriving),
         ..Forecast::default()
     };

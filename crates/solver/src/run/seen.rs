@@ -1,7 +1,7 @@
 //! What a run sees beside its measures, and what of it speaks against trusting the result: bodies
 //! that nothing touched, laws used beyond what they mean, breakage that is not over.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use dem_io::scene::{Scene, StartAs};
 use dem_io::units::{show_length, significant};
@@ -11,11 +11,10 @@ use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
 use crate::clusters::fragments::Fragment;
 use crate::plan::bodies::{PlacedBody, called};
-use crate::stages::bonds::most_strained;
+use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
 use crate::stages::population::GONE;
 use crate::stages::replacement::{Happened, STARTS_BONDED};
 use crate::state::State;
-use crate::state::rules::Inlet;
 
 /// Share of the run at its end in which a breaking bond says that breakage is not over.
 const LATE: f64 = 0.05;
@@ -44,10 +43,12 @@ pub(super) struct Seen {
     touched: BTreeSet<String>,
     /// Overlap over the smaller radius.
     pub(super) overlap: Extreme,
-    /// Elongation of a bond, of either sign.
+    /// Strain at the edge of a bond.
     pub(super) bond_strain: Extreme,
     /// Names of bodies of which a clump was replaced.
     replaced: BTreeSet<String>,
+    /// Names of bodies that an inlet has fed.
+    came: BTreeSet<String>,
     /// When a bond broke last, s.
     last_break_s: Option<f64>,
     /// Largest kinetic energy at a row of the time series, J.
@@ -55,10 +56,17 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Takes down that bonds have broken in this step.
-    pub(super) fn note_breaks(&mut self, state: &State) {
-        if !state.broken.is_empty() {
+    /// Takes down that bonds have broken in this step, and how they were strained.
+    pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
+        for broken in &state.broken {
             self.last_break_s = Some(state.time_s);
+            let at = broken.bond as usize;
+            self.note_strain(
+                edge_strain(&state.bonds, at, &state.particles.poses),
+                at,
+                state,
+                bodies,
+            );
         }
     }
 
@@ -69,6 +77,9 @@ impl Seen {
                 && *cause != STARTS_BONDED
             {
                 self.replaced.insert(body.clone());
+            }
+            if let Happened::Came { body, .. } = one {
+                self.came.insert(body.clone());
             }
         }
     }
@@ -156,15 +167,27 @@ impl Seen {
         }
     }
 
-    /// Looks at how far bonds are stretched or pressed. The largest strain now.
+    /// Looks at how far bonds are stretched or pressed. The largest elongation now.
     pub(super) fn look_at_bonds(&mut self, state: &State, bodies: &[PlacedBody]) -> f64 {
-        let p = &state.particles;
-        let Some((strain, at)) = most_strained(&state.bonds, &p.poses) else {
+        let Some((strain, at)) = most_strained(&state.bonds, &state.particles.poses) else {
             return 0.0;
         };
-        if strain <= self.bond_strain.largest {
-            return strain;
+        self.note_strain(strain, at, state, bodies);
+        strain
+    }
+
+    /// Looks at how far bonds are strained at their edges, bent and twisted as they are.
+    pub(super) fn look_at_edges(&mut self, state: &State, bodies: &[PlacedBody]) {
+        if let Some((strain, at)) = most_strained_edge(&state.bonds, &state.particles.poses) {
+            self.note_strain(strain, at, state, bodies);
         }
+    }
+
+    fn note_strain(&mut self, strain: f64, at: usize, state: &State, bodies: &[PlacedBody]) {
+        if strain <= self.bond_strain.largest {
+            return;
+        }
+        let p = &state.particles;
         let [a, b] = state.bonds.ends[at];
         let [place_a, place_b] = [a, b].map(|end| p.poses[end as usize].place());
         self.bond_strain = Extreme {
@@ -178,7 +201,6 @@ impl Seen {
                 String::new()
             },
         };
-        strain
     }
 
     /// What speaks against trusting the result at the end of a run, a sentence each.
@@ -188,8 +210,12 @@ impl Seen {
         scene: &Scene,
         bodies: &[PlacedBody],
         fragments: &[Fragment],
+        is_stopped: bool,
     ) -> Vec<String> {
         let mut warnings = self.beyond_the_laws();
+        if is_stopped {
+            return warnings;
+        }
         warnings.extend(self.untouched(state, scene, bodies));
         if scene.test.is_none() {
             warnings.extend(self.not_over(state, scene, fragments));
@@ -201,18 +227,10 @@ impl Seen {
 
     /// Clumps whose trigger never fired.
     fn never_replaced(&self, state: &State, scene: &Scene, bodies: &[PlacedBody]) -> Vec<String> {
-        let fed = |name: &str| {
-            let inlets = &state.rules.inlets;
-            inlets.iter().any(|inlet| {
-                let mut own = inlet.templates.iter();
-                inlet.come.bodies > 0
-                    && own.any(|(t, _)| state.clumps.templates[*t as usize].body == name)
-            })
-        };
         let mut warnings = Vec::new();
         for (name, rule) in &scene.replacement {
             let starts_rigid = scene.bodies[name].start_as != StartAs::Bonded;
-            let was_there = is_present(state, bodies, name) || fed(name);
+            let was_there = is_present(state, bodies, name) || self.came.contains(name);
             if self.replaced.contains(name) || !starts_rigid || !was_there {
                 continue;
             }
@@ -269,7 +287,7 @@ impl Seen {
             let is_there = own.is_some() || !is_present(state, bodies, name);
             // One that is held or loaded is not there to touch anything; one that no inlet has fed
             // was not there at all.
-            if !is_there || never_came(state, name) {
+            if !is_there || self.never_came(state, name) {
                 continue;
             }
             if warnings.len() == NAMED {
@@ -288,6 +306,13 @@ impl Seen {
             warnings.push(format!("nothing touched {unnamed} other bodies"));
         }
         warnings
+    }
+
+    /// Whether inlets could have fed a body and did not.
+    fn never_came(&self, state: &State, name: &str) -> bool {
+        let is_own = |(t, _): &(u32, f64)| state.clumps.templates[*t as usize].body == name;
+        let mut inlets = state.rules.inlets.iter();
+        !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
     /// Breakage that goes on.
@@ -309,12 +334,17 @@ impl Seen {
                 significant(scene.run.end_time_s, 4)
             ));
         }
-        let apart_j = kinetic_apart_j(fragments);
+        let can_break = (0..state.bonds.len()).any(|at| {
+            let rule = &state.bonds.rules[state.bonds.rule_of(at)];
+            rule.criteria.is_some() && !state.bonds.is_broken(at)
+        });
+        let pieces = pieces_by_body(state, fragments);
+        let apart_j: f64 = pieces.values().map(|pieces| kinetic_apart_j(pieces)).sum();
+        let count: usize = pieces.values().map(Vec::len).sum();
         let share = apart_j / self.largest_kinetic_j;
-        if fragments.len() > 1 && share > FLYING {
+        if can_break && share > FLYING {
             warnings.push(format!(
-                "{} pieces still fly apart at the end, with {} % of the largest kinetic energy of the run: what they hit later may break them further; set run.end_time later than {} s",
-                fragments.len(),
+                "{count} pieces still fly apart at the end, with {} % of the largest kinetic energy of the run: what they hit later may break them further; set run.end_time later than {} s",
                 significant(100.0 * share, 2),
                 significant(scene.run.end_time_s, 4)
             ));
@@ -328,16 +358,6 @@ fn is_present(state: &State, bodies: &[PlacedBody], name: &str) -> bool {
     let mut clumps = state.clumps.all.iter();
     bodies.iter().any(|body| body.name == name)
         || clumps.any(|clump| state.clumps.template(clump).body == name)
-}
-
-/// Whether inlets could have fed a body and did not.
-fn never_came(state: &State, name: &str) -> bool {
-    let feeds = |inlet: &&Inlet| {
-        let mut own = inlet.templates.iter();
-        own.any(|(t, _)| state.clumps.templates[*t as usize].body == name)
-    };
-    let mut feeding = state.rules.inlets.iter().filter(feeds).peekable();
-    feeding.peek().is_some() && feeding.all(|inlet| inlet.come.bodies == 0)
 }
 
 /// What will become of a body in flight, in words.
@@ -355,6 +375,11 @@ fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
         )
     });
     match flyer.first_meeting(&state.walls, flying) {
+        Meeting::At { after_s, wall, .. } if after_s == 0.0 => {
+            format!(
+                "it stands at the wall '{wall}' and does not press on it; check gravity and its velocity"
+            )
+        }
         Meeting::At { after_s, wall, .. } => format!(
             "at the end it is on its way to the wall '{wall}', {} away, which it would reach at {} s; set run.end_time later than that",
             show_length(nearest.map_or(0.0, |(gap_m, _)| gap_m)),
@@ -371,8 +396,30 @@ fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
     }
 }
 
+/// The pieces that broke off something, by the cluster that they all were.
+fn pieces_by_body<'a>(
+    state: &State,
+    fragments: &'a [Fragment],
+) -> BTreeMap<u32, Vec<&'a Fragment>> {
+    let mut pieces: BTreeMap<u32, Vec<&Fragment>> = BTreeMap::new();
+    let Some(clusters) = &state.clusters else {
+        return pieces;
+    };
+    for fragment in fragments
+        .iter()
+        .filter(|fragment| fragment.parent.is_some())
+    {
+        let mut root = fragment.id;
+        while let Some(parent) = clusters.history[root as usize].parent {
+            root = parent;
+        }
+        pieces.entry(root).or_default().push(fragment);
+    }
+    pieces
+}
+
 /// Kinetic energy of the motion of pieces about their common centre of mass, J.
-fn kinetic_apart_j(fragments: &[Fragment]) -> f64 {
+fn kinetic_apart_j(fragments: &[&Fragment]) -> f64 {
     let (mut mass_kg, mut momentum, mut kinetic_j) = (0.0, [0.0; 3], 0.0);
     for fragment in fragments {
         mass_kg += fragment.mass_kg;

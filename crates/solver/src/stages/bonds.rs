@@ -55,6 +55,28 @@ pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
+/// Largest strain at the edge of a bond, be it broken or not: of elongation and bending together, or
+/// of shear and torsion together.
+pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
+    let load = bonds.forces(at, poses).load;
+    let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
+    let normal_m =
+        load.normal_n.abs() / stiffness.normal + radius_m * load.bending_n_m / stiffness.bending;
+    let shear_m = load.shear_n / stiffness.shear + radius_m * load.torsion_n_m / stiffness.torsion;
+    normal_m.max(shear_m) / bonds.initial_length_m(at)
+}
+
+/// The unbroken bond whose [edge](edge_strain) is strained most, and that strain. Ten times as much
+/// work as [`most_strained`].
+pub fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
+    (0..bonds.len())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .filter(|&at| !bonds.is_broken(at))
+        .map(|at| (edge_strain(bonds, at, poses), at))
+        .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
+}
+
 /// The work on one share.
 struct ShareWork<'a> {
     bonds: &'a Bonds,

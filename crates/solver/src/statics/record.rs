@@ -23,7 +23,7 @@ use crate::output::series;
 use crate::output::summary::{Summary, Verdict, measure_lines};
 use crate::physics::bond::failure::CauseCounts;
 use crate::run::RunSettings;
-use crate::stages::bonds::largest_strain;
+use crate::stages::bonds::most_strained_edge;
 use crate::state::State;
 
 /// Residual over the largest bond force that is worth a word.
@@ -171,7 +171,8 @@ impl AtRest<'_> {
             bonds: state.bonds.len(),
             bodies: self.masses.clone(),
             broken_bonds: 0,
-            largest_bond_strain: largest_strain(&state.bonds, &state.particles.poses),
+            largest_bond_strain: most_strained_edge(&state.bonds, &state.particles.poses)
+                .map_or(0.0, |(strain, _)| strain),
             largest_overlap: 0.0,
             broken_by_cause: CauseCounts::default(),
             fragments,
