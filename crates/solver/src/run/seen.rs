@@ -256,7 +256,13 @@ impl Seen {
 
     fn beyond_the_laws(&self) -> Vec<String> {
         let where_ = |extreme: &Extreme| {
-            let [x, y, z] = extreme.place_m.map(|x| significant(x, 4));
+            let far_m = extreme
+                .place_m
+                .iter()
+                .fold(0.0_f64, |far, x| far.max(x.abs()));
+            // What is nothing but rounding is nothing.
+            let told = |x: f64| if x.abs() < 1e-9 * far_m { 0.0 } else { x };
+            let [x, y, z] = extreme.place_m.map(|x| significant(told(x), 4));
             let time = significant(extreme.time_s, 4);
             format!(
                 " between {}, at ({x}, {y}, {z}) m, {time} s",
