@@ -381,7 +381,9 @@ fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
         )
     });
     match flyer.first_meeting(&state.walls, flying) {
-        Meeting::At { after_s, wall, .. } if after_s == 0.0 => {
+        Meeting::At {
+            after_s: 0.0, wall, ..
+        } => {
             format!(
                 "it stands at the wall '{wall}' and does not press on it; check gravity and its velocity"
             )
