@@ -97,7 +97,8 @@ impl Diagnostic {
         self
     }
 
-    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable, 130 for one that was
+    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable, 130 for one that
+    /// was
     /// interrupted.
     pub fn exit_code(&self) -> u8 {
         match self.kind {

@@ -1,6 +1,7 @@
 //! Files that appear whole or not at all: written under a temporary name in the same folder, then renamed.
 //!
-//! A temporary file is locked as long as its writer lives. What a killed writer has left is therefore known by its name and by being
+//! A temporary file is locked as long as its writer lives. What a killed writer has left is
+//! therefore known by its name and by being
 //! free, and the next writer in the folder removes it.
 
 use std::collections::BTreeSet;
@@ -22,7 +23,8 @@ pub(crate) const UNFINISHED_PREFIX: &str = ".unfinished-";
 
 /// Letters and digits after it.
 const RANDOM: usize = 6;
-/// A new temporary file may be taken for an abandoned one before it is locked: it is made again, at most so often.
+/// A new temporary file may be taken for an abandoned one before it is locked: it is made again, at
+/// most so often.
 const TRIES: usize = 16;
 
 /// Temporary files that exist at this moment.
@@ -135,7 +137,8 @@ pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     PendingFile::write(path, write)?.publish()
 }
 
-/// Writes lines of text to standard output, without what a terminal would obey ([`crate::text`]). A reader that closes
+/// Writes lines of text to standard output, without what a terminal would obey ([`crate::text`]). A
+/// reader that closes
 /// the pipe early has what it wanted: no error.
 ///
 /// # Errors
@@ -186,7 +189,8 @@ pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
     write_standard_output(|out| write_json_text(out, value))
 }
 
-/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are not finite become `null`.
+/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are
+/// not finite become `null`.
 ///
 /// # Errors
 /// Those of `out`; `value` cannot be put as JSON.
@@ -291,7 +295,8 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     }
 }
 
-/// Refuses to write `target`, an option or a file as messages name it by `place`, where it is one of the files that are read.
+/// Refuses to write `target`, an option or a file as messages name it by `place`, where it is one
+/// of the files that are read.
 ///
 /// # Errors
 /// It is the same file as one of `inputs`, also through a link (exit code 2).
@@ -395,7 +400,8 @@ fn is_ours(temporary: &NamedTempFile) -> bool {
     }
 }
 
-/// Removes what killed writers have left in a folder, once per process. What cannot be removed stays.
+/// Removes what killed writers have left in a folder, once per process. What cannot be removed
+/// stays.
 fn remove_abandoned_files(folder: &Path) {
     let mut cleaned = CLEANED.lock().unwrap_or_else(PoisonError::into_inner);
     if !cleaned.insert(folder.to_owned()) {
@@ -584,7 +590,8 @@ mod tests {
         );
     }
 
-    /// Remnants are looked for once per folder and process: each part of the test has its own folder.
+    /// Remnants are looked for once per folder and process: each part of the test has its own
+    /// folder.
     #[test]
     fn the_next_write_removes_what_a_killed_one_left() {
         let folder = tempfile::tempdir().unwrap();

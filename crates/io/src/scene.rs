@@ -395,8 +395,10 @@ pub struct Load {
     pub end_s: Option<f64>,
 }
 
-/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies, forces and counts are
-/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but torques, count and masses.
+/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies,
+/// forces and counts are
+/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but
+/// torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
@@ -411,7 +413,8 @@ pub enum Quantity {
     VelocityMagnitude,
     /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
     Rotation(u8),
-    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum, rad/s.
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
+    /// rad/s.
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the set, N.
     Reaction(u8),
@@ -427,7 +430,8 @@ pub enum Quantity {
     LargestUtilisation,
     /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
-    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls on a set, N.
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
+    /// on a set, N.
     Force(u8),
     /// "force": its magnitude, N.
     ForceMagnitude,
@@ -473,11 +477,13 @@ pub struct Measure {
     pub with: Option<String>,
     /// `at`, "end" unless given.
     pub at: At,
-    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a `tolerance`.
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
+    /// `tolerance`.
     pub reference: Option<f64>,
     /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
     pub tolerance: Option<f64>,
-    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's unit.
+    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's
+    /// unit.
     pub tolerance_absolute: Option<f64>,
 }
 

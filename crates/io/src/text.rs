@@ -1,11 +1,13 @@
-//! Text of others on a terminal and on a page. Names of files and what scenes say may hold anything: nothing in them
+//! Text of others on a terminal and on a page. Names of files and what scenes say may hold
+//! anything: nothing in them
 //! may move a cursor, begin a line, turn the direction of writing or open a tag.
 
 use std::borrow::Cow;
 
 use crate::xml::escaped;
 
-/// Whether a terminal would obey this character instead of showing it: control characters, separators of lines, and
+/// Whether a terminal would obey this character instead of showing it: control characters,
+/// separators of lines, and
 /// those that turn the direction of writing.
 fn is_obeyed(letter: char) -> bool {
     let turns_or_separates = matches!(

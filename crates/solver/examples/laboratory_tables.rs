@@ -7,8 +7,10 @@
 //! cargo run --release -p dem-run --example laboratory_tables -- drops
 //! ```
 //!
-//! Builds both programs, packs the bodies and runs the scenes as they stand, with the `--set`s that are printed on standard error, one after another on one
-//! thread. Times are those of one core that does nothing else. A number after the word says over how many packings (4 unless given). Results lie in
+//! Builds both programs, packs the bodies and runs the scenes as they stand, with the `--set`s that
+//! are printed on standard error, one after another on one
+//! thread. Times are those of one core that does nothing else. A number after the word says over
+//! how many packings (4 unless given). Results lie in
 //! `target/laboratory-tables`; `--resume` at the end keeps those that are whole.
 #![allow(
     clippy::print_stdout,
@@ -25,7 +27,8 @@ use dem_io::study::read_study;
 use dem_io::units::significant;
 use serde_json::Value;
 
-/// Packings over which a mean and its scatter are taken, unless a number is given: `--seed 1` to `--seed 4`.
+/// Packings over which a mean and its scatter are taken, unless a number is given: `--seed 1` to
+/// `--seed 4`.
 const PACKINGS: u32 = 4;
 /// The packing of what is looked at in one only.
 const FIRST: u32 = 1;
@@ -39,14 +42,16 @@ const PICTURES: &str = "output.pictures=\"1 s\"";
 
 type Failed = Box<dyn Error>;
 
-/// A table as it stands in the page: the words that make it, its head, and the first cell of each row.
+/// A table as it stands in the page: the words that make it, its head, and the first cell of each
+/// row.
 struct Table {
     words: String,
     head: &'static [&'static str],
     first_cells: Vec<String>,
 }
 
-/// The four-point test, a row for each packing. The rate is checked on the first only, as that takes half as long again.
+/// The four-point test, a row for each packing. The rate is checked on the first only, as that
+/// takes half as long again.
 const BENDING_HEAD: [&str; 8] = [
     "packing",
     "bonds",
@@ -102,7 +107,8 @@ const INCLINED_HEAD: [&str; 5] = [
     "25 degrees, upright",
 ];
 
-/// How the strength of the bonds depends on the rate. The scene as it stands is run with all packings, the others with the first.
+/// How the strength of the bonds depends on the rate. The scene as it stands is run with all
+/// packings, the others with the first.
 struct Strength {
     first_cell: &'static str,
     /// For names of folders.
@@ -425,7 +431,8 @@ fn flat_rows(bench: &Bench) -> Result<Vec<Vec<String>>, Failed> {
     Ok(rows)
 }
 
-/// Of each fall the broken bonds, mean and scatter, and the share of the largest piece, smallest to largest.
+/// Of each fall the broken bonds, mean and scatter, and the share of the largest piece, smallest to
+/// largest.
 fn inclined_rows(bench: &Bench, bodies: &[PathBuf]) -> Result<Vec<Vec<String>>, Failed> {
     let mut rows = Vec::new();
     for strength in STRENGTHS {
@@ -592,7 +599,8 @@ fn scattered(values: &[f64]) -> Scattered {
     }
 }
 
-/// Mean and scatter of the values that there are, and of how many packings they are if that is not all. Empty: none has one.
+/// Mean and scatter of the values that there are, and of how many packings they are if that is not
+/// all. Empty: none has one.
 fn in_cell(values: &[f64], digits: usize, unit: &str) -> String {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     if there.is_empty() {
@@ -708,7 +716,8 @@ mod tests {
             .collect()
     }
 
-    /// Commands, heads and first cells of the page are those that the program prints, and every row has all of its cells.
+    /// Commands, heads and first cells of the page are those that the program prints, and every row
+    /// has all of its cells.
     #[test]
     fn the_page_has_the_tables_of_this_program() {
         let page = std::fs::read_to_string(root().join("doc/laboratory.md")).unwrap();

@@ -74,7 +74,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Whether the error is within each tolerance; true without one. An error that is no number is not.
+    /// Whether the error is within each tolerance; true without one. An error that is no number is
+    /// not.
     pub fn is_good(&self) -> bool {
         let off = self.reference.map(|reference| self.value - reference);
         let within = |error: Option<f64>, tolerance: Option<f64>| match (error, tolerance) {

@@ -75,7 +75,8 @@ pub struct Plan {
     pub masses: BTreeMap<String, BodyMass>,
     /// What is odd about the scene but harmless, a sentence each.
     pub notes: Vec<String>,
-    /// What speaks against trusting the result, as far as it is known before the run, a sentence each.
+    /// What speaks against trusting the result, as far as it is known before the run, a sentence
+    /// each.
     pub warnings: Vec<String>,
     /// What will happen, as far as it can be told.
     pub forecast: Forecast,

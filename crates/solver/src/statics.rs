@@ -45,7 +45,8 @@ use self::record::AtRest;
 /// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
 ///
 /// # Errors
-/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory, or its files cannot be written (1); it is interrupted (130).
+/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory,
+/// or its files cannot be written (1); it is interrupted (130).
 pub fn run(
     plan: Plan,
     scene: &Scene,

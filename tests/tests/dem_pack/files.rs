@@ -265,7 +265,8 @@ fn an_endless_pipe_is_refused_at_once() {
     }
 }
 
-/// Neither the shape nor the sieve curve nor the body that is converted is written over, under whatever name.
+/// Neither the shape nor the sieve curve nor the body that is converted is written over, under
+/// whatever name.
 #[cfg(unix)]
 #[test]
 fn an_output_that_is_an_input_is_refused() {

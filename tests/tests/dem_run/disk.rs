@@ -166,7 +166,8 @@ fn a_file_beyond_the_limit_of_the_shell() {
     );
 }
 
-/// What a killed run left of a checkpoint and of a fragment is removed by the next that writes there.
+/// What a killed run left of a checkpoint and of a fragment is removed by the next that writes
+/// there.
 #[test]
 fn remnants_of_a_killed_run_go_with_the_next() {
     let bench = Bench::new();

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::{Bench, dem_run, good, names_in, refused, row, vtp_bytes};
 
-/// A scene in the folder of its own results, with a body and a wall that stand there under names of results.
+/// A scene in the folder of its own results, with a body and a wall that stand there under names of
+/// results.
 fn scene(bench: &Bench, file: &str, wall: &str) {
     bench.write(
         "scene.toml",
@@ -135,7 +136,8 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     }
 }
 
-/// What would fill the disk is refused by its count, before anything is written; `check` says the same.
+/// What would fill the disk is refused by its count, before anything is written; `check` says the
+/// same.
 #[test]
 fn a_step_limits_how_often_is_written() {
     let bench = Bench::new();

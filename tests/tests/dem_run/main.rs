@@ -245,7 +245,8 @@ fn piped(arguments: &[&str], input: &[u8]) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// What is said on standard error besides the warnings at the start of a run, which may be doubtful and
+/// What is said on standard error besides the warnings at the start of a run, which may be doubtful
+/// and
 /// still go well: those are held in `verdict.rs`.
 fn without_warnings(said: &str) -> String {
     let lines = said.lines().filter(|line| !line.starts_with("warning: "));

@@ -90,7 +90,8 @@ fn mass_of_spheres_and_of_the_shape() {
             100.0 * (MASS_KG / (2050.0 * SHAPE_M3) - 1.0),
         );
         near("/centre_m/0", 9e-3);
-        // A row of spheres: along it only their own inertia, 2/5 m r^2; across also that of ten places 2 mm apart.
+        // A row of spheres: along it only their own inertia, 2/5 m r^2; across also that of ten
+        // places 2 mm apart.
         let own = 0.4 * MASS_KG * 1e-6;
         let apart = MASS_KG * 4e-6 * (100.0 - 1.0) / 12.0;
         near("/inertia_kg_m2/0/0", own);

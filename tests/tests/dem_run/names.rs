@@ -128,7 +128,8 @@ fn of_a_test_are_shown_on_its_page() {
     );
 }
 
-/// Bodies, sets, walls, measures, materials have names of letters and digits: others are refused, and shown.
+/// Bodies, sets, walls, measures, materials have names of letters and digits: others are refused,
+/// and shown.
 #[test]
 fn in_a_scene_are_refused_and_shown() {
     let bench = Bench::new();

@@ -263,7 +263,8 @@ fn there_has_to_be_a_folder_to_resume() {
     );
 }
 
-/// A run that was killed while it wrote what it writes at its end, and one of which something was removed since.
+/// A run that was killed while it wrote what it writes at its end, and one of which something was
+/// removed since.
 #[test]
 fn what_is_missing_at_the_end_is_written() {
     let tension = super::laboratory::bar();
@@ -313,7 +314,8 @@ fn what_is_missing_at_the_end_is_written() {
             );
             assert!(whole == bytes_of(&bench), "{name} without {file}");
         }
-        // All at once, as where the run was killed when it had written its last checkpoint, with another summary in the way.
+        // All at once, as where the run was killed when it had written its last checkpoint, with
+        // another summary in the way.
         for file in missing {
             fs::remove_file(bench.path("out").join(file)).unwrap();
         }

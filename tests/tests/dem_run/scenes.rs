@@ -120,7 +120,8 @@ fn materials_of_data_fit_into_a_scene() {
     }
 }
 
-/// The page of the materials reads the sizes of Platzer's tables as radii: so do their time steps keep to eq. 15, and not with spheres half as large.
+/// The page of the materials reads the sizes of Platzer's tables as radii: so do their time steps
+/// keep to eq. 15, and not with spheres half as large.
 #[test]
 fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
     let page = std::fs::read_to_string(root().join("data/materials/README.md")).unwrap();

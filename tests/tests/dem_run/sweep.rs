@@ -90,7 +90,8 @@ fn good(bench: &Bench, options: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A sweep of which some runs have no values: what it says on standard output and on standard error.
+/// A sweep of which some runs have no values: what it says on standard output and on standard
+/// error.
 fn partly(bench: &Bench, options: &[&str]) -> (String, String) {
     let output = sweep(bench, options).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();

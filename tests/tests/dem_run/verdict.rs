@@ -1,4 +1,5 @@
-//! Scenes that run and whose results mislead unless somebody says so: what the verdict says, and what
+//! Scenes that run and whose results mislead unless somebody says so: what the verdict says, and
+//! what
 //! `check` says beforehand, stands in the scene after `#!` and `#?`, a line for each warning.
 
 use std::path::Path;
@@ -209,7 +210,8 @@ fn what_an_inlet_feeds_bonded_is_no_replacement_and_a_sphere_no_clump() {
     assert_eq!((kinds("bonded"), kinds("replaced")), (3, 0));
 }
 
-/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766) with the material of the particles, which are not there yet.
+/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766) with the material of the particles, which are not there
+/// yet.
 #[test]
 fn check_speaks_of_what_inlets_will_feed() {
     let bench = Bench::new();

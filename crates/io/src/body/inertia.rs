@@ -14,17 +14,25 @@ pub struct MassProperties {
     pub centre_m: [f64; 3],
     /// Principal moments of inertia about the centre of mass, rising, kg m^2.
     pub moments_kg_m2: [f64; 3],
-    /// Rotation from the principal axes, in the order of the moments, to the axes of the input: unit quaternion x, y, z, w.
+    /// Rotation from the principal axes, in the order of the moments, to the axes of the input:
+    /// unit quaternion x, y, z, w.
     ///
-    /// The axes are right-handed; the first two have their component of largest size positive, and w is not negative. Where moments are equal, the axes are some of the many right ones, the same in each run.
+    /// The axes are right-handed; the first two have their component of largest size positive, and
+    /// w is not negative. Where moments are equal, the axes are some of the many right ones, the
+    /// same in each run.
     pub axes: [f64; 4],
 }
 
-/// The mass properties of rigidly joined spheres, each with its own mass and moment of inertia: the sum, with overlaps counted as often as they are there.
+/// The mass properties of rigidly joined spheres, each with its own mass and moment of inertia: the
+/// sum, with overlaps counted as often as they are there.
 ///
-/// A cluster of bonded spheres has the same mass, centre of mass and inertia, so that one can stand for the other without a change of momentum or kinetic energy.
+/// A cluster of bonded spheres has the same mass, centre of mass and inertia, so that one can stand
+/// for the other without a change of momentum or kinetic energy.
 ///
-/// `centres_m`, m, `masses_kg` and `own_inertias_kg_m2` (about the centre of the sphere; for a full one 2/5 m r^2) have one entry per sphere; entries without partners are left out. All sums are taken about the mean. A body without mass has zero moments; numbers that are not finite give moments that are no numbers.
+/// `centres_m`, m, `masses_kg` and `own_inertias_kg_m2` (about the centre of the sphere; for a full
+/// one 2/5 m r^2) have one entry per sphere; entries without partners are left out. All sums are
+/// taken about the mean. A body without mass has zero moments; numbers that are not finite give
+/// moments that are no numbers.
 pub fn of_spheres(
     centres_m: &[[f64; 3]],
     masses_kg: &[f64],
@@ -70,7 +78,8 @@ pub fn of_spheres(
 }
 
 impl MassProperties {
-    /// The inertia about the centre of mass along the axes of the input, kg m^2: a symmetric matrix.
+    /// The inertia about the centre of mass along the axes of the input, kg m^2: a symmetric
+    /// matrix.
     pub fn inertia_kg_m2(&self) -> [[f64; 3]; 3] {
         let [x, y, z, w] = self.axes;
         let turn = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
@@ -82,7 +91,8 @@ impl MassProperties {
     }
 }
 
-/// From the second moments of the mass about the centre of mass, kg m^2: rows of a symmetric matrix.
+/// From the second moments of the mass about the centre of mass, kg m^2: rows of a symmetric
+/// matrix.
 pub fn of_moments(centre_m: [f64; 3], mass_kg: f64, second_kg_m2: [[f64; 3]; 3]) -> MassProperties {
     // A symmetric matrix is the same by rows and by columns.
     properties(centre_m.into(), mass_kg, Matrix3::from(second_kg_m2))

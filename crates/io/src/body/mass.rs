@@ -12,7 +12,8 @@ const ROUNDING: f64 = 1e-9;
 /// What a body weighs, beside its shape filled with one density. SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BodyMass {
-    /// Mass of its spheres, kg. Overlaps count twice, unless it is a clump that weighs what its spheres fill.
+    /// Mass of its spheres, kg. Overlaps count twice, unless it is a clump that weighs what its
+    /// spheres fill.
     pub mass_kg: f64,
     /// The density with which its shape is filled for the comparison, kg/m3, where one is known.
     pub fill_density_kg_m3: Option<f64>,
@@ -29,7 +30,8 @@ pub struct BodyMass {
 }
 
 impl BodyMass {
-    /// Of a body with these mass properties, and a shape of this volume (m3) to be filled with this density (kg/m3).
+    /// Of a body with these mass properties, and a shape of this volume (m3) to be filled with this
+    /// density (kg/m3).
     pub fn new(
         properties: &MassProperties,
         fill_density_kg_m3: Option<f64>,

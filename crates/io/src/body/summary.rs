@@ -42,7 +42,8 @@ pub struct BodySummary {
     pub solid_density_kg_m3: Option<f64>,
     /// Mass of the shape filled with the density of the particles, kg, if both are known.
     pub shape_mass_kg: Option<f64>,
-    /// By how much the body weighs more than that, percent, if the volume of the shape is known: of any density.
+    /// By how much the body weighs more than that, percent, if the volume of the shape is known: of
+    /// any density.
     pub mass_difference_percent: Option<f64>,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],

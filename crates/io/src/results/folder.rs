@@ -326,7 +326,8 @@ impl ResultsFolder {
     }
 }
 
-/// Whether a run is writing into the folder `path` at this moment. A folder that no run has written to is not there for it.
+/// Whether a run is writing into the folder `path` at this moment. A folder that no run has written
+/// to is not there for it.
 pub fn is_written_to(path: &Path) -> bool {
     is_locked(&path.join(LOCK))
 }
@@ -336,7 +337,8 @@ pub fn is_locked(path: &Path) -> bool {
     File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
-/// The first of `files` that stands in the folder `path` under a name of results, also through a link: a run that writes
+/// The first of `files` that stands in the folder `path` under a name of results, also through a
+/// link: a run that writes
 /// there would remove or overwrite it. None: there is none of them, or no such folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
     let is_ours = |part: &str, name: &str| match part {
@@ -365,7 +367,8 @@ pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf
     None
 }
 
-/// Refuses to write results into the folder `path` where they would take the place of a file that the run reads.
+/// Refuses to write results into the folder `path` where they would take the place of a file that
+/// the run reads.
 ///
 /// # Errors
 /// One of `inputs` stands there under a name of results (exit code 2).

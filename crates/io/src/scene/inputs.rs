@@ -6,7 +6,8 @@ use super::{BodySource, Region, Scene, WallShape};
 use crate::body::files::body_files;
 
 impl Scene {
-    /// The scene's own file and those of its bodies, walls and regions. Standard input is none of them.
+    /// The scene's own file and those of its bodies, walls and regions. Standard input is none of
+    /// them.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let mut files = vec![PathBuf::from(&self.source)];
         for body in self.bodies.values() {

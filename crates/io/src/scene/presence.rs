@@ -82,7 +82,8 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the quantity that `field` gives, which counts from the start, for `of` where an inlet feeds it or a part of it.
+    /// Refuses the quantity that `field` gives, which counts from the start, for `of` where an
+    /// inlet feeds it or a part of it.
     pub(super) fn refuse_without_start(&self, field: &Field<'_>, of: &str) -> Result<()> {
         let mut meant = self.bodies.keys().filter(|name| of == ALL || *name == of);
         let Some((name, absence)) =

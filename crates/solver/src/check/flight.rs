@@ -62,7 +62,8 @@ pub fn can_meet(state: &State, scene: &Scene) -> bool {
     state.contacts.is_some() && (!state.walls.is_empty() || others)
 }
 
-/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their velocities
+/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their
+/// velocities
 /// stand `ahead_s` after their places.
 pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> {
     let held = state.supports.iter().flat_map(|support| &support.held);

@@ -12,7 +12,8 @@ use crate::stages::population::GONE;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 
-/// Strain at the edge of a bond above which linear elasticity is doubtful: an error of the same order.
+/// Strain at the edge of a bond above which linear elasticity is doubtful: an error of the same
+/// order.
 pub const LARGEST_STRAIN: f64 = 0.1;
 /// Overlap over the smaller radius above which the contact laws are doubtful: the radius of Hertz's
 /// contact, which should be small, is 0.55 of the sphere's there.
@@ -39,7 +40,8 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each. None:
+/// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each.
+/// None:
 /// nothing can meet anything.
 pub fn foreseen(
     state: &State,

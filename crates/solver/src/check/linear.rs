@@ -315,8 +315,10 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     largest
 }
 
-/// Largest overlap over the radius that an impact at a speed, m/s, gives a single sphere that meets a
-/// wall or another of its size, by itself: what a body pushes from behind goes deeper. One sphere of
+/// Largest overlap over the radius that an impact at a speed, m/s, gives a single sphere that meets
+/// a
+/// wall or another of its size, by itself: what a body pushes from behind goes deeper. One sphere
+/// of
 /// each material stands for all, as the share of the radius does not depend on it with Hertz's law.
 pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     let Some(contacts) = &state.contacts else {

@@ -77,7 +77,8 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     })
 }
 
-/// Refuses to write the body over the results or over what their run has read, as far as the folder tells.
+/// Refuses to write the body over the results or over what their run has read, as far as the folder
+/// tells.
 fn refuse_overwriting(results: &Path, output: &Path) -> Result<()> {
     let targets = body_files(output)?;
     if let Some(target) = result_among(results, &targets) {

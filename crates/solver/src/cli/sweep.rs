@@ -73,7 +73,8 @@ pub(super) struct SweepArguments {
 /// Runs the study, lists its runs or collects them, and says what came of it.
 ///
 /// # Errors
-/// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the tables of the others
+/// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the
+/// tables of the others
 /// are written.
 pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
     if !(1..=1024).contains(&options.jobs) {
@@ -225,8 +226,10 @@ fn do_what_is_left(
     worked
 }
 
-/// Reads the scene of every run, so that what it refuses is known before hours are spent: what each measure is compared
-/// with, where that is known, and the files that the scenes read. Of very many runs, one for each value is read.
+/// Reads the scene of every run, so that what it refuses is known before hours are spent: what each
+/// measure is compared
+/// with, where that is known, and the files that the scenes read. Of very many runs, one for each
+/// value is read.
 fn checked(
     study: &Study,
     scene_text: &str,

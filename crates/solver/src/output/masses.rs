@@ -20,7 +20,8 @@ const WORTH_A_NOTE: f64 = 5.0;
 /// Most bodies that a person is told of.
 const LISTED: usize = 8;
 
-/// What each body of a scene weighs, by its name, where it stands at the start; a body that comes through an inlet as it
+/// What each body of a scene weighs, by its name, where it stands at the start; a body that comes
+/// through an inlet as it
 /// stands in its file. `about`: what is known of the bodies.
 pub fn masses(
     scene: &Scene,
@@ -83,7 +84,8 @@ fn of_particles(body: &PlacedBody, particles: &Particles) -> MassProperties {
     of_spheres(&centres, &masses, &inertias)
 }
 
-/// Bodies that weigh other than their shapes, although the scene does not say what they weigh: a sentence each.
+/// Bodies that weigh other than their shapes, although the scene does not say what they weigh: a
+/// sentence each.
 pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> {
     let is_said = |name: &String| (scene.bodies.get(name)).is_some_and(|b| b.whole_mass.is_some());
     let unsaid = masses.iter().filter(|(name, _)| !is_said(name));

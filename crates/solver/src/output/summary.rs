@@ -36,7 +36,8 @@ pub struct Summary {
     pub program: String,
     /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
     pub ended_by: String,
-    /// What happened, where it did not come to its end: `ended_by` is "instability" or "interruption".
+    /// What happened, where it did not come to its end: `ended_by` is "instability" or
+    /// "interruption".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     /// What was run.
@@ -264,7 +265,8 @@ impl PopulationSummary {
 }
 
 impl Summary {
-    /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks of.
+    /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks
+    /// of.
     pub(crate) fn judge(&mut self, warnings: Vec<String>) {
         let warnings: Vec<String> = (self.problem.iter().cloned())
             .chain(warnings)

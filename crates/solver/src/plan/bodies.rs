@@ -255,7 +255,8 @@ fn place_particles(
     })
 }
 
-/// The density with which a body's shape is compared: that of its material, or the one that its file names, kg/m3.
+/// The density with which a body's shape is compared: that of its material, or the one that its
+/// file names, kg/m3.
 pub(crate) fn material_density_kg_m3(
     scene: &Scene,
     entry: &BodyEntry,
@@ -266,7 +267,8 @@ pub(crate) fn material_density_kg_m3(
     given.or(about.particle_density_kg_m3)
 }
 
-/// Density of the spheres of a body, kg/m3: of its material, or such that it weighs what the scene says.
+/// Density of the spheres of a body, kg/m3: of its material, or such that it weighs what the scene
+/// says.
 fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Body) -> Result<f64> {
     let place = || format!("{}: [bodies.{name}]", scene.source);
     let mass_kg = match entry.whole_mass {

@@ -1,4 +1,5 @@
-//! What will happen in a run, as far as it can be told before: which bodies meet what and when, what
+//! What will happen in a run, as far as it can be told before: which bodies meet what and when,
+//! what
 //! inlets will feed, and what of it speaks against running the scene as it stands.
 
 use dem_io::scene::{FeedRate, Scene};

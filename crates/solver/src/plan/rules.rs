@@ -143,7 +143,8 @@ fn region(entry: &SceneRegion) -> Result<Region> {
     })
 }
 
-/// What the rules ask for and cannot get, a sentence each: triggers that never fire, inlets that feed
+/// What the rules ask for and cannot get, a sentence each: triggers that never fire, inlets that
+/// feed
 /// nothing, bodies that have to wait.
 pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
     let mut doubts = Vec::new();

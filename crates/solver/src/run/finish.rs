@@ -1,4 +1,5 @@
-//! What a run writes once it has ended, and how that is made up for where the run was killed in the midst of it.
+//! What a run writes once it has ended, and how that is made up for where the run was killed in the
+//! midst of it.
 
 use dem_io::results::ResultsFolder;
 use dem_io::safe_write::write_file;
@@ -37,7 +38,8 @@ impl End {
         })
     }
 
-    /// Writes plots, fragments and film of a run that ends in this state, and its summary at last: where that is, all is.
+    /// Writes plots, fragments and film of a run that ends in this state, and its summary at last:
+    /// where that is, all is.
     ///
     /// # Errors
     /// Those of the files.
@@ -72,7 +74,8 @@ pub struct Finished {
     pub summary: String,
 }
 
-/// Writes the files that a run has not written that had come to its end when it was killed, or that have been removed since.
+/// Writes the files that a run has not written that had come to its end when it was killed, or that
+/// have been removed since.
 /// None: the run has not come to its end, or all of them are there.
 ///
 /// # Errors

@@ -179,7 +179,8 @@ impl Progress {
         self.step_changes += 1;
     }
 
-    /// Why a run that stands at the present of `state` has nothing left to do, and what would take it further. None: it has.
+    /// Why a run that stands at the present of `state` has nothing left to do, and what would take
+    /// it further. None: it has.
     pub(super) fn is_over(
         &self,
         state: &State,
@@ -210,7 +211,8 @@ impl Progress {
         })
     }
 
-    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another rhythm.
+    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another
+    /// rhythm.
     ///
     /// # Errors
     /// The run is over.

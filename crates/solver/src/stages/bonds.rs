@@ -55,7 +55,8 @@ pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
-/// Largest strain at the edge of a bond, be it broken or not: of elongation and bending together, or
+/// Largest strain at the edge of a bond, be it broken or not: of elongation and bending together,
+/// or
 /// of shear and torsion together.
 pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     let load = bonds.forces(at, poses).load;
@@ -359,7 +360,8 @@ mod tests {
         }
     }
 
-    /// Several lanes give the forces of one lane, and list the bonds that have reached their strength.
+    /// Several lanes give the forces of one lane, and list the bonds that have reached their
+    /// strength.
     fn lanes_agree(particles: &Particles, bonds: &Bonds) {
         for shares in [1, 3] {
             let results = [false, true].map(|several| {

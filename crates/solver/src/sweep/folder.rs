@@ -115,7 +115,8 @@ impl SweepFolder {
         Ok(())
     }
 
-    /// Refuses a sweep of which a process goes on, as after a kill of the program that had started it.
+    /// Refuses a sweep of which a process goes on, as after a kill of the program that had started
+    /// it.
     fn refuse_living(&self) -> Result<()> {
         let runs = self.runs();
         for path in entries(&runs)? {
@@ -134,7 +135,8 @@ impl SweepFolder {
         Ok(())
     }
 
-    /// Refuses a folder in which the sweep would remove or overwrite what it reads. `inputs`: the study, the scene and its files.
+    /// Refuses a folder in which the sweep would remove or overwrite what it reads. `inputs`: the
+    /// study, the scene and its files.
     ///
     /// # Errors
     /// One of them stands there under a name that a sweep gives (exit code 2).

@@ -54,7 +54,8 @@ impl Job {
         own.into_iter().any(is_same).then_some(job)
     }
 
-    /// Whether its process goes on at this moment, although the sweep that started it may have ended.
+    /// Whether its process goes on at this moment, although the sweep that started it may have
+    /// ended.
     pub fn is_alive(&self, runs: &Path) -> bool {
         is_locked(&self.complaint(runs)) || is_written_to(&self.folder(runs))
     }
@@ -155,7 +156,8 @@ pub fn shell_line(program: &str, arguments: &[String], complaint: Option<&Path>)
 /// Refuses what a command of `--list` cannot hold: it stands on one line, and is text.
 ///
 /// # Errors
-/// The name or value `text`, which stands at `place`, has control characters or is not UTF-8 (exit code 2).
+/// The name or value `text`, which stands at `place`, has control characters or is not UTF-8 (exit
+/// code 2).
 pub fn refuse_unlistable(place: &str, text: &Path) -> Result<()> {
     let problem = match text.to_str() {
         None => "is not UTF-8",
@@ -222,7 +224,8 @@ pub fn work(
                 let problem = format!("cannot be written: {error}");
                 Diagnostic::failed(complaint.display().to_string(), problem, "")
             })?;
-            // The process inherits the lock with its standard error, and holds it as long as it lives. Where the disk
+            // The process inherits the lock with its standard error, and holds it as long as it
+            // lives. Where the disk
             // knows no locks, that of its folder is left.
             let _ = say.try_lock();
             let child = Command::new(&program)

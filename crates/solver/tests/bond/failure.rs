@@ -207,7 +207,8 @@ fn criteria_act_together_and_the_worst_one_is_the_cause() {
     assert_eq!(cause(&criteria, &stresses, ONE), Cause::VonMises);
 }
 
-/// Tension counts at the edge that is pulled, also while the bond as a whole is pressed; compression
+/// Tension counts at the edge that is pulled, also while the bond as a whole is pressed;
+/// compression
 /// at the opposite one, also while it is pulled. What has no strength breaks by no stress.
 #[test]
 fn each_edge_has_a_strength_of_its_own() {

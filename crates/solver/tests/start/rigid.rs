@@ -58,7 +58,8 @@ fn an_impact_on_a_rigid_wall_is_that_of_hertz() {
     assert!(choice.step_s > 0.0 && choice.rayleigh_s.is_finite());
 }
 
-/// Rayleigh's estimate is that of what deforms, and a wall of a stiff material comes near to a rigid
+/// Rayleigh's estimate is that of what deforms, and a wall of a stiff material comes near to a
+/// rigid
 /// one.
 #[test]
 fn a_rigid_wall_leaves_the_step_to_what_deforms() {

@@ -32,7 +32,8 @@ reference = { value = 1 }
             && said.ends_with("--resume tries them again\n"),
         "{said}"
     );
-    // The same where nothing is run, and where nothing else is said; the tables are written all the same.
+    // The same where nothing is run, and where nothing else is said; the tables are written all the
+    // same.
     let written = fs::read(bench.path("study-sweep/sweep.csv")).unwrap();
     for options in [
         &["--collect"][..],

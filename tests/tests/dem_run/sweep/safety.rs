@@ -1,4 +1,5 @@
-//! What a sweep must not do: run what a name says, remove what it has not made, start a run twice, take all memory.
+//! What a sweep must not do: run what a name says, remove what it has not made, start a run twice,
+//! take all memory.
 #![cfg(target_os = "linux")]
 
 use std::fs;

@@ -180,7 +180,8 @@ fn each_chunk<const SIZE: usize>(
         .try_for_each(|&value| take(number(value)))
 }
 
-/// What an error while reading means: an early end, bytes that are no body, or a disk that does not answer.
+/// What an error while reading means: an early end, bytes that are no body, or a disk that does not
+/// answer.
 pub(super) fn unreadable(error: &io::Error) -> Diagnostic {
     let refused = error
         .get_ref()

@@ -1,4 +1,5 @@
-//! A limit on what the XML of a .vtp file makes its reader keep, so that an endless pipe ends at the
+//! A limit on what the XML of a .vtp file makes its reader keep, so that an endless pipe ends at
+//! the
 //! first bytes that are no body.
 
 use std::io::{self, BufRead, Read};

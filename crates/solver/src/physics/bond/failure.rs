@@ -175,7 +175,8 @@ pub fn cause(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> Caus
         shear,
         von_mises,
     } = Shares::of(criteria, stresses);
-    // The rate does not strengthen in compression: over the others' strengths it is more by so much.
+    // The rate does not strengthen in compression: over the others' strengths it is more by so
+    // much.
     let compression = compression * factors.rate;
     if tension >= compression && tension >= shear && tension >= von_mises {
         Cause::Tension

@@ -1,8 +1,10 @@
 //! Strength that varies from bond to bond: a factor that follows the Weibull distribution of scale 1.
 //!
 //! It depends on nothing but the seed and the names of the bond: the body's name in the scene and
-//! the numbers of the bond's particles in the body's file. So it is the same in whatever order bonds
-//! are listed or visited, on any number of threads, and whatever other bodies there are; and it need
+//! the numbers of the bond's particles in the body's file. So it is the same in whatever order
+//! bonds
+//! are listed or visited, on any number of threads, and whatever other bodies there are; and it
+//! need
 //! not be stored.
 
 use crate::physics::random::{hash, uniform};

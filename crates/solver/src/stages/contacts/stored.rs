@@ -74,7 +74,8 @@ pub fn pair_force_n(
     }
 }
 
-/// Force of a touch on its second end, be it of two particles or of a wall and a particle, from what it remembers, N.
+/// Force of a touch on its second end, be it of two particles or of a wall and a particle, from
+/// what it remembers, N.
 pub(in crate::stages) fn stored_force_n(
     law: &impl NormalLaw<f64>,
     touch: &Touch,
