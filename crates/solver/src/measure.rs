@@ -315,14 +315,19 @@ impl Gauge {
 
     /// Why it has no value at the end. None: it has one.
     fn missing(&self, value: f64) -> Option<String> {
-        (self.measure.quantity == Quantity::AngleOfRepose && value.is_nan()).then(|| {
-            format!(
-                "{} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{}\" has {}",
-                self.name,
-                self.measure.of,
-                self.members.particles.len()
-            )
-        })
+        let (name, of) = (&self.name, &self.measure.of);
+        let left = self.members.particles.len();
+        if !value.is_nan() {
+            None
+        } else if left == 0 {
+            Some(format!("{name} has no value: nothing of \"{of}\" is left"))
+        } else if self.measure.quantity == Quantity::AngleOfRepose {
+            Some(format!(
+                "{name} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {left}"
+            ))
+        } else {
+            None
+        }
     }
 
     /// Goes through the bonds that have an end in the set, with the number of ends in it.

@@ -78,20 +78,15 @@ const FACES: Lattice = Lattice {
     ..HEXAGONAL
 };
 
-/// A lattice that stands somehow in the cone. None: it has fewer layers or fewer than 200 spheres.
-fn regular(
-    lattice: &Lattice,
-    cone: &Cone,
-    fewest: usize,
-    random: &mut Random,
-) -> Option<Vec<Sphere>> {
-    let shift = Vector3::new(random.within(0.0, 2.0), random.within(0.0, 2.0), 1.0);
-    let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * random.within(0.0, 1.0));
+/// The spheres of a lattice within the cone, layer by layer. `shift`: of a sphere of the lowest
+/// layer from the axis; `turn_rad` of the lattice about it.
+fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Vec<Vec<Sphere>> {
+    let shift = Vector3::new(shift[0], shift[1], 1.0);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * turn_rad);
     let reach = cone.radius() as i32 + 4;
-    let mut spheres = Vec::new();
-    let mut layers = 0;
+    let mut layers = Vec::new();
     for k in 0..(cone.height / lattice.layer) as i32 + 1 {
-        let before = spheres.len();
+        let mut spheres = Vec::new();
         let f = f64::from(k % lattice.repeats);
         for i in -reach..=reach {
             for j in -reach..=reach {
@@ -107,9 +102,30 @@ fn regular(
                 }
             }
         }
-        layers += usize::from(spheres.len() > before);
+        if !spheres.is_empty() {
+            layers.push(spheres);
+        }
     }
-    (layers >= fewest && spheres.len() >= 200).then_some(spheres)
+    layers
+}
+
+/// A lattice of at least this many layers that stands anywhere in a cone of this slope.
+fn regular_anywhere(
+    lattice: &Lattice,
+    degrees: f64,
+    fewest: usize,
+    random: &mut Random,
+) -> Vec<Sphere> {
+    loop {
+        let top = lattice.layer * (fewest as f64 + random.within(-0.8, 3.0));
+        let height = top + 1.0 + 1.0 / degrees.to_radians().cos();
+        let shift = [random.within(0.0, 2.0), random.within(0.0, 2.0)];
+        let turn_rad = random.within(0.0, 1.0);
+        let layers = regular(lattice, &Cone::of(height, degrees), shift, turn_rad);
+        if layers.len() >= fewest {
+            return layers.concat();
+        }
+    }
 }
 
 /// Spheres dropped one by one until 600 in succession find no place in the cone. Radii are `1 -
@@ -186,24 +202,50 @@ const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
 #[test]
 fn lattices_cut_to_a_cone_have_its_slope() {
     let mut random = Random(11);
-    let mut layers = [CUBIC, CENTRED, HEXAGONAL, FACES].into_iter().cycle();
     for degrees in [10.0, 16.0, 22.0, 28.0, 34.0, 40.0] {
-        for lattice in layers.by_ref().take(4) {
-            // A steep cone of six layers is of 200 spheres, few enough to depend on where each is.
+        for lattice in [CUBIC, CENTRED, HEXAGONAL, FACES] {
             let fewest = if degrees > 25.0 { 8 } else { 6 };
-            let spheres = loop {
-                let top = lattice.layer * (fewest as f64 + random.within(-0.8, 3.0));
-                let cone = Cone::of(
-                    top + 1.0 + 1.0 / f64::cos(f64::to_radians(degrees)),
-                    degrees,
-                );
-                if let Some(spheres) = regular(&lattice, &cone, fewest, &mut random) {
-                    break spheres;
-                }
-            };
+            let spheres = regular_anywhere(&lattice, degrees, fewest, &mut random);
             assert_near(angle_deg(&spheres, DOWN), degrees, 1.0);
         }
     }
+}
+
+/// A steep cone of six layers has some 200 spheres, few enough to depend on where each of them is:
+/// the largest of many errors would be a matter of luck.
+#[test]
+fn steep_cones_of_six_layers_have_their_slope_to_half_a_degree() {
+    let mut random = Random(17);
+    let mut errors_deg = Vec::new();
+    for degrees in [26.0, 30.0, 35.0, 40.0] {
+        for lattice in [CUBIC, CENTRED, HEXAGONAL, FACES] {
+            for _ in 0..6 {
+                let spheres = regular_anywhere(&lattice, degrees, 6, &mut random);
+                errors_deg.push(angle_deg(&spheres, DOWN) - degrees);
+            }
+        }
+    }
+    let count = errors_deg.len() as f64;
+    let mean_deg = errors_deg.iter().sum::<f64>() / count;
+    let mean_square: f64 = errors_deg.iter().map(|e| e * e).sum::<f64>() / count;
+    let within_1 = errors_deg.iter().filter(|e| e.abs() <= 1.0).count();
+    assert!(mean_deg.abs() <= 0.2, "{mean_deg}");
+    assert!(mean_square.sqrt() <= 0.5, "{}", mean_square.sqrt());
+    assert!(within_1 as f64 >= 0.97 * count, "{within_1} of {count}");
+}
+
+/// Cones of 37.9 and 41.75 degrees that hold the same spheres: no measure of where these are can be
+/// right to 1 degree for both. This is why a small regular heap is not promised it.
+#[test]
+fn the_same_spheres_can_fill_cones_of_different_slopes() {
+    let flat = Cone::of(11.058, 37.9);
+    let steep = Cone::of(11.971, 41.75);
+    let in_flat = regular(&CENTRED, &flat, [0.0, 0.0], 0.0);
+    assert_eq!(in_flat, regular(&CENTRED, &steep, [0.0, 0.0], 0.0));
+    let spheres = in_flat.concat();
+    assert_eq!((in_flat.len(), spheres.len()), (7, 260));
+    let angle = angle_deg(&spheres, DOWN);
+    assert!(37.9 < angle && angle < 41.75, "{angle}");
 }
 
 #[test]
