@@ -52,7 +52,7 @@ pub enum Stage {
     /// Kick and drift of particles.
     Motion,
     /// The books of energy and momentum.
-    Ledger,
+    EnergyLedger,
     /// Looks at the limit of the step and at energy.
     Checks,
     /// Measures, files and pictures.
@@ -86,7 +86,7 @@ impl Stage {
         Self::Supports,
         Self::Gravity,
         Self::Motion,
-        Self::Ledger,
+        Self::EnergyLedger,
         Self::Checks,
         Self::Output,
     ];
@@ -115,7 +115,7 @@ impl Stage {
             Self::Supports => "supports",
             Self::Gravity => "gravity",
             Self::Motion => "motion",
-            Self::Ledger => "ledger",
+            Self::EnergyLedger => "ledger",
             Self::Checks => "checks",
             Self::Output => "output",
         }
@@ -178,7 +178,7 @@ impl StageClock {
         self.done[stage as usize]
     }
 
-    /// Share of a stage in all that was timed, 0 to 1; 0 if nothing was.
+    /// Fraction of a stage in all that was timed, 0 to 1; 0 if nothing was.
     pub fn share(&self, stage: Stage) -> f64 {
         let all: Duration = self.times.iter().sum();
         if all.is_zero() {

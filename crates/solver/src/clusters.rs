@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::disjoint::{find, join};
 use crate::state::bonds::Bonds;
-use crate::state::shares::first_bonds;
+use crate::state::partitions::first_bonds;
 
 pub use fragments::{Fragment, fragments};
 pub use triggers::Triggers;

@@ -19,7 +19,7 @@ use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::plan::Plan;
 use crate::plan::bodies::PlacedBody;
 use crate::stages::clumps::synchronous;
-use crate::stages::population::Renumbered;
+use crate::stages::population::Renumbering;
 use crate::state::State;
 use crate::state::watches::{Seen, Watch, Watched};
 
@@ -31,7 +31,7 @@ pub use crate::state::watches::History;
 
 /// A measure and the particles that it is of.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Gauge {
+pub struct Probe {
     /// Its name in the scene.
     pub name: String,
     /// What is asked.
@@ -86,8 +86,8 @@ impl Measured {
     }
 }
 
-/// The gauges of a plan that has not been stepped.
-pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
+/// The probes of a plan that has not been stepped.
+pub fn probes(scene: &dem_io::Scene, plan: &Plan) -> Vec<Probe> {
     let counts_from_start = |measure: &Measure| {
         matches!(
             measure.quantity,
@@ -107,10 +107,10 @@ pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
         members.renumber(&[], &plan.bodies, &plan.state);
         members
     };
-    let gauge = |(name, measure): (&String, &Measure)| {
+    let probe = |(name, measure): (&String, &Measure)| {
         let with = measure.with.as_deref();
         let with_wall = with.and_then(|with| wall_number(scene, with));
-        let mut gauge = Gauge {
+        let mut probe = Probe {
             name: name.clone(),
             measure: measure.clone(),
             members: members(&measure.of),
@@ -121,28 +121,28 @@ pub fn gauges(scene: &dem_io::Scene, plan: &Plan) -> Vec<Gauge> {
             turned_before: BTreeMap::new(),
             history: History::default(),
         };
-        gauge.count_anew(&plan.bodies, &plan.state);
-        gauge
+        probe.count_anew(&plan.bodies, &plan.state);
+        probe
     };
-    scene.measures.iter().map(gauge).collect()
+    scene.measures.iter().map(probe).collect()
 }
 
-/// Lets a state that is about to be stepped follow what the gauges need of every step.
-pub fn place_watches(gauges: &[Gauge], state: &mut State) {
-    let watch = |gauge: &Gauge| {
+/// Lets a state that is about to be stepped follow what the probes need of every step.
+pub fn place_watches(probes: &[Probe], state: &mut State) {
+    let watch = |probe: &Probe| {
         Some(Watch {
-            quantity: gauge.measure.quantity,
-            of: gauge.watched(state)?,
+            quantity: probe.measure.quantity,
+            of: probe.watched(state)?,
             seen: Seen::default(),
         })
     };
-    let watches = gauges.iter().filter_map(watch).collect();
+    let watches = probes.iter().filter_map(watch).collect();
     state.watches = watches;
 }
 
-/// Reads all gauges between a kick and the drift after it, and notes what they show. One value for each.
-pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Vec<f64> {
-    let needs_motions = |g: &Gauge| {
+/// Reads all probes between a kick and the drift after it, and notes what they show. One value for each.
+pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Vec<f64> {
+    let needs_motions = |g: &Probe| {
         matches!(
             g.measure.quantity,
             Quantity::Velocity(_)
@@ -151,19 +151,19 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
                 | Quantity::KineticEnergy
         )
     };
-    let counts_mass = |g: &Gauge| {
+    let counts_mass = |g: &Probe| {
         let quantity = g.measure.quantity;
         matches!(
             quantity,
             Quantity::MassFractionOfLargest | Quantity::MassOfLargest
         )
     };
-    let masses_kg = if gauges.iter().any(counts_mass) {
+    let masses_kg = if probes.iter().any(counts_mass) {
         masses_of_pieces_kg(state)
     } else {
         Vec::new()
     };
-    let motions = if gauges.iter().any(needs_motions) {
+    let motions = if probes.iter().any(needs_motions) {
         Motions {
             particles: synchronous_motions(state),
             clumps: synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s),
@@ -173,16 +173,16 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
     };
     let mut watches = state.watches.iter();
     let mut values = Vec::new();
-    for gauge in gauges {
-        let watch = gauge.is_watched().then(|| watches.next()).flatten();
+    for probe in probes {
+        let watch = probe.is_watched().then(|| watches.next()).flatten();
         let value = match watch {
             Some(watch) => {
-                gauge.history = watch.seen.history;
+                probe.history = watch.seen.history;
                 watch.seen.value
             }
             None => {
-                let value = gauge.read(state, &motions, &masses_kg, balance);
-                gauge.history.note(state.time_s, value);
+                let value = probe.read(state, &motions, &masses_kg, balance);
+                probe.history.note(state.time_s, value);
                 value
             }
         };
@@ -191,23 +191,28 @@ pub fn read_gauges(gauges: &mut [Gauge], state: &State, balance: &Balance) -> Ve
     values
 }
 
-/// Lets the gauges, and what the state follows for them, count particles as they are counted now.
-pub fn renumber(gauges: &mut [Gauge], by: &[Renumbered], bodies: &[PlacedBody], state: &mut State) {
-    for gauge in &mut *gauges {
-        let members = [Some(&mut gauge.members), gauge.with.as_mut()];
+/// Lets the probes, and what the state follows for them, count particles as they are counted now.
+pub fn renumber(
+    probes: &mut [Probe],
+    by: &[Renumbering],
+    bodies: &[PlacedBody],
+    state: &mut State,
+) {
+    for probe in &mut *probes {
+        let members = [Some(&mut probe.members), probe.with.as_mut()];
         for members in members.into_iter().flatten() {
             members.renumber(by, bodies, state);
         }
-        gauge.count_anew(bodies, state);
+        probe.count_anew(bodies, state);
     }
     let mut watched = Vec::new();
-    watched.extend(gauges.iter().filter_map(|gauge| gauge.watched(state)));
+    watched.extend(probes.iter().filter_map(|probe| probe.watched(state)));
     for (watch, of) in state.watches.iter_mut().zip(watched) {
         watch.of = of;
     }
 }
 
-impl Gauge {
+impl Probe {
     /// What follows from which particles it is of.
     fn count_anew(&mut self, bodies: &[PlacedBody], state: &State) {
         match self.measure.quantity {

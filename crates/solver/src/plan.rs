@@ -21,13 +21,13 @@ use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
-use crate::check::ledger::Ledger;
+use crate::check::ledger::EnergyLedger;
 use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
 use crate::output::inputs::Inputs;
 use crate::output::masses;
 use crate::stages::loads::SetLoad;
-use crate::stages::population::{Changes, change};
+use crate::stages::population::{TopologyChange, apply_topology_change};
 use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
 use crate::state::particles::Wrench;
@@ -137,7 +137,7 @@ pub fn plan(
     refuse_valueless(scene, &sets, &state)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(doubts(scene, &state));
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     let mut step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
         Integrator::Static => {
@@ -204,11 +204,11 @@ fn place_meetings(
     state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
     let coming = standing(scene, &state.clumps.templates);
     if !coming.is_empty() {
-        let changes = Changes {
+        let changes = TopologyChange {
             coming,
-            ..Changes::default()
+            ..TopologyChange::default()
         };
-        change(state, changes);
+        apply_topology_change(state, changes);
     }
     state.triggers = Triggers {
         interval: scene.clusters.interval,

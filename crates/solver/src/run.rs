@@ -22,7 +22,7 @@ use crate::clock::Stage;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::{TestSettings, Watch};
 use crate::machine::{machine, processor_time_s};
-use crate::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
+use crate::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
@@ -31,7 +31,7 @@ use crate::plan::Plan;
 use crate::plan::bodies::{PlacedBody, renumber};
 use crate::snapshot::{Snapshot, fingerprint};
 use crate::stages::clumps::place_all;
-use crate::stages::replacement::{Happened, replace};
+use crate::stages::replacement::{PopulationEvent, replace};
 use crate::state::State;
 use crate::step::{act, find_pieces_now, move_on};
 
@@ -44,7 +44,7 @@ use self::fragments::write_fragments;
 use self::limits::{LOOKS_EVERY, Limits, went_through};
 use self::pictures::{Order, Pictures};
 pub use self::progress::Progress;
-use self::progress::{Rhythm, due, next};
+use self::progress::{OutputSchedule, due, next};
 
 /// Wall time between two checkpoints where the scene names no other rhythm.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
@@ -176,7 +176,7 @@ pub fn run_as_far_as_it_goes(
             problem: None,
         });
     }
-    let mut gauges = gauges(scene, &plan);
+    let mut probes = probes(scene, &plan);
     let watch = match (&scene.test, &plan.test, settings.test) {
         (Some(test), Some(setup), Some(of_test)) => {
             Some(Watch::new(scene, test, setup.clone(), of_test, &plan))
@@ -194,12 +194,12 @@ pub fn run_as_far_as_it_goes(
         inputs,
         ..
     } = plan;
-    place_watches(&gauges, &mut state);
+    place_watches(&probes, &mut state);
     let fingerprint = fingerprint(&state);
     let mut order = settings.folder.map(|_| FrameOrder::new(&bodies, &state));
     let of_pictures = settings.folder.and(Order::of(scene, &state));
     let size = state.particles.len() + state.bonds.len();
-    let rhythm = Rhythm::of(scene, choice.step_s, size);
+    let rhythm = OutputSchedule::of(scene, choice.step_s, size);
     let mut progress = Progress::new(rhythm, &choice);
     let mut limits = Limits::of(scene, &state, &choice);
     let mut changed_step = None;
@@ -214,16 +214,16 @@ pub fn run_as_far_as_it_goes(
             .map_err(|error| error.within(&place.unwrap_or_default()))?;
         progress = snapshot.progress;
         progress.go_on(&state, rhythm, scene)?;
-        for (gauge, history) in gauges.iter_mut().zip(snapshot.measures) {
-            gauge.history = history;
+        for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
+            probe.history = history;
         }
         if !state.clumps.templates.is_empty() {
-            renumber_gauges(&mut gauges, &[], &bodies, &mut state);
+            renumber_probes(&mut probes, &[], &bodies, &mut state);
             order = order.map(|_| FrameOrder::new(&bodies, &state));
         }
         changed_step = change_step(&mut state, &choice, scene.run.adaptive);
     }
-    let columns = series::columns(scene.walls.keys(), &gauges);
+    let columns = series::columns(scene.walls.keys(), &probes);
     let mut files = match (settings.folder, order) {
         (Some(folder), Some(order)) => {
             let continued = is_continued.then_some(&progress);
@@ -319,7 +319,7 @@ pub fn run_as_far_as_it_goes(
         }
         if let (true, Some(balance)) = (row_due || rests, &balanced) {
             progress.next_row = next(&state, rhythm.row_s);
-            let values = read_gauges(&mut gauges, &state, balance);
+            let values = read_probes(&mut probes, &state, balance);
             if let Some(files) = &mut files {
                 let row = series::row(&state, balance, &values);
                 files.series.append(state.time_s, &row)?;
@@ -366,13 +366,13 @@ pub fn run_as_far_as_it_goes(
         state.clock.start(state.steps);
         let mut replaced = false;
         if let Some((renumbered, happened)) = replace(&mut state) {
-            let is_swap = |one: &Happened| matches!(one, Happened::Replaced { .. });
+            let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });
             replaced = happened.iter().any(is_swap);
             progress.seen.note_happened(&happened);
             for by in &renumbered {
                 renumber(&mut bodies, by);
             }
-            renumber_gauges(&mut gauges, &renumbered, &bodies, &mut state);
+            renumber_probes(&mut probes, &renumbered, &bodies, &mut state);
             if let Some(files) = &mut files {
                 write_happened(&state, &happened, files)?;
                 files.order = FrameOrder::new(&bodies, &state);
@@ -399,7 +399,7 @@ pub fn run_as_far_as_it_goes(
                 &bodies,
                 scene,
                 fingerprint,
-                &gauges,
+                &probes,
                 &mut progress,
                 files,
             )?;
@@ -468,7 +468,7 @@ pub fn run_as_far_as_it_goes(
         momentum_error,
         angular_momentum_error,
         ledger: last,
-        measures: gauges.iter().map(Gauge::result).collect(),
+        measures: probes.iter().map(Probe::result).collect(),
         time_by_stage: Stage::ALL
             .iter()
             .map(|&stage| (stage.name().to_owned(), state.clock.share(stage)))
@@ -506,11 +506,11 @@ pub fn run_as_far_as_it_goes(
             &bodies,
             scene,
             fingerprint,
-            &gauges,
+            &probes,
             &mut progress,
             files,
         )?;
-        end.write(files.folder, &state, &gauges, files.pictures.as_ref())?;
+        end.write(files.folder, &state, &probes, files.pictures.as_ref())?;
     }
     Ok(Outcome {
         summary,
@@ -532,7 +532,7 @@ fn save(
     bodies: &[PlacedBody],
     scene: &Scene,
     fingerprint: u64,
-    gauges: &[Gauge],
+    probes: &[Probe],
     progress: &mut Progress,
     files: &mut Files<'_>,
 ) -> Result<()> {
@@ -548,7 +548,7 @@ fn save(
     if let Some(pictures) = &files.pictures {
         progress.pictures = pictures.taken();
     }
-    let measures = gauges.iter().map(|gauge| gauge.history).collect();
+    let measures = probes.iter().map(|probe| probe.history).collect();
     let snapshot = Snapshot::taken(
         state,
         bodies,

@@ -8,7 +8,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::check::ledger::Ledger;
+use crate::check::ledger::EnergyLedger;
 use crate::measure;
 use crate::physics::bond::failure::CauseCounts;
 use crate::physics::bond::incremental::History;
@@ -16,7 +16,7 @@ use crate::plan::bodies::PlacedBody;
 use crate::run::Progress;
 use crate::state::State;
 use crate::state::particles::Motion;
-use crate::state::shares::divide_anew;
+use crate::state::partitions::divide_anew;
 use crate::state::watches::Seen;
 
 mod meetings;
@@ -43,13 +43,13 @@ pub struct Snapshot {
     particles: Vec<PlaceAndMotion>,
     broken: Vec<u32>,
     histories: Vec<[f64; 6]>,
-    ledger: Ledger,
+    ledger: EnergyLedger,
     meetings: Meetings,
     /// None: bodies neither come nor go, and what stands above is enough.
     population: Option<Population>,
     /// What has been seen of forces and contacts in every step.
     watches: Vec<Seen>,
-    /// What the gauges have shown.
+    /// What the probes have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
     pub progress: Progress,
@@ -258,7 +258,7 @@ impl Snapshot {
         for &at in &self.broken {
             state.bonds.set_broken(at as usize);
         }
-        divide_anew(&state.bonds, &mut state.shares, &[]);
+        divide_anew(&state.bonds, &mut state.partitions, &[]);
         let history = |&[fx, fy, fz, mx, my, mz]: &[f64; 6]| History {
             shear_force: Vector3::new(fx, fy, fz),
             moment: Vector3::new(mx, my, mz),
@@ -301,7 +301,7 @@ pub fn fingerprint(state: &State) -> u64 {
     for pose in &p.poses {
         pose.position_m.iter().for_each(|x| add(x.to_bits()));
     }
-    for &(end, rule) in &b.stretches {
+    for &(end, rule) in &b.rule_runs {
         add(end as u64);
         add(u64::from(b.rules[rule].incremental));
     }

@@ -6,14 +6,14 @@ pub mod contacts;
 pub mod memory;
 pub mod order;
 pub mod particles;
+pub mod partitions;
 pub mod regions;
 pub mod rules;
-pub mod shares;
 pub mod sleep;
 pub mod walls;
 pub mod watches;
 
-use crate::check::ledger::Ledger;
+use crate::check::ledger::EnergyLedger;
 use crate::clock::StageClock;
 use crate::clusters::{Clusters, Split, Triggers};
 use crate::physics::bond::failure::CauseCounts;
@@ -25,8 +25,8 @@ use self::bonds::Bonds;
 use self::clumps::Clumps;
 use self::contacts::Contacts;
 use self::particles::{Particles, Wrench};
+use self::partitions::{Partition, divide};
 use self::rules::Rules;
-use self::shares::{Share, divide};
 use self::sleep::Sleep;
 use self::walls::Wall;
 use self::watches::Watch;
@@ -40,10 +40,10 @@ pub struct State {
     pub clumps: Clumps,
     /// What joins them.
     pub bonds: Bonds,
-    /// Number of shares in which the work is divided, at most.
+    /// Number of partitions in which the work is divided, at most.
     pub threads: usize,
     /// Who works on what.
-    pub shares: Vec<Share>,
+    pub partitions: Vec<Partition>,
     /// Which particles are of one piece. None: nothing can break, and nothing can touch.
     pub clusters: Option<Clusters>,
     /// When pieces are looked for.
@@ -93,7 +93,7 @@ pub struct State {
     /// Those of them that have gone with their bodies.
     pub broken_gone: u64,
     /// Energy and momentum that went in and out.
-    pub ledger: Ledger,
+    pub ledger: EnergyLedger,
     /// Where the time goes.
     pub clock: StageClock,
 }
@@ -102,19 +102,19 @@ impl State {
     /// A simulation of these particles and bonds, without loads, supports, gravity and particle damping. Work is divided for this many threads.
     pub fn new(particles: Particles, bonds: Bonds, time_step_s: f64, threads: usize) -> Self {
         let damped = bonds.rules.iter().any(|rule| rule.damped);
-        let shares = divide(&bonds, particles.len(), threads);
+        let partitions = divide(&bonds, particles.len(), threads);
         let mut state = Self {
             bond_resistance: if damped {
                 vec![Wrench::default(); particles.len()]
             } else {
                 Vec::new()
             },
-            ledger: Ledger::default(),
+            ledger: EnergyLedger::default(),
             particles,
             clumps: Clumps::default(),
             bonds,
             threads,
-            shares,
+            partitions,
             clusters: None,
             triggers: Triggers::default(),
             unsearched: Vec::new(),
@@ -140,7 +140,7 @@ impl State {
             broken_gone: 0,
             clock: StageClock::default(),
         };
-        state.ledger = Ledger::opened(&state);
+        state.ledger = EnergyLedger::opened(&state);
         state
     }
 

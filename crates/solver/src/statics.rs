@@ -29,7 +29,7 @@ use dem_io::{Diagnostic, Result};
 use crate::check::ledger::Balance;
 use crate::check::totals::elastic_energy;
 use crate::machine::processor_time_s;
-use crate::measure::{bond_utilisation, gauges, read_gauges};
+use crate::measure::{bond_utilisation, probes, read_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
@@ -53,7 +53,7 @@ pub fn run(
     settings: &RunSettings<'_>,
     tell: &dyn Fn(f64),
 ) -> Result<Summary> {
-    let mut gauges = gauges(scene, &plan);
+    let mut probes = probes(scene, &plan);
     let Plan {
         mut state,
         bodies,
@@ -79,13 +79,13 @@ pub fn run(
     let processor_s = processor_time_s().zip(processor_before_s);
 
     let balance = balance(&state, start_moments);
-    let values = read_gauges(&mut gauges, &state, &balance);
+    let values = read_probes(&mut probes, &state, &balance);
     let beyond = (0..state.bonds.len()).filter(|at| bond_utilisation(&state, *at) >= 1.0);
     let found = EquilibriumSummary::new(&found, beyond.count());
     let at_rest = AtRest {
         state: &state,
         scene,
-        gauges: &gauges,
+        probes: &probes,
         balance: &balance,
         masses: &masses,
     };
@@ -148,7 +148,7 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
             ),
             "load it less; or see what it does then with run.integrator = \"leapfrog\"",
         ),
-        Cause::Memory => Diagnostic::failed(
+        Cause::ContactHistory => Diagnostic::failed(
             place,
             "the factors of the stiffness do not fit into memory",
             "use fewer particles, or run.integrator = \"leapfrog\"",

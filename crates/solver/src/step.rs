@@ -16,7 +16,7 @@ use crate::stages::walls::{move_walls, plan_motions, wall_wrenches};
 use crate::stages::watching::watch;
 use crate::state::State;
 use crate::state::particles::Wrench;
-use crate::state::shares::{Share, divide_anew};
+use crate::state::partitions::{Partition, divide_anew};
 
 /// The work is divided anew when one in so many of the bonds that are computed is broken.
 const STALE: u64 = 64;
@@ -31,13 +31,23 @@ pub fn act(state: &mut State) {
     state.clock.book(Stage::Search);
 
     let p = &mut state.particles;
-    bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+    bond_wrenches(
+        &state.bonds,
+        &p.poses,
+        &mut state.partitions,
+        &mut p.wrenches,
+    );
     state.clock.book(Stage::Bonds);
     if !state.bonds.histories.is_empty() {
         if before_s > 0.0 {
             advance_histories(&mut state.bonds, p, before_s);
         }
-        add_incremental_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+        add_incremental_wrenches(
+            &state.bonds,
+            &p.poses,
+            &mut state.partitions,
+            &mut p.wrenches,
+        );
         state.clock.book(Stage::Histories);
     }
     if let Some(contacts) = &mut state.contacts {
@@ -58,7 +68,7 @@ pub fn act(state: &mut State) {
     let rates = break_bonds(
         &mut state.bonds,
         p,
-        &state.shares,
+        &state.partitions,
         0.5 * before_s,
         &mut state.broken,
     );
@@ -83,7 +93,7 @@ pub fn act(state: &mut State) {
             &state.bonds,
             &p.poses,
             &p.motions,
-            &mut state.shares,
+            &mut state.partitions,
             &mut state.bond_resistance,
         );
         state.clock.book(Stage::BondDamping);
@@ -102,7 +112,7 @@ pub fn act(state: &mut State) {
 
     let kick_s = state.kick_s();
     crate::check::ledger::before_kick(state);
-    state.clock.book(Stage::Ledger);
+    state.clock.book(Stage::EnergyLedger);
     let p = &mut state.particles;
     let resistance = [&state.bond_resistance[..], &state.particle_resistance];
     kick(p, resistance, state.gravity_m_s2, kick_s);
@@ -121,14 +131,14 @@ pub fn act(state: &mut State) {
     state.clock.book(Stage::Walls);
     crate::check::ledger::after_kick(state);
     count_done(state);
-    state.clock.book(Stage::Ledger);
+    state.clock.book(Stage::EnergyLedger);
     watch(state);
 }
 
 /// Second half of a step: the particles move on.
 pub fn move_on(state: &mut State) {
     state.clock.start(state.steps);
-    sleep::look(state);
+    sleep::update_sleep(state);
     state.clock.book(Stage::Sleep);
     let of_clumps_m_s = clumps::drift(&mut state.clumps, &mut state.particles, state.time_step_s);
     state.clock.book(Stage::Clumps);
@@ -139,11 +149,11 @@ pub fn move_on(state: &mut State) {
         state.fastest_m_s += of_walls_m_s;
         let moved_m = state.fastest_m_s * state.time_step_s;
         contacts.moved_m = moved_m;
-        contacts.close_room_m -= moved_m;
-        contacts.room_m -= moved_m;
-        if contacts.room_m < moved_m {
+        contacts.close_skin_left_m -= moved_m;
+        contacts.skin_left_m -= moved_m;
+        if contacts.skin_left_m < moved_m {
             // After one more such step, who is not listed could overlap.
-            contacts.room_m = -1.0;
+            contacts.skin_left_m = -1.0;
         }
         state.clock.book(Stage::Walls);
     }
@@ -151,7 +161,7 @@ pub fn move_on(state: &mut State) {
     state.time_s += state.time_step_s;
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
-    state.clock.book(Stage::Ledger);
+    state.clock.book(Stage::EnergyLedger);
 }
 
 /// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
@@ -181,15 +191,15 @@ pub fn find_pieces_now(state: &mut State) {
     state.splits = clusters.update(state.time_s, &damaged, &state.bonds);
     state.unsearched.clear();
     if let (Some(contacts), false) = (&mut state.contacts, state.splits.is_empty()) {
-        contacts.room_m = -1.0;
+        contacts.skin_left_m = -1.0;
     }
 }
 
 /// Takes down how much each stage has done in this step.
 fn count_done(state: &mut State) {
     let clock = &mut state.clock;
-    for share in &state.shares {
-        let computed = share.computed;
+    for partition in &state.partitions {
+        let computed = partition.computed;
         clock.did(Stage::Bonds, computed.total);
         clock.did(Stage::Histories, computed.incremental);
         clock.did(Stage::Failure, computed.compared);
@@ -198,9 +208,13 @@ fn count_done(state: &mut State) {
         }
         clock.did(Stage::BondDamping, computed.damped);
     }
-    for share in state.contacts.iter().flat_map(|contacts| &contacts.shares) {
-        clock.did(Stage::Contacts, share.computed);
-        clock.did(Stage::Rolling, share.rolled);
+    for partition in state
+        .contacts
+        .iter()
+        .flat_map(|contacts| &contacts.partitions)
+    {
+        clock.did(Stage::Contacts, partition.computed);
+        clock.did(Stage::Rolling, partition.rolled);
     }
     for wall in &state.walls {
         clock.did(Stage::Walls, wall.near.len());
@@ -222,12 +236,12 @@ fn count_done(state: &mut State) {
 
 /// Divides the work anew once enough bonds have broken since it was divided last.
 fn leave_out_broken(state: &mut State) {
-    let computed: usize = state.shares.iter().map(Share::own_bonds).sum();
+    let computed: usize = state.partitions.iter().map(Partition::own_bonds).sum();
     let broken = state.broken_count - state.broken_gone;
     let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
     let whole = state.bonds.len() as u64 - broken - asleep;
     if (computed as u64 - whole) * STALE >= computed as u64 {
-        divide_anew(&state.bonds, &mut state.shares, &state.particles.asleep);
+        divide_anew(&state.bonds, &mut state.partitions, &state.particles.asleep);
     }
 }
 

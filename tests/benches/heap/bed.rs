@@ -1,9 +1,9 @@
 //! A bed of spheres that touch as those of a heap do.
 
-use dem_run::check::ledger::Ledger;
+use dem_run::check::ledger::EnergyLedger;
 use dem_run::clusters::Clusters;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::stages::neighbours::near_pairs;
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
@@ -44,7 +44,7 @@ pub(crate) fn bed(threads: usize) -> State {
     let mut state = State::new(particles, Bonds::default(), 1e-10, threads);
     state.clusters = Some(Clusters::new(count, &state.bonds));
     state.contacts = Some(contacts(&state, threads));
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     state
 }
 
@@ -56,13 +56,13 @@ fn contacts(state: &State, threads: usize) -> Contacts {
     };
     let mut contacts = Contacts {
         kinds: vec![ContactKind {
-            law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &Behaviour::new(0.5, 0.5))),
+            law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &PairInput::new(0.5, 0.5))),
             rolling: Rolling::Free,
         }],
         kind_of: vec![0],
         materials: vec![0; poses.len()],
         skin_m: SKIN_M,
-        room_m: 0.5 * SKIN_M,
+        skin_left_m: 0.5 * SKIN_M,
         least_overlap: 1e-3,
         lost_j: vec![[0.0; 2]; poses.len()],
         ..Contacts::default()

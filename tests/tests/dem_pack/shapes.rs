@@ -56,7 +56,7 @@ fn packed(name: &str, more: &[&str], volume: f64, pieces: u64, unsure: f64) -> M
     made
 }
 
-/// Share of the ball around `centre` (mm) that its spheres fill.
+/// Fraction of the ball around `centre` (mm) that its spheres fill.
 fn filled_share(made: &Made, centre: [f64; 3], radius: f64) -> f64 {
     let (positions, radii) = made.millimetres();
     let within = positions

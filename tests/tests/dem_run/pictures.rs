@@ -24,7 +24,7 @@ fn decoded(path: &Path) -> ([u32; 2], Vec<u8>, u32) {
     ([info.width, info.height], pixels, frames)
 }
 
-/// Share of the pixels that are not white.
+/// Fraction of the pixels that are not white.
 fn inked(pixels: &[u8]) -> f64 {
     let all = pixels.chunks_exact(3);
     let count = all.len() as f64;

@@ -12,7 +12,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::geometry::Shape;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::GONE;
+use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::walls::Wall;
@@ -73,7 +73,7 @@ pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> 
     let is_free = |i: &u32| !bound.contains(i) && !state.particles.sleeps(*i as usize);
     let of_bodies = bodies.iter().filter_map(|body| {
         let living = body.particles.iter().copied();
-        let living: Vec<u32> = living.filter(|i| *i != GONE).collect();
+        let living: Vec<u32> = living.filter(|i| *i != REMOVED).collect();
         let flies = !living.is_empty() && living.iter().all(is_free);
         flies.then(|| Flyer::of_particles(state, &body.name, &living))
     });

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::check::linear::overlap_at_impact;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::GONE;
+use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 
@@ -110,7 +110,7 @@ fn assemblies<'a>(state: &'a State, bodies: &'a [PlacedBody]) -> Vec<Assembly<'a
         let range = body.first_bond..body.first_bond + body.bonds.len();
         let (modulus_pa, at) = softest_bond(&state.bonds, range)?;
         let end = state.bonds.ends[at][0] as usize;
-        let depths = body.particles.iter().filter(|i| **i != GONE).map(|&i| {
+        let depths = body.particles.iter().filter(|i| **i != REMOVED).map(|&i| {
             let place = state.particles.poses[i as usize].place();
             down.map_or(0.0, |down| place.dot(&down))
         });

@@ -36,7 +36,7 @@ fn pressed_by_a_millionth_j(state: &State) -> f64 {
 
 /// What went in and out since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct EnergyLedger {
     /// Up to the present moment; the half step after it is in `pending`.
     work: Work,
     pending: Work,
@@ -138,7 +138,7 @@ impl Balance {
     }
 }
 
-impl Ledger {
+impl EnergyLedger {
     /// The ledger of a state before its first step.
     pub fn opened(state: &State) -> Self {
         let p = &state.particles;

@@ -451,7 +451,7 @@ fn bonds_as_total(state: &mut State, poses: &[Pose]) {
         rule.criteria = None;
     }
     let wrenches = &mut state.particles.wrenches;
-    bond_wrenches(&state.bonds, poses, &mut state.shares, wrenches);
+    bond_wrenches(&state.bonds, poses, &mut state.partitions, wrenches);
     state.bonds.rules = rules;
 }
 
@@ -480,11 +480,17 @@ fn add_damping_times(
     let State {
         bonds,
         particles,
-        shares,
+        partitions,
         bond_resistance,
         ..
     } = state;
-    damping_wrenches(bonds, &particles.poses, &motions, shares, bond_resistance);
+    damping_wrenches(
+        bonds,
+        &particles.poses,
+        &motions,
+        partitions,
+        bond_resistance,
+    );
     add_forces(-weight, bond_resistance, roots, sum);
 }
 

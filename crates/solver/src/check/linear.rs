@@ -3,15 +3,15 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics, torques};
 use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::touch::{Touch, torques, touch};
 use crate::physics::contact::{Linearised, NormalLaw, linearised};
-use crate::physics::number::Triple;
-use crate::stages::walls::wall_touch;
+use crate::physics::number::Vec3;
+use crate::stages::walls::wall_contact;
 use crate::state::State;
-use crate::state::contacts::{ContactKind, ContactShare, Law, Rolling};
+use crate::state::contacts::{ContactKind, ContactPartition, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Wrench};
-use crate::state::walls::{Wall, WallTouch};
+use crate::state::walls::{Wall, WallContact};
 
 /// Translation and rotation of an end answer to a tangential force together: 1/m + R^2/I is so many times 1/m for a sphere.
 const WITH_ROTATION: f64 = 3.5;
@@ -21,7 +21,7 @@ const WITH_ROTATION: f64 = 3.5;
 pub struct LinearContact {
     /// Its particles; None: a wall.
     ends: [Option<u32>; 2],
-    touch: Touch,
+    touch: ContactKinematics,
     answer: Linearised,
 }
 
@@ -30,12 +30,16 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
     let mut found = Vec::new();
     let p = &state.particles;
     if let Some(contacts) = &state.contacts {
-        for (&pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
-            let overlap_m = memory.overlap_m();
+        for (&pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
+            let overlap_m = history.overlap_m();
             if overlap_m > 0.0 {
                 let [a, b] = pair.map(|end| end as usize);
                 let apart = p.poses[b].place() - p.poses[a].place();
-                let mut touch = touch(apart.into(), [a, b].map(|i| p.ball_at_rest(i)), 0.0);
+                let mut touch = contact_kinematics(
+                    apart.into(),
+                    [a, b].map(|i| p.contact_sphere_at_rest(i)),
+                    0.0,
+                );
                 touch.overlap_m = overlap_m;
                 let kind = &contacts.kinds[contacts.kind(pair)];
                 found.push(LinearContact {
@@ -47,7 +51,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
         }
         for wall in &state.walls {
             let touching = wall.touching.iter();
-            let touching = touching.filter(|touch| touch.memory.overlap_m() > 0.0);
+            let touching = touching.filter(|touch| touch.history.overlap_m() > 0.0);
             found.extend(touching.map(|touch| at_wall(wall, touch, &contacts.materials, p)));
         }
     }
@@ -56,13 +60,13 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
 
 fn at_wall(
     wall: &Wall,
-    there: &WallTouch,
+    there: &WallContact,
     materials: &[u8],
     particles: &Particles,
 ) -> LinearContact {
     let i = there.particle as usize;
-    let overlap_m = there.memory.overlap_m();
-    let touch = wall_touch(particles, i, &Vector3::from(there.normal), overlap_m);
+    let overlap_m = there.history.overlap_m();
+    let touch = wall_contact(particles, i, &Vector3::from(there.normal), overlap_m);
     let kind = wall.kind(materials[i]);
     LinearContact {
         ends: [None, Some(there.particle)],
@@ -131,14 +135,14 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
     rates
 }
 
-fn answer(kind: &ContactKind, touch: &Touch) -> Linearised {
+fn answer(kind: &ContactKind, touch: &ContactKinematics) -> Linearised {
     match &kind.law {
         Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch),
         Law::Linear(law) => with_law(law, &kind.rolling, touch),
     }
 }
 
-fn with_law(law: &impl NormalLaw<f64>, rolling: &Rolling, touch: &Touch) -> Linearised {
+fn with_law(law: &impl NormalLaw<f64>, rolling: &Rolling, touch: &ContactKinematics) -> Linearised {
     match rolling {
         Rolling::Free => linearised(law, &NoRolling, touch),
         Rolling::Constant(rolling) => linearised(law, rolling, touch),
@@ -210,11 +214,12 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
     // Whatever touches was close when pairs were looked at last.
-    let of_share = |share: &ContactShare| {
+    let of_partition = |partition: &ContactPartition| {
         let mut largest = 0.0_f64;
-        for ((kind, [_, own]), least_m) in contacts.kinds.iter().zip(&share.close).zip(&least_m) {
+        for ((kind, [_, own]), least_m) in contacts.kinds.iter().zip(&partition.close).zip(&least_m)
+        {
             for at in own.iter().map(|&at| at as usize) {
-                let overlap_m = contacts.memories[at].overlap_m();
+                let overlap_m = contacts.histories[at].overlap_m();
                 if overlap_m > *least_m {
                     largest = largest.max(of_pair(kind, at, overlap_m));
                 }
@@ -222,12 +227,12 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
         }
         largest
     };
-    let of_pairs = (contacts.shares.par_iter().map(of_share)).reduce(|| 0.0, f64::max);
+    let of_pairs = (contacts.partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
             let kind = wall.kind(contacts.materials[i]);
-            let overlap_m = touch.memory.overlap_m();
+            let overlap_m = touch.history.overlap_m();
             kind.normal_n_m(overlap_m, p.poses[i].radius_m()) * p.motions[i].inverse_mass
         })
     });
@@ -282,10 +287,10 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         let radius_m = p.poses[i].radius_m();
         let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
         let touch = if at_wall {
-            wall_touch(p, i, &n, overlap_m)
+            wall_contact(p, i, &n, overlap_m)
         } else {
-            let apart = Triple(2.0 * p.poses[i].radius_m() - overlap_m, 0.0, 0.0);
-            touch(apart, [p.ball_at_rest(i); 2], 0.0)
+            let apart = Vec3(2.0 * p.poses[i].radius_m() - overlap_m, 0.0, 0.0);
+            contact_kinematics(apart, [p.contact_sphere_at_rest(i); 2], 0.0)
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
         let per_mass = ends * inverse_kg;

@@ -145,7 +145,7 @@ pub fn fragment(
     }
 }
 
-/// Share of all mass that the heaviest fragment has; 0 for none.
+/// Fraction of all mass that the heaviest fragment has; 0 for none.
 pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
     let total: f64 = fragments.iter().map(|f| f.mass_kg).sum();
     let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
@@ -157,7 +157,7 @@ pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
 pub struct Passing {
     /// Size of a fragment, m.
     pub size_m: f64,
-    /// Share of all mass in fragments of this size and smaller ones.
+    /// Fraction of all mass in fragments of this size and smaller ones.
     pub mass_fraction: f64,
 }
 

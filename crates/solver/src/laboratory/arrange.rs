@@ -64,8 +64,8 @@ pub fn support_of(set: &str) -> String {
     format!("test-{set}")
 }
 
-/// A grip: moves along the direction of the test, which is one of the axes. Across it the body may become thinner, as if the grip slid on ice: what holds
-/// it there as well makes it break at the grip.
+/// A normal_response: moves along the direction of the test, which is one of the axes. Across it the body may become thinner, as if the normal_response slid on ice: what holds
+/// it there as well makes it break at the normal_response.
 fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     let mut holds = [None; 6];
     for (hold, along) in holds.iter_mut().zip(test.direction) {

@@ -70,7 +70,7 @@ pub struct Crack {
     pub within_m: f64,
     /// Whether it is.
     pub is_within: bool,
-    /// Share of the broken bonds of which each by itself is.
+    /// Fraction of the broken bonds of which each by itself is.
     pub share_within: f64,
 }
 
@@ -125,7 +125,7 @@ impl TestResult {
 
 /// What a test is evaluated from.
 #[derive(Debug, Clone, Copy)]
-pub struct Evidence<'a> {
+pub struct TestInput<'a> {
     /// The test, with its rate.
     pub test: &'a Test,
     /// What stood where.
@@ -192,8 +192,8 @@ pub fn peak(rows: &[Row]) -> Option<&Row> {
 }
 
 /// Evaluates a test. Figures that cannot be told from its record are left out.
-pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
-    let Evidence {
+pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
+    let TestInput {
         test,
         setup,
         record,
@@ -260,7 +260,7 @@ pub fn evaluate(evidence: &Evidence<'_>) -> TestResult {
         Specimen::Bar { length_m, area_m2 } => {
             is("length", length_m, "m");
             is("area", area_m2, "m2");
-            is("gauge length", setup.gauge_m, "m");
+            is("probe length", setup.gauge_m, "m");
             let theory = modulus.map(|modulus| modulus * area_m2 / length_m);
             add(STIFFNESS, stiffness, "N/m", theory);
             let theory = modulus.map(|modulus| modulus * area_m2 / setup.gauge_m);
@@ -319,7 +319,7 @@ pub const FAILURE_FORCE: &str = "failure force";
 pub const STRENGTH: &str = "strength";
 
 /// What the bonds would need. Stresses and strains are proportional to modulus and strength of the bonds: one run says the factor.
-fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
+fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
     let mut found = Vec::new();
     let Some(bonds) = evidence.bonds else {
         return found;
@@ -364,7 +364,7 @@ fn calibration(result: &TestResult, evidence: &Evidence<'_>) -> Vec<Figure> {
     found
 }
 
-fn first_broken(evidence: &Evidence<'_>) -> Option<FirstBroken> {
+fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
     let first = evidence.record.broken.first()?;
     let rows = &evidence.record.rows;
     // The last row before it: the next one may already know of the fall.
@@ -379,7 +379,7 @@ fn first_broken(evidence: &Evidence<'_>) -> Option<FirstBroken> {
     })
 }
 
-fn crack(evidence: &Evidence<'_>) -> Option<Crack> {
+fn crack(evidence: &TestInput<'_>) -> Option<Crack> {
     let setup = evidence.setup;
     let offset = |place: &[f64; 3]| -> f64 {
         (0..3)

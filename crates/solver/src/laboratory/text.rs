@@ -47,7 +47,7 @@ impl TestResult {
         doubts
     }
 
-    /// Share of the bonds that broke; 0 without bonds.
+    /// Fraction of the bonds that broke; 0 without bonds.
     fn broken_share(&self) -> f64 {
         let [broken, all] = self.broken_bonds;
         broken as f64 / all.max(1) as f64

@@ -6,7 +6,7 @@ use dem_io::scene::{Scene, Test};
 
 use super::arrange::support_of;
 use super::crack::{CrackPicture, Sphere};
-use super::evaluate::{Evidence, TestResult, evaluate};
+use super::evaluate::{TestInput, TestResult, evaluate};
 use super::page::{TestFiles, write_test};
 use super::record::{Holders, Loading, Record};
 use super::setup::Setup;
@@ -96,7 +96,7 @@ impl<'a> Watch<'a> {
             .collect();
         let kind = self.scene.bodies.get(&self.test.body);
         let kind = kind.and_then(|body| body.bond_kind.as_ref());
-        let mut result = evaluate(&Evidence {
+        let mut result = evaluate(&TestInput {
             test: self.test,
             setup: &self.setup,
             record,

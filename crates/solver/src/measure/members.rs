@@ -3,7 +3,7 @@
 use dem_io::scene::Scene;
 
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::{GONE, Renumbered};
+use crate::stages::population::{REMOVED, Renumbering};
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
 
@@ -29,14 +29,14 @@ impl Members {
 
     /// Counts as particles are counted now: those of all, of bodies by their names, and of sets as
     /// far as their particles are there.
-    pub(super) fn renumber(&mut self, by: &[Renumbered], bodies: &[PlacedBody], state: &State) {
+    pub(super) fn renumber(&mut self, by: &[Renumbering], bodies: &[PlacedBody], state: &State) {
         let named = |name: &String| *name == self.name;
         let templates = &state.clumps.templates;
         if self.name == "all" {
             self.particles = (0..state.particles.len() as u32).collect();
         } else if templates.iter().any(|template| named(&template.body)) {
             let own = bodies.iter().filter(|body| named(&body.name));
-            let own = own.flat_map(|body| body.particles.iter().copied().filter(|i| *i != GONE));
+            let own = own.flat_map(|body| body.particles.iter().copied().filter(|i| *i != REMOVED));
             let clumps = state.clumps.all.iter();
             let clumps = clumps.filter(|clump| named(&state.clumps.template(clump).body));
             let carried = clumps.flat_map(|clump| state.clumps.spheres_of(clump));

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::members::Members;
 use crate::physics::rigid::rotation_vector;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::GONE;
+use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template, numbers, rotation};
 use crate::state::particles::Motion;
@@ -84,7 +84,7 @@ pub(super) fn start_centre(
             continue;
         };
         for (place, i) in start.places.iter().zip(&body.particles) {
-            if *i != GONE && members.particles.binary_search(i).is_ok() {
+            if *i != REMOVED && members.particles.binary_search(i).is_ok() {
                 let motion = &state.particles.motions[*i as usize];
                 parts.push((1.0 / motion.inverse_mass, *place));
             }

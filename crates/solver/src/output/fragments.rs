@@ -19,7 +19,7 @@ const NAMED: usize = 8;
 pub struct FragmentSummary {
     /// Fragments at the end; a body that is whole is one.
     pub count: usize,
-    /// Share of all mass that the heaviest one has.
+    /// Fraction of all mass that the heaviest one has.
     pub mass_fraction_of_largest: f64,
     /// Fragments that were found in pieces.
     pub splits: usize,

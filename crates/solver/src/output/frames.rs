@@ -11,7 +11,7 @@ use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::GONE;
+use crate::stages::population::REMOVED;
 use crate::state::State;
 
 /// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after them the spheres of clumps.
@@ -43,7 +43,7 @@ impl FrameOrder {
         let number_of = |name: &String| names.iter().take_while(|known| **known < name).count();
         for body in bodies {
             let number = number_of(&body.name) as u32;
-            for &i in body.particles.iter().filter(|i| **i != GONE) {
+            for &i in body.particles.iter().filter(|i| **i != REMOVED) {
                 order.place_of[i as usize] = order.particles.len() as u32;
                 order.particles.push(i);
                 order.bodies.push(number);

@@ -5,7 +5,7 @@ use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
 
 use super::fragments::{COUNT, SIZES};
 use super::series::ENERGIES;
-use crate::measure::Gauge;
+use crate::measure::Probe;
 
 /// Plots that every run has or may have, which no measure may overwrite.
 const OVERALL: [&str; 5] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES];
@@ -17,7 +17,7 @@ const BROKEN: &str = "broken_bonds";
 ///
 /// # Errors
 /// Those of the files.
-pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
+pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
     let series = read_series(&folder.series())?;
     let changing: Vec<&str> = ENERGIES
         .into_iter()
@@ -46,40 +46,40 @@ pub fn write_plots(folder: &ResultsFolder, gauges: &[Gauge]) -> Result<()> {
         broken.y.whole = true;
         folder.write_plot(BROKEN, &broken)?;
     }
-    let first = series.columns.len() - gauges.len();
-    for (gauge, name) in gauges.iter().zip(&series.columns[first..]) {
-        let quantity = gauge.measure.quantity.name().replace('_', " ");
-        let label = match gauge.unit() {
+    let first = series.columns.len() - probes.len();
+    for (probe, name) in probes.iter().zip(&series.columns[first..]) {
+        let quantity = probe.measure.quantity.name().replace('_', " ");
+        let label = match probe.unit() {
             "" => quantity,
             unit => format!("{quantity} ({unit})"),
         };
-        let title = gauge.name.replace('_', " ");
+        let title = probe.name.replace('_', " ");
         let mut one = plot(&series, &title, &label, &[name], "");
         for line in &mut one.lines {
             line.name.clone_from(&title);
         }
-        one.reference = gauge
+        one.reference = probe
             .measure
             .reference
             .map(|value| (value, "reference".to_owned()));
-        folder.write_plot(&plot_name(gauge), &one)?;
+        folder.write_plot(&plot_name(probe), &one)?;
     }
     Ok(())
 }
 
 /// The plot of a measure.
-fn plot_name(gauge: &Gauge) -> String {
-    let is_taken = OVERALL.contains(&gauge.name.to_lowercase().as_str());
+fn plot_name(probe: &Probe) -> String {
+    let is_taken = OVERALL.contains(&probe.name.to_lowercase().as_str());
     let prefix = if is_taken { "measured_" } else { "" };
-    format!("{prefix}{}", gauge.name)
+    format!("{prefix}{}", probe.name)
 }
 
 /// Names of the plots that a run with these measures has, whatever came of it.
-pub fn plots_of_every_run(gauges: &[Gauge]) -> Vec<String> {
+pub fn plots_of_every_run(probes: &[Probe]) -> Vec<String> {
     let overall = [ENERGY, ERRORS].map(str::to_owned);
     overall
         .into_iter()
-        .chain(gauges.iter().map(plot_name))
+        .chain(probes.iter().map(plot_name))
         .collect()
 }
 

@@ -1,7 +1,7 @@
 //! Columns of the time series: energies, errors, broken bonds, every measure.
 
 use crate::check::ledger::Balance;
-use crate::measure::Gauge;
+use crate::measure::Probe;
 use crate::state::State;
 
 /// Names of the first columns after the time: energies and works, J.
@@ -29,7 +29,7 @@ const OTHERS: [&str; 5] = [
 ];
 
 /// Names of all columns after the time, with units, no two alike: energies and errors, force on and work of each wall, measures.
-pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, gauges: &[Gauge]) -> Vec<String> {
+pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, probes: &[Probe]) -> Vec<String> {
     let mut columns: Vec<String> = ENERGIES
         .iter()
         .chain(&OTHERS)
@@ -39,12 +39,12 @@ pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, gauges: &[Gauge]) ->
         let of_wall = ["force_x_n", "force_y_n", "force_z_n", "work_j"];
         columns.extend(of_wall.map(|what| format!("wall_{wall}_{what}")));
     }
-    for gauge in gauges {
-        let mut name = match gauge.unit() {
-            "" => gauge.name.clone(),
+    for probe in probes {
+        let mut name = match probe.unit() {
+            "" => probe.name.clone(),
             unit => format!(
                 "{}_{}",
-                gauge.name,
+                probe.name,
                 unit.to_lowercase().replace(['/', ' '], "_")
             ),
         };

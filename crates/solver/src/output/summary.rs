@@ -102,7 +102,7 @@ pub struct Summary {
     /// What was measured; by name in JSON.
     #[serde(serialize_with = "by_name")]
     pub measures: Vec<Measured>,
-    /// Share of each stage in the time of a step; by name in JSON.
+    /// Fraction of each stage in the time of a step; by name in JSON.
     #[serde(serialize_with = "pairs_by_name")]
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
@@ -193,9 +193,9 @@ pub struct PopulationSummary {
     pub left: u32,
     /// Their mass, kg.
     pub left_kg: f64,
-    /// Share of bonds times steps that was left out because bodies were clumps.
+    /// Fraction of bonds times steps that was left out because bodies were clumps.
     pub bonds_left_out: f64,
-    /// Share of the spheres of a clump that no other can touch, the mean of all templates.
+    /// Fraction of the spheres of a clump that no other can touch, the mean of all templates.
     pub inner_spheres: f64,
 }
 
@@ -215,7 +215,7 @@ pub struct AdaptiveSummary {
 pub struct SleepSummary {
     /// Bodies that sleep at the end.
     pub bodies: usize,
-    /// Share of particles times steps that was left out because their bodies slept.
+    /// Fraction of particles times steps that was left out because their bodies slept.
     pub left_out: f64,
 }
 
@@ -249,15 +249,23 @@ impl PopulationSummary {
             single_spheres: single,
             replaced: rules.replaced,
             restored: rules.restored,
-            came: rules.inlets.iter().map(|inlet| inlet.come.bodies).sum(),
-            came_kg: (rules.inlets.iter()).fold(0.0, |sum, inlet| sum + inlet.come.mass_kg),
-            delayed: rules.inlets.iter().map(|inlet| inlet.come.delayed).sum(),
+            came: rules.inlets.iter().map(|inlet| inlet.progress.bodies).sum(),
+            came_kg: (rules.inlets.iter()).fold(0.0, |sum, inlet| sum + inlet.progress.mass_kg),
+            delayed: rules
+                .inlets
+                .iter()
+                .map(|inlet| inlet.progress.delayed)
+                .sum(),
             waiting: (rules.inlets.iter())
                 // Of what is due at the very end nothing has been tried.
                 .map(|inlet| inlet.owed(state.time_s - state.time_step_s))
                 .sum(),
-            left: rules.outlets.iter().map(|outlet| outlet.gone.0).sum(),
-            left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.gone.1),
+            left: rules
+                .outlets
+                .iter()
+                .map(|outlet| outlet.removed.bodies)
+                .sum(),
+            left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.removed.mass_kg),
             bonds_left_out: over(left_out, done + left_out),
             inner_spheres: over(inner, clumps.templates.len() as f64),
         })

@@ -17,35 +17,35 @@
 //! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that.
 
 pub mod hertz_mindlin;
+pub mod kinematics;
 pub mod linear;
-pub mod manner;
+pub mod pair_parameters;
 pub mod relaxation;
 pub mod restitution;
 pub mod rolling;
 pub mod slider;
-pub mod touch;
 
-use crate::physics::number::{Number, Triple};
+use crate::physics::number::{Number, Vec3};
+use kinematics::{ContactKinematics, FrameRotation};
 use rolling::RollingFriction;
-use slider::slide;
-use touch::{Carry, Touch};
+use slider::coulomb_return_map;
 
 /// What a contact remembers. All 0 when it begins, and again once the ends are apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct History<T = f64> {
+pub struct ContactSprings<T = f64> {
     /// Tangential spring: how far b's surface is displaced against a's, across the normal, m.
-    pub tangential_m: Triple<T>,
+    pub tangential_m: Vec3<T>,
     /// Rolling spring: how far b has rolled against a, across the normal, rad.
-    pub rolling_rad: Triple<T>,
+    pub rolling_rad: Vec3<T>,
     /// Overlap when forces were computed last, m.
     pub overlap_m: T,
 }
 
-impl Default for History {
+impl Default for ContactSprings {
     fn default() -> Self {
         Self {
-            tangential_m: Triple(0.0, 0.0, 0.0),
-            rolling_rad: Triple(0.0, 0.0, 0.0),
+            tangential_m: Vec3(0.0, 0.0, 0.0),
+            rolling_rad: Vec3(0.0, 0.0, 0.0),
             overlap_m: 0.0,
         }
     }
@@ -55,11 +55,11 @@ impl Default for History {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<T = f64> {
     /// To be remembered.
-    pub history: History<T>,
+    pub springs: ContactSprings<T>,
     /// Force on b, N. The first end feels the opposite.
-    pub force_on_b: Triple<T>,
-    /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force come [on top](touch::torques).
-    pub moment_on_b: Triple<T>,
+    pub force_on_b: Vec3<T>,
+    /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force come [on top](kinematics::torques).
+    pub moment_on_b: Vec3<T>,
     /// Elastic energy.
     pub energy: ContactEnergy<T>,
     /// Lost by the springs in the step just made.
@@ -94,11 +94,11 @@ pub struct Lost<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping<T = f64> {
     /// Along the normal, N: the normal force less its elastic part.
-    pub normal_n: Triple<T>,
+    pub normal_n: Vec3<T>,
     /// Across it, N.
-    pub tangential_n: Triple<T>,
+    pub tangential_n: Vec3<T>,
     /// Rolling, N m.
-    pub rolling_n_m: Triple<T>,
+    pub rolling_n_m: Vec3<T>,
 }
 
 /// Power lost by damping, W.
@@ -122,11 +122,11 @@ impl<T: Number> Damping<T> {
         }
     }
 
-    /// Power lost at this [relative velocity](touch::relative_velocity), m/s, and spin of b against a, rad/s, where the forces act.
+    /// Power lost at this [relative velocity](kinematics::relative_velocity), m/s, and spin of b against a, rad/s, where the forces act.
     ///
     /// Over a step: half of it with the forces at its beginning, half with those at its end, both with the velocity halfway.
     #[inline(always)]
-    pub fn power_w(&self, velocity_m_s: Triple<T>, spin_rad_s: Triple<T>) -> DampingPower<T> {
+    pub fn power_w(&self, velocity_m_s: Vec3<T>, spin_rad_s: Vec3<T>) -> DampingPower<T> {
         DampingPower {
             normal: -self.normal_n.dot(velocity_m_s),
             tangential: -self.tangential_n.dot(velocity_m_s),
@@ -139,26 +139,26 @@ impl<T: Number> Damping<T> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damped<T = f64> {
     /// Force, N.
-    pub force_n: Triple<T>,
+    pub force_n: Vec3<T>,
     /// Moment against rolling, N m.
-    pub moment_n_m: Triple<T>,
+    pub moment_n_m: Vec3<T>,
 }
 
 impl<T: Number> Damped<T> {
     /// Energy that damping took in a step of `dt`, s, that began with `before` and ends so, J: the mean of the two forces times the motion between, as springs'
     /// losses are booked.
     #[inline(always)]
-    pub fn lost_j(&self, before: &Self, touch: &Touch<T>, dt: f64) -> T {
+    pub fn lost_j(&self, before: &Self, touch: &ContactKinematics<T>, dt: f64) -> T {
         let force = before.force_n + self.force_n;
         let moment = before.moment_n_m + self.moment_n_m;
         let power = force.dot(touch.velocity_m_s) + moment.dot(touch.spin_rad_s);
-        power.times(-0.5 * dt)
+        power.scale(-0.5 * dt)
     }
 }
 
 /// What a normal law says of a contact at an overlap, and of the same contact a step before.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grip<T = f64> {
+pub struct NormalResponse<T = f64> {
     /// Elastic force, N.
     pub elastic_n: T,
     /// Elastic energy, J.
@@ -168,7 +168,7 @@ pub struct Grip<T = f64> {
     /// Stiffness of the tangential spring, before the step and now, N/m.
     pub tangential_n_m: [T; 2],
     /// Stiffness before the step over that now; 0 where there is no contact now.
-    pub softer: T,
+    pub stiffness_ratio: T,
     /// Damping force per speed along the normal, N s/m.
     pub normal_damping_n_s_m: T,
     /// The same across it.
@@ -178,10 +178,15 @@ pub struct Grip<T = f64> {
 /// A law for the normal force, and what friction needs to know of it.
 pub trait NormalLaw<T: Number> {
     /// The contact now and, at the overlap of its history, a step of `dt`, s, before.
-    fn grip(&self, touch: &Touch<T>, overlap_before_m: T, dt: f64) -> Grip<T>;
+    fn evaluate(
+        &self,
+        touch: &ContactKinematics<T>,
+        overlap_before_m: T,
+        dt: f64,
+    ) -> NormalResponse<T>;
 
     /// How the pair damps and rubs.
-    fn manner(&self) -> &manner::Manner<T>;
+    fn parameters(&self) -> &pair_parameters::PairParameters<T>;
 }
 
 /// The damping c, N s/m, of a force -c v that is computed with the velocity of half a step of `dt`, s, ago and yet takes from an impact what it should: c/(1 + g/2)
@@ -191,8 +196,8 @@ pub trait NormalLaw<T: Number> {
 /// touch for that much less time: together an impact loses a share of g/2 too much.
 #[inline(always)]
 fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
-    let mass = mass_kg.times(4.0);
-    mass.if_positive(damping_n_s_m * mass / (mass + damping_n_s_m.times(dt)))
+    let mass = mass_kg.scale(4.0);
+    mass.if_positive(damping_n_s_m * mass / (mass + damping_n_s_m.scale(dt)))
 }
 
 /// What a contact does after a step of `dt` (s) which the touch and the history before it describe.
@@ -202,53 +207,67 @@ fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
 pub fn response<T: Number>(
     law: &impl NormalLaw<T>,
     rolling: &impl RollingFriction<T>,
-    touch: &Touch<T>,
-    history: &History<T>,
+    touch: &ContactKinematics<T>,
+    springs: &ContactSprings<T>,
     dt: f64,
 ) -> Response<T> {
-    let grip = law.grip(touch, history.overlap_m, dt);
-    let manner = law.manner();
-    let carry = Carry::new(touch, dt);
+    let normal_response = law.evaluate(touch, springs.overlap_m, dt);
+    let parameters = law.parameters();
+    let carry = FrameRotation::new(touch, dt);
 
     let apart = touch.velocity_m_s.dot(touch.middle);
-    let damping = of_lagging_velocity(grip.normal_damping_n_s_m, touch.mass_kg, dt);
-    let damped = grip.elastic_n - damping * apart;
-    let held = damped.larger(manner.least_n);
+    let damping = of_lagging_velocity(
+        normal_response.normal_damping_n_s_m,
+        touch.effective_mass_kg,
+        dt,
+    );
+    let damped = normal_response.elastic_n - damping * apart;
+    let held = damped.maximum(parameters.least_n);
     let normal = touch.overlap_m.if_positive(held);
     let pressed = normal.if_positive(normal);
 
     let across = touch.velocity_m_s - touch.middle * apart;
-    let slid = slide(
+    let friction_step = coulomb_return_map(
         &carry,
-        history.tangential_m,
-        across.times(dt),
-        grip.tangential_n_m,
-        grip.softer.larger(manner.kept[0]).smaller(manner.kept[1]),
-        manner.friction * pressed,
-        across * grip.tangential_damping_n_s_m,
+        springs.tangential_m,
+        across.scale(dt),
+        normal_response.tangential_n_m,
+        normal_response
+            .stiffness_ratio
+            .maximum(parameters.kept[0])
+            .minimum(parameters.kept[1]),
+        parameters.friction * pressed,
+        across * normal_response.tangential_damping_n_s_m,
     );
-    let rolled = rolling.roll(&grip, touch, &carry, history.rolling_rad, pressed, dt);
+    let rolled = rolling.roll(
+        &normal_response,
+        touch,
+        &carry,
+        springs.rolling_rad,
+        pressed,
+        dt,
+    );
 
     Response {
-        history: History {
-            tangential_m: slid.spring,
+        springs: ContactSprings {
+            tangential_m: friction_step.spring,
             rolling_rad: rolled.spring,
             overlap_m: touch.overlap_m.if_positive(touch.overlap_m),
         },
-        force_on_b: touch.normal * normal - slid.force - slid.damping,
+        force_on_b: touch.normal * normal - friction_step.force - friction_step.damping,
         moment_on_b: -rolled.force - rolled.damping,
         energy: ContactEnergy {
-            normal: grip.energy_j,
-            tangential: slid.stored_j,
+            normal: normal_response.energy_j,
+            tangential: friction_step.stored_j,
             rolling: rolled.stored_j,
         },
         lost: Lost {
-            sliding: slid.lost_j,
+            sliding: friction_step.lost_j,
             rolling: rolled.lost_j,
         },
         damping: Damping {
-            normal_n: touch.normal * (normal - grip.elastic_n),
-            tangential_n: -slid.damping,
+            normal_n: touch.normal * (normal - normal_response.elastic_n),
+            tangential_n: -friction_step.damping,
             rolling_n_m: -rolled.damping,
         },
     }
@@ -276,16 +295,16 @@ pub struct Linearised<T = f64> {
 pub fn linearised<T: Number>(
     law: &impl NormalLaw<T>,
     rolling: &impl RollingFriction<T>,
-    touch: &Touch<T>,
+    touch: &ContactKinematics<T>,
 ) -> Linearised<T> {
-    let grip = law.grip(touch, touch.overlap_m, 0.0);
-    let [stiffness, damping] = rolling.linearised(&grip, touch);
+    let normal_response = law.evaluate(touch, touch.overlap_m, 0.0);
+    let [stiffness, damping] = rolling.linearised(&normal_response, touch);
     Linearised {
-        normal_n_m: grip.normal_n_m[1],
-        tangential_n_m: grip.tangential_n_m[1],
+        normal_n_m: normal_response.normal_n_m[1],
+        tangential_n_m: normal_response.tangential_n_m[1],
         rolling_n_m_rad: stiffness,
-        normal_damping_n_s_m: grip.normal_damping_n_s_m,
-        tangential_damping_n_s_m: grip.tangential_damping_n_s_m,
+        normal_damping_n_s_m: normal_response.normal_damping_n_s_m,
+        tangential_damping_n_s_m: normal_response.tangential_damping_n_s_m,
         rolling_damping_n_m_s: damping,
     }
 }

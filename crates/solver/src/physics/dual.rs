@@ -103,7 +103,7 @@ impl<const N: usize> Number for Dual<N> {
     }
 
     #[inline(always)]
-    fn times(self, factor: f64) -> Self {
+    fn scale(self, factor: f64) -> Self {
         self.chain(self.value * factor, factor)
     }
 
@@ -119,13 +119,13 @@ impl<const N: usize> Number for Dual<N> {
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, 0.5 / root)
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn maximum(self, other: Self) -> Self {
         if self.value > other.value {
             self
         } else {
@@ -134,7 +134,7 @@ impl<const N: usize> Number for Dual<N> {
     }
 
     #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
+    fn minimum(self, other: Self) -> Self {
         if self.value < other.value {
             self
         } else {

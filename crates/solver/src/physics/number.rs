@@ -17,7 +17,7 @@ pub trait Number:
     fn zero(self) -> Self;
 
     /// Times a constant.
-    fn times(self, factor: f64) -> Self;
+    fn scale(self, factor: f64) -> Self;
 
     /// Plus a constant.
     fn plus(self, term: f64) -> Self;
@@ -26,13 +26,13 @@ pub trait Number:
     fn inverse(self) -> Self;
 
     /// Root.
-    fn root(self) -> Self;
+    fn sqrt(self) -> Self;
 
     /// The larger of two numbers.
-    fn larger(self, other: Self) -> Self;
+    fn maximum(self, other: Self) -> Self;
 
     /// The smaller of two numbers.
-    fn smaller(self, other: Self) -> Self;
+    fn minimum(self, other: Self) -> Self;
 
     /// 1 or -1, as the sign is; -1 for -0.
     fn sign(self) -> Self;
@@ -48,7 +48,7 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn times(self, factor: f64) -> Self {
+    fn scale(self, factor: f64) -> Self {
         self * factor
     }
 
@@ -63,17 +63,17 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         self.sqrt()
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn maximum(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
     #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
+    fn minimum(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
@@ -90,9 +90,9 @@ impl Number for f64 {
 
 /// A vector in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Triple<T>(pub T, pub T, pub T);
+pub struct Vec3<T>(pub T, pub T, pub T);
 
-impl<T: Number> Triple<T> {
+impl<T: Number> Vec3<T> {
     /// Inner product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
@@ -111,11 +111,11 @@ impl<T: Number> Triple<T> {
 
     /// Times a constant.
     #[inline(always)]
-    pub fn times(self, factor: f64) -> Self {
+    pub fn scale(self, factor: f64) -> Self {
         Self(
-            self.0.times(factor),
-            self.1.times(factor),
-            self.2.times(factor),
+            self.0.scale(factor),
+            self.1.scale(factor),
+            self.2.scale(factor),
         )
     }
 
@@ -126,19 +126,19 @@ impl<T: Number> Triple<T> {
     }
 }
 
-impl From<Vector3<f64>> for Triple<f64> {
+impl From<Vector3<f64>> for Vec3<f64> {
     fn from(vector: Vector3<f64>) -> Self {
         Self(vector.x, vector.y, vector.z)
     }
 }
 
-impl From<Triple<f64>> for Vector3<f64> {
-    fn from(Triple(x, y, z): Triple<f64>) -> Self {
+impl From<Vec3<f64>> for Vector3<f64> {
+    fn from(Vec3(x, y, z): Vec3<f64>) -> Self {
         Self::new(x, y, z)
     }
 }
 
-impl<T: Number> Add for Triple<T> {
+impl<T: Number> Add for Vec3<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -147,7 +147,7 @@ impl<T: Number> Add for Triple<T> {
     }
 }
 
-impl<T: Number> Sub for Triple<T> {
+impl<T: Number> Sub for Vec3<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -156,7 +156,7 @@ impl<T: Number> Sub for Triple<T> {
     }
 }
 
-impl<T: Number> Neg for Triple<T> {
+impl<T: Number> Neg for Vec3<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -165,7 +165,7 @@ impl<T: Number> Neg for Triple<T> {
     }
 }
 
-impl<T: Number> Mul<T> for Triple<T> {
+impl<T: Number> Mul<T> for Vec3<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -176,12 +176,12 @@ impl<T: Number> Mul<T> for Triple<T> {
 
 /// A rotation: the vector part and the scalar part of a unit quaternion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn<T>(pub Triple<T>, pub T);
+pub struct Rotation<T>(pub Vec3<T>, pub T);
 
-impl<T: Number> Turn<T> {
+impl<T: Number> Rotation<T> {
     /// A vector after the rotation.
     #[inline(always)]
-    pub fn of(self, vector: Triple<T>) -> Triple<T> {
+    pub fn of(self, vector: Vec3<T>) -> Vec3<T> {
         let Self(axis, w) = self;
         let half = axis.cross(vector);
         let t = half + half;
@@ -190,7 +190,7 @@ impl<T: Number> Turn<T> {
 
     /// The rotation after which `before` becomes this one, in space: this times the conjugate of `before`.
     #[inline(always)]
-    pub fn since(self, before: Self) -> Self {
+    pub fn relative_to(self, before: Self) -> Self {
         let (Self(b, wb), Self(a, wa)) = (self, before);
         Self(b * wa - a * wb - b.cross(a), wb * wa + b.dot(a))
     }

@@ -1,6 +1,6 @@
 //! Rotation of a rigid body.
 
-use crate::physics::number::{Number, Triple};
+use crate::physics::number::{Number, Vec3};
 
 /// Square of the half angle, below which it is summed as a series, exact to rounding.
 const SMALL: f64 = 0.01;
@@ -15,7 +15,7 @@ pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
     if square < SMALL {
         return after(turned, half, small_angle(square));
     }
-    let angle = square.root();
+    let angle = square.sqrt();
     after(turned, half, (angle.sin() / angle, angle.cos()))
 }
 
@@ -33,20 +33,20 @@ pub fn room_to_small<T: Number>(turn: [T; 3]) -> T {
 }
 
 #[inline(always)]
-fn half_angles<T: Number>([x, y, z]: [T; 3]) -> Triple<T> {
-    Triple(x, y, z).times(0.5)
+fn half_angles<T: Number>([x, y, z]: [T; 3]) -> Vec3<T> {
+    Vec3(x, y, z).scale(0.5)
 }
 
 /// After a turn by these half angles, with their sine over angle and their cosine.
 #[inline(always)]
-fn after<T: Number>([x, y, z, w]: [T; 4], half: Triple<T>, (sine_per_angle, rw): (T, T)) -> [T; 4] {
-    let Triple(rx, ry, rz) = half * sine_per_angle;
+fn after<T: Number>([x, y, z, w]: [T; 4], half: Vec3<T>, (sine_per_angle, rw): (T, T)) -> [T; 4] {
+    let Vec3(rx, ry, rz) = half * sine_per_angle;
     let nx = rw * x + rx * w + ry * z - rz * y;
     let ny = rw * y - rx * z + ry * w + rz * x;
     let nz = rw * z + rx * y - ry * x + rz * w;
     let nw = rw * w - rx * x - ry * y - rz * z;
     let norm = nx * nx + ny * ny + nz * nz + nw * nw;
-    let right = norm.times(-0.5).plus(1.5);
+    let right = norm.scale(-0.5).plus(1.5);
     [nx * right, ny * right, nz * right, nw * right]
 }
 
@@ -79,7 +79,7 @@ fn small_angle<T: Number>(square: T) -> (T, T) {
 /// 1 less a quotient times the rest of a series. A product, as a division takes several times as long.
 #[inline(always)]
 fn less<T: Number>(square: T, divisor: f64, rest: T) -> T {
-    (-(square.times(1.0 / divisor) * rest)).plus(1.0)
+    (-(square.scale(1.0 / divisor) * rest)).plus(1.0)
 }
 
 /// The rotation vector of an orientation, rad: of the smaller of its two turns.

@@ -22,7 +22,7 @@ use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
 use crate::shape::inertia::of_union;
-use crate::stages::population::{Born, GONE, Renumbered};
+use crate::stages::population::{NewCluster, REMOVED, Renumbering};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::clumps::Clumps;
 use crate::state::order::spatial_order;
@@ -40,7 +40,7 @@ pub struct PlacedBody {
     pub name: String,
     /// First of its particles in the state.
     pub first_particle: usize,
-    /// For each particle of the body's file, in order: its number in the state, or [`GONE`].
+    /// For each particle of the body's file, in order: its number in the state, or [`REMOVED`].
     pub particles: Vec<u32>,
     /// First of its bonds in the state.
     pub first_bond: usize,
@@ -56,9 +56,9 @@ impl PlacedBody {
     }
 
     /// A clump that has become a cluster.
-    pub fn born(born: &Born) -> Self {
+    pub fn born(born: &NewCluster) -> Self {
         let template = &born.template;
-        let mut particles = vec![GONE; template.spheres.len()];
+        let mut particles = vec![REMOVED; template.spheres.len()];
         for (i, &number) in (born.first_particle as u32..).zip(&template.file_number) {
             particles[number as usize] = i;
         }
@@ -73,12 +73,12 @@ impl PlacedBody {
 }
 
 /// Bodies as they are counted now, with those that have come; without those of which nothing is left.
-pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbered) {
+pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbering) {
     bodies.retain_mut(|body| {
-        for particle in body.particles.iter_mut().filter(|p| **p != GONE) {
+        for particle in body.particles.iter_mut().filter(|p| **p != REMOVED) {
             *particle = by.particles[*particle as usize];
             if *particle >= by.free {
-                *particle = GONE;
+                *particle = REMOVED;
             }
         }
         let mut first_bond = None;
@@ -86,13 +86,13 @@ pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbered) {
         body.bonds.retain(|_| {
             let now = by.bonds[at];
             at += 1;
-            if now != GONE {
+            if now != REMOVED {
                 first_bond.get_or_insert(now as usize);
             }
-            now != GONE
+            now != REMOVED
         });
         body.first_bond = first_bond.unwrap_or(0);
-        let left = body.particles.iter().filter(|p| **p != GONE);
+        let left = body.particles.iter().filter(|p| **p != REMOVED);
         let first = left.min();
         body.first_particle = first.map_or(0, |first| *first as usize);
         first.is_some()

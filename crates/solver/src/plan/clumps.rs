@@ -69,7 +69,7 @@ pub(super) fn templates(
 pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     let radii = read.values().flat_map(|body| &body.radii).copied();
     let smallest_m = radii.fold(f64::INFINITY, f64::min);
-    let room_m = scene.walls.values().map(|wall| match &wall.shape {
+    let skin_left_m = scene.walls.values().map(|wall| match &wall.shape {
         WallShape::Plane { .. } => f64::INFINITY,
         WallShape::Box { min, max } => {
             let sides = [0, 1, 2].map(|k| 0.5 * (max[k] - min[k]));
@@ -82,7 +82,7 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
         } => radius_m.min(0.5 * (Vector3::from(*to_m) - Vector3::from(*from_m)).norm()),
         WallShape::Stl { .. } => 0.0,
     });
-    room_m.fold(SHARE_OF_SMALLEST * smallest_m, f64::min)
+    skin_left_m.fold(SHARE_OF_SMALLEST * smallest_m, f64::min)
 }
 
 /// The spheres of a template that something in the scene can touch.

@@ -7,11 +7,11 @@ use super::bodies::{PlacedBody, called};
 use crate::clusters::Clusters;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
-use crate::physics::contact::manner::{Behaviour, Elastic};
+use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
-use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
+use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.
 const SKIN: [f64; 2] = [0.1, 0.5];
@@ -90,7 +90,7 @@ fn number(names: &[&str], name: &str) -> usize {
 }
 
 fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
-    let behaviour = Behaviour::new(contact.restitution, contact.friction);
+    let pair_input = PairInput::new(contact.restitution, contact.friction);
     let elastic = |name: &String| {
         let material: Option<&Material> = scene.materials.get(name);
         Elastic {
@@ -104,12 +104,12 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
     ContactKind {
         law: match contact.law {
             ContactLaw::HertzMindlin => {
-                Law::HertzMindlin(HertzMindlin::new([elastic(a), elastic(b)], &behaviour))
+                Law::HertzMindlin(HertzMindlin::new([elastic(a), elastic(b)], &pair_input))
             }
             ContactLaw::Linear {
                 normal_n_m,
                 tangential_ratio,
-            } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &behaviour)),
+            } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &pair_input)),
         },
         rolling: match contact.rolling {
             SceneRolling::None => Rolling::Free,
@@ -164,7 +164,7 @@ pub(super) fn place_contacts(
         lost_j: vec![[0.0; 2]; p.len()],
         ..Contacts::default()
     };
-    contacts.divide(p.len(), state.shares.len().max(1));
+    contacts.divide(p.len(), state.partitions.len().max(1));
     // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
     let skin_m = contacts.skin_m;
     list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
@@ -179,7 +179,7 @@ pub(super) fn place_contacts(
     }
     contacts.relaxes = scene.relaxation.enabled;
     contacts.alone = is_alone(state, clusters);
-    contacts.room_m = -1.0;
+    contacts.skin_left_m = -1.0;
     state.contacts = Some(contacts);
     Ok(())
 }
@@ -187,10 +187,10 @@ pub(super) fn place_contacts(
 /// Makes of what overlaps contacts that press as if they had been pressed together before.
 fn keep_overlaps(contacts: &mut Contacts, state: &State) {
     let poses = &state.particles.poses;
-    for (&pair, memory) in contacts.pairs.iter().zip(&mut contacts.memories) {
-        *memory = Memory::pressed_by(overlap_m(poses, pair));
+    for (&pair, memory) in contacts.pairs.iter().zip(&mut contacts.histories) {
+        *memory = ContactHistory::pressed_by(overlap_m(poses, pair));
     }
-    contacts.divide(state.particles.len(), contacts.wanted_shares);
+    contacts.divide(state.particles.len(), contacts.wanted_partitions);
 }
 
 /// Whether there is one piece that cannot break, and no other can come.

@@ -12,7 +12,9 @@ use crate::geometry::{Bounds, Mesh};
 use crate::state::State;
 use crate::state::clumps::{Template, numbers};
 use crate::state::regions::Region;
-use crate::state::rules::{Come, Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
+use crate::state::rules::{
+    Feed, Inlet, InletProgress, Outlet, OutletTotals, Restore, Rules, Start, Trigger,
+};
 
 /// What the scene says of when bodies come, go, and become others.
 ///
@@ -71,14 +73,14 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
             random_orientation: inlet.random_orientation,
             between_s: [inlet.start_s, inlet.end_s],
             count: inlet.count.unwrap_or(u32::MAX),
-            come: Come::default(),
+            progress: InletProgress::default(),
         }
     });
     let outlets = scene.outlets.iter().map(|(name, outlet)| Outlet {
         name: name.clone(),
         region: number(&outlet.region).unwrap_or(0),
         removes_outside: outlet.removes_outside,
-        gone: (0, 0.0),
+        removed: OutletTotals::default(),
     });
     Ok(Rules {
         triggers: triggers.collect(),

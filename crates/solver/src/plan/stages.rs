@@ -224,7 +224,7 @@ pub(super) fn stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
             format!("{} particles at the start", state.particles.free),
             "",
         ),
-        stage(Stage::Ledger, true, "energy and momentum".to_owned(), ""),
+        stage(Stage::EnergyLedger, true, "energy and momentum".to_owned(), ""),
         stage(
             Stage::Checks,
             true,

@@ -10,7 +10,7 @@ use crate::check::linear::{Matters, at_impact, contact_rates, largest_contact_ra
 use crate::clusters::Clusters;
 use crate::geometry::{Bounds, Shape};
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::{Changes, change};
+use crate::stages::population::{TopologyChange, apply_topology_change};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Clump;
@@ -18,13 +18,13 @@ use crate::state::contacts::{Contacts, Law};
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
-/// Share of its own limit with which an impact is followed, at most, at the usual safety; as much more or less at another: a sphere that bounces keeps its
+/// Fraction of its own limit with which an impact is followed, at most, at the usual safety; as much more or less at another: a sphere that bounces keeps its
 /// energy to some 3e-3 of it then, and to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a contact does not.
 const SHARE_OF_IMPACT: f64 = 0.25;
 /// The same where a linear law is among the contacts: its force begins with a corner. Restitution is within 1 % then, and within 4 % at twice the step.
 const SHARE_OF_LINEAR_IMPACT: f64 = 0.125;
 
-/// Share of the smallest radius that a particle may move in a step.
+/// Fraction of the smallest radius that a particle may move in a step.
 pub const FARTHEST: f64 = 0.5;
 
 /// The chosen step and what it was chosen from.
@@ -279,16 +279,16 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
     let to_clusters = (0..all.len())
         .filter(|&at| becomes_one(shapes[at]))
         .collect();
-    let come = Changes {
+    let come = TopologyChange {
         coming: all,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    let swap = Changes {
+    let swap = TopologyChange {
         to_clusters,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    change(&mut bonded, come);
-    change(&mut bonded, swap);
+    apply_topology_change(&mut bonded, come);
+    apply_topology_change(&mut bonded, swap);
     Some(bonded)
 }
 

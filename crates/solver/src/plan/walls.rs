@@ -13,13 +13,13 @@ use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
-use crate::state::contacts::Memory;
-use crate::state::walls::{Wall, WallTouch};
+use crate::state::contacts::ContactHistory;
+use crate::state::walls::{Wall, WallContact};
 
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, oddities, question_size};
 
-/// Share of a belt's speed that may be off its plane: what rounding of written numbers costs.
+/// Fraction of a belt's speed that may be off its plane: what rounding of written numbers costs.
 const OFF_PLANE: f64 = 1e-6;
 
 /// The walls of a scene, in the order of their names. What is odd about them but harmless goes to `notes`.
@@ -225,17 +225,17 @@ fn refuse_touches(
 }
 
 /// A touch at the start: its overlap is where the law begins, or presses where it is kept.
-fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallTouch {
+fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallContact {
     let overlap_m = state.particles.poses[particle as usize].radius_m() - touch.distance_m;
     let memory = if keeps {
-        Memory::pressed_by(overlap_m)
+        ContactHistory::pressed_by(overlap_m)
     } else {
-        Memory::parted_at(overlap_m)
+        ContactHistory::parted_at(overlap_m)
     };
-    WallTouch {
+    WallContact {
         particle,
         feature: touch.feature,
         normal: touch.normal.map(|x| -x),
-        memory,
+        history: memory,
     }
 }

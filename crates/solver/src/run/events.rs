@@ -7,7 +7,7 @@ use super::Files;
 use crate::output::fragments::split_text;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
-use crate::stages::replacement::{Happened, STARTS_BONDED};
+use crate::stages::replacement::{PopulationEvent, STARTS_BONDED};
 use crate::state::State;
 
 /// The bonds that broke in this step, by the numbers of the body's file.
@@ -62,12 +62,12 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
 /// What has happened to bodies in this step.
 pub(super) fn write_happened(
     state: &State,
-    happened: &[Happened],
+    happened: &[PopulationEvent],
     files: &mut Files<'_>,
 ) -> Result<()> {
     for one in happened {
         let (kind, cause, place_m, energy_j, detail) = match one {
-            Happened::Replaced {
+            PopulationEvent::Replaced {
                 cluster,
                 body,
                 cause,
@@ -88,7 +88,7 @@ pub(super) fn write_happened(
                     "cluster {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
                 ),
             ),
-            Happened::Restored {
+            PopulationEvent::Restored {
                 cluster,
                 body,
                 particles,
@@ -101,7 +101,7 @@ pub(super) fn write_happened(
                 Some(*lost_j),
                 format!("cluster {cluster} ({body}): {particles} particles"),
             ),
-            Happened::Came {
+            PopulationEvent::Came {
                 cluster,
                 body,
                 inlet,
@@ -113,7 +113,7 @@ pub(super) fn write_happened(
                 None,
                 format!("cluster {cluster} ({body})"),
             ),
-            Happened::Left {
+            PopulationEvent::Left {
                 cluster,
                 outlet,
                 mass_kg,
@@ -137,7 +137,7 @@ pub(super) fn write_happened(
 
 /// The bodies that fell asleep or woke in this step.
 pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
-    for news in state.sleep.iter().flat_map(|sleep| &sleep.news) {
+    for news in state.sleep.iter().flat_map(|sleep| &sleep.events) {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
         files.events.append(&[Event {
             step: news.step,
@@ -175,7 +175,7 @@ pub(super) fn change_step(
 /// Who is near whom is asked anew before the next step: what was listed is for steps of the present size.
 pub(super) fn look_anew_for_near(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
-        contacts.room_m = -1.0;
+        contacts.skin_left_m = -1.0;
     }
 }
 

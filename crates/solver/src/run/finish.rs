@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::RunSettings;
 use super::pictures::{Order, Pictures};
-use super::progress::Rhythm;
+use super::progress::OutputSchedule;
 use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::Watch;
-use crate::measure::{Gauge, gauges};
+use crate::measure::{Probe, probes};
 use crate::output::fragments::{write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::summary::Summary;
@@ -47,10 +47,10 @@ impl End {
         &self,
         folder: &ResultsFolder,
         state: &State,
-        gauges: &[Gauge],
+        probes: &[Probe],
         pictures: Option<&Pictures>,
     ) -> Result<()> {
-        write_plots(folder, gauges)?;
+        write_plots(folder, probes)?;
         if let Some(clusters) = &state.clusters {
             let fragments = fragments_of(clusters, &state.particles, &state.clumps, None);
             write_tree(folder, clusters)?;
@@ -91,7 +91,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         return Ok(None);
     };
     let (mut state, mut bodies) = (plan.state.clone(), plan.bodies.clone());
-    let rhythm = Rhythm::of(
+    let rhythm = OutputSchedule::of(
         scene,
         plan.step.step_s,
         state.particles.len() + state.bonds.len(),
@@ -104,12 +104,12 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         return Ok(None);
     }
     let order = Order::of(scene, &plan.state);
-    let gauges = gauges(scene, plan);
+    let probes = probes(scene, plan);
     let missing = missing(
         folder,
         end,
         &state,
-        &gauges,
+        &probes,
         order.is_some(),
         scene.test.is_some(),
     );
@@ -127,7 +127,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     let pictures = order
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
-    end.write(folder, &state, &gauges, pictures.as_ref())?;
+    end.write(folder, &state, &probes, pictures.as_ref())?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
 }
@@ -137,7 +137,7 @@ fn missing(
     folder: &ResultsFolder,
     end: &End,
     state: &State,
-    gauges: &[Gauge],
+    probes: &[Probe],
     has_pictures: bool,
     has_test: bool,
 ) -> Vec<String> {
@@ -153,7 +153,7 @@ fn missing(
         wanted.extend([folder.test_page(), folder.test_curve()]);
     }
     wanted.extend(
-        plots_of_every_run(gauges)
+        plots_of_every_run(probes)
             .iter()
             .map(|name| folder.plot(name)),
     );

@@ -294,7 +294,7 @@ pub(super) fn went_through(
     scene: &Scene,
     bodies: &[PlacedBody],
 ) -> Option<Diagnostic> {
-    if let Some(pair) = state.contacts.as_ref().and_then(|c| c.swallowed) {
+    if let Some(pair) = state.contacts.as_ref().and_then(|c| c.excessive_overlap) {
         let [a, b] = pair.map(|particle| called(bodies, &state.clumps, particle));
         let radii = pair.map(|particle| state.particles.poses[particle as usize].radius_m());
         return Some(Diagnostic::unstable(

@@ -23,7 +23,7 @@ const ROW_STEPS: f64 = 200.0;
 /// Where the output of a run stands, and what it watches.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    rhythm: Rhythm,
+    rhythm: OutputSchedule,
     pub(super) next_row: u64,
     pub(super) next_frame: u64,
     pub(super) next_checkpoint: u64,
@@ -72,7 +72,7 @@ pub struct Progress {
 
 /// How often a run writes, s, and what it takes for rest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Rhythm {
+pub(super) struct OutputSchedule {
     pub(super) row_s: f64,
     pub(super) frame_s: Option<f64>,
     pub(super) checkpoint_s: Option<f64>,
@@ -118,7 +118,7 @@ fn last_change_s(state: &State) -> f64 {
     ends.fold(0.0, f64::max)
 }
 
-impl Rhythm {
+impl OutputSchedule {
     /// Of a scene planned with this step, with so many particles and bonds.
     pub(super) fn of(scene: &Scene, step_s: f64, size: usize) -> Self {
         let output = scene.output.clone().unwrap_or_default();
@@ -139,7 +139,7 @@ impl Rhythm {
 
 impl Progress {
     /// Of a run that has not begun.
-    pub(super) fn new(rhythm: Rhythm, choice: &StepChoice) -> Self {
+    pub(super) fn new(rhythm: OutputSchedule, choice: &StepChoice) -> Self {
         Self {
             rhythm,
             limit_s: choice.foreseen_s,
@@ -184,7 +184,7 @@ impl Progress {
     pub(super) fn is_over(
         &self,
         state: &State,
-        rhythm: Rhythm,
+        rhythm: OutputSchedule,
         scene: &Scene,
     ) -> Option<(String, &'static str)> {
         let before_s = state.time_s - 0.5 * state.previous_time_step_s;
@@ -216,7 +216,12 @@ impl Progress {
     ///
     /// # Errors
     /// The run is over.
-    pub(super) fn go_on(&mut self, state: &State, rhythm: Rhythm, scene: &Scene) -> Result<()> {
+    pub(super) fn go_on(
+        &mut self,
+        state: &State,
+        rhythm: OutputSchedule,
+        scene: &Scene,
+    ) -> Result<()> {
         if let Some((problem, further)) = self.is_over(state, rhythm, scene) {
             return Err(Diagnostic::input(
                 "--resume",

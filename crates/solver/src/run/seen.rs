@@ -12,13 +12,13 @@ use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strai
 use crate::clusters::fragments::Fragment;
 use crate::plan::bodies::{PlacedBody, called};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
-use crate::stages::population::GONE;
-use crate::stages::replacement::{Happened, STARTS_BONDED};
+use crate::stages::population::REMOVED;
+use crate::stages::replacement::{PopulationEvent, STARTS_BONDED};
 use crate::state::State;
 
-/// Share of the run at its end in which a breaking bond says that breakage is not over.
+/// Fraction of the run at its end in which a breaking bond says that breakage is not over.
 const LATE: f64 = 0.05;
-/// Share of the largest kinetic energy in the motion of pieces apart that says the same.
+/// Fraction of the largest kinetic energy in the motion of pieces apart that says the same.
 const FLYING: f64 = 0.05;
 /// Bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
@@ -71,14 +71,14 @@ impl Seen {
     }
 
     /// Takes down which clumps have been replaced.
-    pub(super) fn note_happened(&mut self, happened: &[Happened]) {
+    pub(super) fn note_happened(&mut self, happened: &[PopulationEvent]) {
         for one in happened {
-            if let Happened::Replaced { body, cause, .. } = one
+            if let PopulationEvent::Replaced { body, cause, .. } = one
                 && *cause != STARTS_BONDED
             {
                 self.replaced.insert(body.clone());
             }
-            if let Happened::Came { body, .. } = one {
+            if let PopulationEvent::Came { body, .. } = one {
                 self.came.insert(body.clone());
             }
         }
@@ -107,16 +107,20 @@ impl Seen {
         };
         for (n, wall) in state.walls.iter().enumerate() {
             for touch in &wall.touching {
-                let overlap_m = touch.memory.overlap_m();
+                let overlap_m = touch.history.overlap_m();
                 take(overlap_m / radius(touch.particle), touch.particle, Ok(n));
                 if misses_one && overlap_m > 0.0 {
                     touching.push(touch.particle);
                 }
             }
         }
-        for share in contacts.shares.iter().filter(|share| share.computed > 0) {
-            for at in share.close.iter().flat_map(|[_, own]| own) {
-                let overlap_m = contacts.memories[*at as usize].overlap_m();
+        for partition in contacts
+            .partitions
+            .iter()
+            .filter(|partition| partition.computed > 0)
+        {
+            for at in partition.close.iter().flat_map(|[_, own]| own) {
+                let overlap_m = contacts.histories[*at as usize].overlap_m();
                 if overlap_m > 0.0 {
                     let [a, b] = contacts.pairs[*at as usize];
                     take(overlap_m / radius(a).min(radius(b)), a, Err(b));
@@ -153,7 +157,7 @@ impl Seen {
         touching.dedup();
         let is_touched = |i: &u32| touching.binary_search(i).is_ok();
         for body in bodies {
-            let mut living = body.particles.iter().filter(|i| **i != GONE);
+            let mut living = body.particles.iter().filter(|i| **i != REMOVED);
             if !self.touched.contains(&body.name) && living.any(is_touched) {
                 self.touched.insert(body.name.clone());
             }
@@ -444,7 +448,11 @@ fn kinetic_apart_j(fragments: &[&Fragment]) -> f64 {
 fn unused_rules(state: &State) -> Vec<String> {
     let rules = &state.rules;
     let mut warnings = Vec::new();
-    for inlet in rules.inlets.iter().filter(|inlet| inlet.come.bodies == 0) {
+    for inlet in rules
+        .inlets
+        .iter()
+        .filter(|inlet| inlet.progress.bodies == 0)
+    {
         let start_s = inlet.between_s[0];
         let why = if start_s >= state.time_s {
             format!("it starts at {} s", significant(start_s, 4))
@@ -458,7 +466,7 @@ fn unused_rules(state: &State) -> Vec<String> {
         ));
     }
     for outlet in &rules.outlets {
-        if outlet.gone.0 == 0 && !outlet.removes_outside {
+        if outlet.removed.bodies == 0 && !outlet.removes_outside {
             warnings.push(format!(
                 "the outlet '{}' removed nothing: no body reached its region",
                 outlet.name

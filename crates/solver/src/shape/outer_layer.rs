@@ -1,6 +1,6 @@
 //! The spheres of a union that can be touched from outside, and by what.
 //!
-//! What touches a sphere and holds a ball of some radius close to where it does so has the centre of that ball in reach of the sphere. Ball centres come from outside,
+//! What touches a sphere and holds a ball of some radius close to where it does so has the centre of that ball in reach of the sphere. ContactSphere centres come from outside,
 //! and cannot get where the other spheres, grown by the radius of the ball, leave no way: over a closed surface around the sphere that these hide all over.
 
 use nalgebra::Vector3;

@@ -7,9 +7,9 @@ use crate::clusters::{Cluster, Clusters};
 use crate::geometry::Frame;
 use crate::stages::sleep::count_sleepers;
 use crate::state::State;
-use crate::state::contacts::Memory;
-use crate::state::sleep::{Bed, Sleep};
-use crate::state::walls::{Push, Wall, WallTouch};
+use crate::state::contacts::ContactHistory;
+use crate::state::sleep::{ClusterSleep, Sleep};
+use crate::state::walls::{Push, Wall, WallContact};
 
 /// Clusters, contacts and walls of a state between two steps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -18,7 +18,7 @@ pub(super) struct Meetings {
     clusters: Option<(Vec<u32>, Vec<Cluster>, Vec<u32>)>,
     fastest_m_s: f64,
     /// All listed pairs, in order, and what they remember: one that has come to touch in the last step remembers nothing yet, but it was listed.
-    contacts: Vec<([u32; 2], Memory)>,
+    contacts: Vec<([u32; 2], ContactHistory)>,
     /// Energy that friction and damping took, booked at each particle, J.
     lost_j: Vec<[f64; 2]>,
     walls: Vec<WallState>,
@@ -28,9 +28,9 @@ pub(super) struct Meetings {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct SleepState {
-    beds: Vec<Bed>,
+    of_cluster: Vec<ClusterSleep>,
     particle_steps: [u64; 2],
-    room_m: f64,
+    skin_left_m: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ struct WallState {
     frame: Frame,
     velocities_m_s: [[f64; 3]; 2],
     spins_rad_s: [[f64; 3]; 2],
-    touching: Vec<WallTouch>,
+    touching: Vec<WallContact>,
     push: Push,
     stiffness_n_m: f64,
     friction_j: f64,
@@ -51,11 +51,11 @@ impl Meetings {
     pub(super) fn taken(state: &State) -> Self {
         let remembered = state.contacts.iter().flat_map(|contacts| {
             let pairs = contacts.pairs.iter().copied();
-            pairs.zip(contacts.memories.iter().copied())
+            pairs.zip(contacts.histories.iter().copied())
         });
         let kept = state.sleep.iter().flat_map(|sleep| &sleep.pairs);
-        let kept = kept.map(|kept| (kept.pair, kept.memory));
-        let mut remembered: Vec<([u32; 2], Memory)> = remembered.chain(kept).collect();
+        let kept = kept.map(|kept| (kept.pair, kept.history));
+        let mut remembered: Vec<([u32; 2], ContactHistory)> = remembered.chain(kept).collect();
         remembered.sort_by_key(|(pair, _)| *pair);
         Self {
             clusters: state.clusters.as_ref().map(|clusters| {
@@ -84,9 +84,9 @@ impl Meetings {
                 })
                 .collect(),
             sleep: state.sleep.as_ref().map(|sleep| SleepState {
-                beds: sleep.beds.clone(),
+                of_cluster: sleep.of_cluster.clone(),
                 particle_steps: sleep.particle_steps,
-                room_m: state.contacts.as_ref().map_or(-1.0, |c| c.room_m),
+                skin_left_m: state.contacts.as_ref().map_or(-1.0, |c| c.skin_left_m),
             }),
         }
     }
@@ -111,9 +111,9 @@ impl Meetings {
         state.fastest_m_s = self.fastest_m_s;
         if let Some(contacts) = &mut state.contacts {
             // The next step lists what is near again, and keeps what these remember.
-            (contacts.pairs, contacts.memories) = self.contacts.iter().copied().unzip();
+            (contacts.pairs, contacts.histories) = self.contacts.iter().copied().unzip();
             contacts.lost_j.clone_from(&self.lost_j);
-            contacts.room_m = -1.0;
+            contacts.skin_left_m = -1.0;
         }
         for (wall, saved) in state.walls.iter_mut().zip(&self.walls) {
             wall.frame = saved.frame;
@@ -128,11 +128,11 @@ impl Meetings {
             wall.pending_j = saved.pending_j;
         }
         if let (Some(sleep), Some(saved)) = (&mut state.sleep, &self.sleep) {
-            sleep.beds.clone_from(&saved.beds);
+            sleep.of_cluster.clone_from(&saved.of_cluster);
             sleep.particle_steps = saved.particle_steps;
             sleep.is_resumed = true;
             if let Some(contacts) = &mut state.contacts {
-                contacts.room_m = saved.room_m;
+                contacts.skin_left_m = saved.skin_left_m;
             }
             count_sleepers(state);
         }
@@ -141,10 +141,10 @@ impl Meetings {
 }
 
 /// What touches a wall, be it awake or asleep.
-fn touching(wall: &Wall, n: usize, sleep: Option<&Sleep>) -> Vec<WallTouch> {
+fn touching(wall: &Wall, n: usize, sleep: Option<&Sleep>) -> Vec<WallContact> {
     let kept = sleep.into_iter().flat_map(|sleep| &sleep.touches);
     let kept = kept.filter(|kept| kept.wall == n).map(|kept| kept.touch);
-    let mut all: Vec<WallTouch> = wall.touching.iter().copied().chain(kept).collect();
+    let mut all: Vec<WallContact> = wall.touching.iter().copied().chain(kept).collect();
     all.sort_by_key(|touch| touch.particle);
     all
 }

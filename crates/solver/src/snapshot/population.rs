@@ -11,8 +11,8 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Template};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
-use crate::state::rules::Come;
-use crate::state::shares::divide;
+use crate::state::partitions::divide;
+use crate::state::rules::{InletProgress, OutletTotals};
 
 /// Everything that is there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,8 +30,8 @@ pub(super) struct Population {
     bodies: Vec<PlacedBody>,
     materials: Vec<u8>,
     lost_by_gone_j: [f64; 2],
-    inlets: Vec<Come>,
-    outlets: Vec<(u32, f64)>,
+    inlets: Vec<InletProgress>,
+    outlets: Vec<OutletTotals>,
     instances: u32,
     replaced: u32,
     bond_steps: [u64; 2],
@@ -63,12 +63,17 @@ impl Population {
             bodies: bodies.to_vec(),
             materials: contacts.map_or(Vec::new(), |c| c.materials.clone()),
             lost_by_gone_j: contacts.map_or([0.0; 2], |c| c.lost_by_gone_j),
-            inlets: state.rules.inlets.iter().map(|inlet| inlet.come).collect(),
+            inlets: state
+                .rules
+                .inlets
+                .iter()
+                .map(|inlet| inlet.progress)
+                .collect(),
             outlets: state
                 .rules
                 .outlets
                 .iter()
-                .map(|outlet| outlet.gone)
+                .map(|outlet| outlet.removed)
                 .collect(),
             instances: state.rules.instances,
             replaced: state.rules.replaced,
@@ -92,7 +97,7 @@ impl Population {
             && (self.fragments.iter())
                 .all(|(_, base)| (*base as usize) < state.clumps.templates.len())
             && (self.bonds.ends.iter().flatten()).all(|&end| (end as usize) < self.free)
-            && self.bonds.stretches.iter().all(|&(_, rule)| rule < rules);
+            && self.bonds.rule_runs.iter().all(|&(_, rule)| rule < rules);
         if !fits {
             return Err(Diagnostic::input(
                 "",
@@ -125,7 +130,7 @@ impl Population {
             .base_of_cluster
             .clone_from(&self.base_of_cluster);
         state.rules.restored = self.restored;
-        state.shares = divide(&state.bonds, self.free, state.threads);
+        state.partitions = divide(&state.bonds, self.free, state.threads);
         let damped = state.bonds.rules.iter().any(|rule| rule.damped);
         state.bond_resistance = if damped {
             vec![Wrench::default(); self.free]
@@ -138,10 +143,10 @@ impl Population {
             contacts.lost_j = vec![[0.0; 2]; count];
         }
         for (inlet, come) in state.rules.inlets.iter_mut().zip(&self.inlets) {
-            inlet.come = *come;
+            inlet.progress = *come;
         }
         for (outlet, gone) in state.rules.outlets.iter_mut().zip(&self.outlets) {
-            outlet.gone = *gone;
+            outlet.removed = *gone;
         }
         state.rules.instances = self.instances;
         state.rules.replaced = self.replaced;

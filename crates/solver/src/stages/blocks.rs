@@ -4,13 +4,13 @@
 use std::ops::Range;
 
 use super::lanes::{Lanes, MOST};
-use crate::physics::number::Triple;
+use crate::physics::number::Vec3;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
-use crate::state::shares::Share;
+use crate::state::partitions::Partition;
 
 /// Four bonds, and which of them are wanted.
-pub(super) struct Four {
+pub(super) struct BondGroup {
     /// Their numbers. Where there are fewer than four, one stands for those that are missing.
     pub(super) numbers: [usize; BLOCK],
     /// Their two particles.
@@ -19,7 +19,7 @@ pub(super) struct Four {
     pub(super) wanted: Range<usize>,
 }
 
-impl Four {
+impl BondGroup {
     /// Bonds of these numbers, of which some are wanted. `ends` are those of all.
     #[inline(always)]
     pub(super) fn new(numbers: [usize; BLOCK], ends: &[[u32; 2]], wanted: Range<usize>) -> Self {
@@ -54,14 +54,14 @@ impl Four {
         Self::new(numbers, &bonds.ends, 0..some.len())
     }
 
-    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are particles of a share. `wrenches` are those of the
-    /// share. Torques are of both ends; the force is on the second, the first feels the opposite.
+    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are particles of a partition. `wrenches` are those of the
+    /// partition. Torques are of both ends; the force is on the second, the first feels the opposite.
     #[inline(always)]
     pub(super) fn add<T: Lanes>(
         &self,
         first: usize,
-        force_on_b: Triple<T>,
-        torques: [Triple<T>; 2],
+        force_on_b: Vec3<T>,
+        torques: [Vec3<T>; 2],
         wrenches: &mut [Wrench],
         particles: &Range<usize>,
     ) {
@@ -98,20 +98,20 @@ pub(super) fn blocks_of(range: &Range<usize>) -> Range<usize> {
 
 /// Vectors from places x, y, z of rows.
 #[inline(always)]
-pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Triple<T> {
+pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Vec3<T> {
     let [x, y, z, _] = T::columns(proof, rows);
-    Triple(x, y, z)
+    Vec3(x, y, z)
 }
 
 /// Rows of x, y, z and something that makes four.
 #[inline(always)]
-pub(super) fn rows<T: Lanes>(vectors: Triple<T>) -> [[f64; 4]; MOST] {
+pub(super) fn rows<T: Lanes>(vectors: Vec3<T>) -> [[f64; 4]; MOST] {
     T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
 }
 
 /// The way from the first to the second ends, m, of as many bonds as there are lanes.
 #[inline(always)]
-pub(super) fn ways<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &[Pose]) -> Triple<T> {
+pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &[Pose]) -> Vec3<T> {
     vectors(proof, |lane| {
         let [a, b] = ends[lane].map(|end| &poses[end as usize].position_m);
         [0, 1, 2, 3].map(|k| b[k] - a[k])
@@ -157,22 +157,22 @@ pub(super) fn fetch_second_ends(
     }
 }
 
-/// Works on all shares, on as many threads as there are; each has the wrenches of its own particles.
-pub(super) fn for_each_share(
-    shares: &mut [Share],
+/// Works on all partitions, on as many threads as there are; each has the wrenches of its own particles.
+pub(super) fn for_each_partition(
+    partitions: &mut [Partition],
     wrenches: &mut [Wrench],
-    work: &(impl Fn(&mut Share, &mut [Wrench]) + Sync),
+    work: &(impl Fn(&mut Partition, &mut [Wrench]) + Sync),
 ) {
-    match shares {
+    match partitions {
         [] => {}
-        [share] => work(share, wrenches),
+        [partition] => work(partition, wrenches),
         _ => {
-            let (left, right) = shares.split_at_mut(shares.len() / 2);
+            let (left, right) = partitions.split_at_mut(partitions.len() / 2);
             let count = right[0].particles.start - left[0].particles.start;
             let (of_left, of_right) = wrenches.split_at_mut(count);
             rayon::join(
-                || for_each_share(left, of_left, work),
-                || for_each_share(right, of_right, work),
+                || for_each_partition(left, of_left, work),
+                || for_each_partition(right, of_right, work),
             );
         }
     }

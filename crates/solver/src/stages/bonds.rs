@@ -6,14 +6,16 @@ use rayon::prelude::*;
 
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
-use crate::physics::bond::total::answer;
-use crate::physics::number::{Triple, Turn};
-use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, ways};
+use crate::physics::bond::total::bond_response;
+use crate::physics::number::{Rotation, Vec3};
+use crate::stages::blocks::{
+    BondGroup, blocks_of, fetch_second_ends, for_each_partition, separations,
+};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
 use crate::stages::motion::CHUNK;
 use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
-use crate::state::shares::{Batch, Computed, Share, Which};
+use crate::state::partitions::{Batch, Computed, Partition, Which};
 
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
@@ -21,13 +23,18 @@ const NEARLY: f64 = 1.0 - 1e-9;
 /// 1, and some more for the rounding of differences from which weak bonds are found.
 const ROUNDED_UP: f64 = 1.0 + 1e-14;
 
-/// Sets the wrenches to the forces of the bonds. `shares` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
-pub fn bond_wrenches(bonds: &Bonds, poses: &[Pose], shares: &mut [Share], wrenches: &mut [Wrench]) {
-    for_each_share(shares, wrenches, &|share, wrenches| {
-        with_lanes(ShareWork {
+/// Sets the wrenches to the forces of the bonds. `partitions` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
+pub fn bond_wrenches(
+    bonds: &Bonds,
+    poses: &[Pose],
+    partitions: &mut [Partition],
+    wrenches: &mut [Wrench],
+) {
+    for_each_partition(partitions, wrenches, &|partition, wrenches| {
+        with_lanes(PartitionWork {
             bonds,
             poses,
-            share,
+            partition,
             wrenches,
         });
     });
@@ -78,31 +85,31 @@ pub fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)>
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
-/// The work on one share.
-struct ShareWork<'a> {
+/// The work on one partition.
+struct PartitionWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
-    share: &'a mut Share,
-    /// Of the share's particles only.
+    partition: &'a mut Partition,
+    /// Of the partition's particles only.
     wrenches: &'a mut [Wrench],
 }
 
-impl LaneWork for ShareWork<'_> {
+impl LaneWork for PartitionWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(self, proof: T::Proof) {
         let Self {
             bonds,
             poses,
-            share,
+            partition,
             wrenches,
         } = self;
-        let Share {
+        let Partition {
             particles,
             awake,
             batches,
             failing,
             computed,
-        } = share;
+        } = partition;
         *computed = Computed::default();
         failing.clear();
         for awake in awake {
@@ -124,7 +131,7 @@ impl LaneWork for ShareWork<'_> {
                 Which::Run(range) => {
                     for block in blocks_of(range) {
                         fetch_second_ends(bonds, block, poses, wrenches, particles);
-                        let four = Four::of_block(bonds, block, range);
+                        let four = BondGroup::of_block(bonds, block, range);
                         let numbers = &bonds.blocks[block];
                         for first in (0..BLOCK).step_by(T::COUNT) {
                             let found = kind.forces::<T>(proof, &four, numbers, first, poses);
@@ -142,7 +149,7 @@ impl LaneWork for ShareWork<'_> {
                 }
                 Which::Own(list) | Which::Border(list) => {
                     for some in list.chunks(BLOCK) {
-                        let four = Four::of_list(bonds, some);
+                        let four = BondGroup::of_list(bonds, some);
                         let numbers = &BondBlock::of(bonds, four.numbers);
                         for first in (0..BLOCK).step_by(T::COUNT) {
                             let found = kind.forces::<T>(proof, &four, numbers, first, poses);
@@ -167,8 +174,8 @@ impl LaneWork for ShareWork<'_> {
 
 /// What bonds do to their ends, and how far they are beyond their strength: lane by lane.
 struct Found<T> {
-    force_on_b: Triple<T>,
-    torques: [Triple<T>; 2],
+    force_on_b: Vec3<T>,
+    torques: [Vec3<T>; 2],
     /// Square of the utilisation less [`NEARLY`], times (pi r^3)^2; below 0 if nothing can break.
     beyond: [f64; MOST],
 }
@@ -185,7 +192,7 @@ impl Kind {
     fn forces<T: Lanes>(
         &self,
         proof: T::Proof,
-        four: &Four,
+        four: &BondGroup,
         numbers: &BondBlock,
         first: usize,
         poses: &[Pose],
@@ -197,14 +204,14 @@ impl Kind {
         let stiffness = Stiffness {
             normal,
             shear: T::load(proof, &numbers.shear, first),
-            torsion: bending.times(self.torsion_per_bending),
+            torsion: bending.scale(self.torsion_per_bending),
             bending,
             levers_m: [
                 T::load(proof, &numbers.levers_m[0], first),
                 T::load(proof, &numbers.levers_m[1], first),
             ],
         };
-        let direction = Triple(
+        let direction = Vec3(
             T::load(proof, &numbers.direction[0], first),
             T::load(proof, &numbers.direction[1], first),
             T::load(proof, &numbers.direction[2], first),
@@ -213,15 +220,20 @@ impl Kind {
             turns(proof, |lane| poses[ends[lane][0] as usize].turned),
             turns(proof, |lane| poses[ends[lane][1] as usize].turned),
         ];
-        let answer = answer(&stiffness, direction, ways(proof, ends, poses), turned);
+        let bond_response = bond_response(
+            &stiffness,
+            direction,
+            separations(proof, ends, poses),
+            turned,
+        );
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
-            let [used, factor] = screen.used_and_factor(&answer.load, radius_m);
-            beyond = (used - factor.times(NEARLY)).values();
+            let [used, factor] = screen.used_and_factor(&bond_response.load, radius_m);
+            beyond = (used - factor.scale(NEARLY)).values();
         }
         Found {
-            force_on_b: answer.force_on_b,
-            torques: answer.torques,
+            force_on_b: bond_response.force_on_b,
+            torques: bond_response.torques,
             beyond,
         }
     }
@@ -229,16 +241,16 @@ impl Kind {
 
 /// Rotations from quaternions x, y, z, w.
 #[inline(always)]
-fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Turn<T> {
+fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Rotation<T> {
     let [x, y, z, w] = T::columns(proof, rows);
-    Turn(Triple(x, y, z), w)
+    Rotation(Vec3(x, y, z), w)
 }
 
 /// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
 #[inline(always)]
 fn list_failing(
     bonds: &Bonds,
-    four: &Four,
+    four: &BondGroup,
     numbers: &BondBlock,
     first: usize,
     beyond: &[f64],
@@ -262,7 +274,7 @@ mod tests {
     use crate::physics::bond::failure::{Criteria, Factors, stresses, utilisation};
     use crate::state::bonds::BondRule;
     use crate::state::particles::Particles;
-    use crate::state::shares::divide;
+    use crate::state::partitions::divide;
 
     /// Numbers between -1 and 1 that look random.
     fn scattered(seed: u64) -> impl FnMut() -> f64 {
@@ -363,25 +375,25 @@ mod tests {
     /// Several lanes give the forces of one lane, and list the bonds that have reached their
     /// strength.
     fn lanes_agree(particles: &Particles, bonds: &Bonds) {
-        for shares in [1, 3] {
+        for partitions in [1, 3] {
             let results = [false, true].map(|several| {
-                let mut shares = divide(bonds, particles.len(), shares);
+                let mut partitions = divide(bonds, particles.len(), partitions);
                 if several {
                     let mut wrenches = particles.wrenches.clone();
-                    bond_wrenches(bonds, &particles.poses, &mut shares, &mut wrenches);
-                    (wrenches, shares)
+                    bond_wrenches(bonds, &particles.poses, &mut partitions, &mut wrenches);
+                    (wrenches, partitions)
                 } else {
                     let mut wrenches = particles.wrenches.clone();
-                    for_each_share(&mut shares, &mut wrenches, &|share, wrenches| {
-                        let work = ShareWork {
+                    for_each_partition(&mut partitions, &mut wrenches, &|partition, wrenches| {
+                        let work = PartitionWork {
                             bonds,
                             poses: &particles.poses,
-                            share,
+                            partition,
                             wrenches,
                         };
                         work.with::<f64>(());
                     });
-                    (wrenches, shares)
+                    (wrenches, partitions)
                 }
             });
             let [one, many] = &results;

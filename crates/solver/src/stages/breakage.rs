@@ -8,7 +8,7 @@ use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate
 use crate::physics::bond::total::BondForces;
 use crate::state::bonds::Bonds;
 use crate::state::particles::Particles;
-use crate::state::shares::Share;
+use crate::state::partitions::Partition;
 
 /// A bond that has broken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,19 +25,23 @@ pub struct Break {
     pub ends: [(u32, [f64; 6]); 2],
 }
 
-/// Breaks the bonds that the shares list, if they fail, and adds them to `broken`, in the order of the bonds.
+/// Breaks the bonds that the partitions list, if they fail, and adds them to `broken`, in the order of the bonds.
 ///
 /// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its force is taken back from what moves them on.
 /// Returns how many bonds were looked at whose strength depends on the rate of strain.
 pub fn break_bonds(
     bonds: &mut Bonds,
     particles: &mut Particles,
-    shares: &[Share],
+    partitions: &[Partition],
     half_kick_s: f64,
     broken: &mut Vec<Break>,
 ) -> usize {
-    // A share lists its bonds of the total formulation before those of the incremental one.
-    let mut failing: Vec<u32> = shares.iter().flat_map(|s| &s.failing).copied().collect();
+    // A partition lists its bonds of the total formulation before those of the incremental one.
+    let mut failing: Vec<u32> = partitions
+        .iter()
+        .flat_map(|s| &s.failing)
+        .copied()
+        .collect();
     failing.sort_unstable();
     let by_rate = |at: &&u32| {
         let rule = &bonds.rules[bonds.rule_of(**at as usize)];

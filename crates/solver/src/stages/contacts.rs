@@ -9,19 +9,19 @@ pub(in crate::stages) use self::stored::{stored_energy_j, stored_force_n};
 
 use self::close::{close_m, look};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::kinematics::{ContactSphere, contact_kinematics, torques};
 use crate::physics::contact::linear::Linear;
-use crate::physics::contact::manner::Manner;
+use crate::physics::contact::pair_parameters::PairParameters;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use crate::physics::contact::touch::{Ball, torques, touch};
-use crate::physics::contact::{Damped, History, NormalLaw, Response, response};
-use crate::physics::number::Triple;
+use crate::physics::contact::{ContactSprings, Damped, NormalLaw, Response, response};
+use crate::physics::number::Vec3;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
-use crate::state::contacts::{ContactShare, Contacts, Law, Memory, Rolling};
+use crate::state::contacts::{ContactHistory, ContactPartition, Contacts, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Contacts between those that are computed and those whose second particles are fetched into the cache.
@@ -30,45 +30,48 @@ const SOON: usize = 16;
 /// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes down what each contact remembers: after a step of `dt`, s, in
 /// which the particles moved as their motions say.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
-    let looks = contacts.close_room_m <= 0.0;
-    if looks {
+    let checks_all = contacts.close_skin_left_m <= 0.0;
+    if checks_all {
         contacts.close_m = close_m(contacts);
-        contacts.close_room_m = 0.45 * contacts.close_m;
+        contacts.close_skin_left_m = 0.45 * contacts.close_m;
     }
-    let mut shares = std::mem::take(&mut contacts.shares);
-    let mut memories = std::mem::take(&mut contacts.memories);
+    let mut partitions = std::mem::take(&mut contacts.partitions);
+    let mut histories = std::mem::take(&mut contacts.histories);
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
-    for share in &mut shares {
-        share.swallowed = None;
+    for partition in &mut partitions {
+        partition.excessive_overlap = None;
         // Their owners take down what comes next while others still need what was.
-        if looks {
-            let remembered = share.border.iter().map(|&at| memories[at as usize]);
-            share.border_memories.clear();
-            share.border_memories.extend(remembered);
+        if checks_all {
+            let remembered = partition.border.iter().map(|&at| histories[at as usize]);
+            partition.border_histories.clear();
+            partition.border_histories.extend(remembered);
         } else {
-            for n in share.close.iter().flat_map(|[of_border, _]| of_border) {
+            for n in partition.close.iter().flat_map(|[of_border, _]| of_border) {
                 let n = *n as usize;
-                share.border_memories[n] = memories[share.border[n] as usize];
+                partition.border_histories[n] = histories[partition.border[n] as usize];
             }
         }
     }
     let (known, p) = (&*contacts, &mut *particles);
-    let scene = Scene {
+    let scene = StepInput {
         contacts: known,
         poses: &p.poses,
         motions: &p.motions,
-        looks,
+        checks_all,
         dt,
     };
-    let books = Books {
-        memories: &mut memories,
+    let books = PartitionOutput {
+        histories: &mut histories,
         wrenches: &mut p.wrenches,
         lost_j: &mut lost_j,
     };
-    for_each(&mut shares, books, &scene);
-    contacts.swallowed = shares.iter().filter_map(|share| share.swallowed).min();
-    contacts.shares = shares;
-    contacts.memories = memories;
+    for_each(&mut partitions, books, &scene);
+    contacts.excessive_overlap = partitions
+        .iter()
+        .filter_map(|partition| partition.excessive_overlap)
+        .min();
+    contacts.partitions = partitions;
+    contacts.histories = histories;
     contacts.lost_j = lost_j;
 }
 
@@ -88,40 +91,40 @@ pub fn list_contacts(
             if relaxes { overlap_m(poses, pair) } else { 0.0 }
         },
     );
-    contacts.divide(particles.len(), contacts.wanted_shares.max(1));
-    contacts.room_m = 0.5 * skin_m;
+    contacts.divide(particles.len(), contacts.wanted_partitions.max(1));
+    contacts.skin_left_m = 0.5 * skin_m;
 }
 
-/// What all shares look at.
-struct Scene<'a> {
+/// What all partitions look at.
+struct StepInput<'a> {
     contacts: &'a Contacts,
     poses: &'a [Pose],
     motions: &'a [Motion],
     /// Whether all pairs are looked at, not only those that were close.
-    looks: bool,
+    checks_all: bool,
     dt: f64,
 }
 
-/// What a share writes: memories of its own contacts, the rest of its own particles.
-struct Books<'a> {
-    memories: &'a mut [Memory],
+/// What a partition writes: histories of its own contacts, the rest of its own particles.
+struct PartitionOutput<'a> {
+    histories: &'a mut [ContactHistory],
     wrenches: &'a mut [Wrench],
     lost_j: &'a mut [[f64; 2]],
 }
 
-impl<'a> Books<'a> {
+impl<'a> PartitionOutput<'a> {
     fn split(self, contacts: usize, particles: usize) -> [Self; 2] {
-        let (memories, other_memories) = self.memories.split_at_mut(contacts);
+        let (histories, other_memories) = self.histories.split_at_mut(contacts);
         let (wrenches, other_wrenches) = self.wrenches.split_at_mut(particles);
         let (lost_j, other_lost_j) = self.lost_j.split_at_mut(particles);
         [
             Self {
-                memories,
+                histories,
                 wrenches,
                 lost_j,
             },
             Self {
-                memories: other_memories,
+                histories: other_memories,
                 wrenches: other_wrenches,
                 lost_j: other_lost_j,
             },
@@ -129,17 +132,21 @@ impl<'a> Books<'a> {
     }
 }
 
-/// Works on all shares, on as many threads as there are.
-fn for_each(shares: &mut [ContactShare], books: Books<'_>, scene: &Scene<'_>) {
-    match shares {
+/// Works on all partitions, on as many threads as there are.
+fn for_each(
+    partitions: &mut [ContactPartition],
+    books: PartitionOutput<'_>,
+    scene: &StepInput<'_>,
+) {
+    match partitions {
         [] => {}
-        [share] => with_most_lanes(ShareWork {
-            share,
+        [partition] => with_most_lanes(PartitionWork {
+            partition,
             books,
             scene,
         }),
         _ => {
-            let (left, right) = shares.split_at_mut(shares.len() / 2);
+            let (left, right) = partitions.split_at_mut(partitions.len() / 2);
             let [of_left, of_right] = books.split(
                 right[0].own.start - left[0].own.start,
                 right[0].particles.start - left[0].particles.start,
@@ -152,42 +159,45 @@ fn for_each(shares: &mut [ContactShare], books: Books<'_>, scene: &Scene<'_>) {
     }
 }
 
-/// The work on one share.
-struct ShareWork<'a> {
-    share: &'a mut ContactShare,
-    books: Books<'a>,
-    scene: &'a Scene<'a>,
+/// The work on one partition.
+struct PartitionWork<'a> {
+    partition: &'a mut ContactPartition,
+    books: PartitionOutput<'a>,
+    scene: &'a StepInput<'a>,
 }
 
-impl LaneWork for ShareWork<'_> {
+impl LaneWork for PartitionWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
-        if self.scene.looks {
-            look::<T>(proof, self.share, self.scene);
+        if self.scene.checks_all {
+            look::<T>(proof, self.partition, self.scene);
         }
-        (self.share.computed, self.share.rolled) = (0, 0);
+        (self.partition.computed, self.partition.rolled) = (0, 0);
         for kind in 0..self.scene.contacts.kinds.len() {
-            let before = self.share.computed;
+            let before = self.partition.computed;
             self.with_kind::<T>(proof, kind);
             if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
-                self.share.rolled += self.share.computed - before;
+                self.partition.rolled += self.partition.computed - before;
             }
         }
     }
 }
 
 #[inline(always)]
-fn manner<T: Lanes>(proof: T::Proof, manner: &Manner) -> Manner<T> {
-    Manner {
-        damping_ratio: T::all(proof, manner.damping_ratio),
-        tangential_damping_ratio: T::all(proof, manner.tangential_damping_ratio),
-        friction: T::all(proof, manner.friction),
-        least_n: T::all(proof, manner.least_n),
-        kept: [T::all(proof, manner.kept[0]), T::all(proof, manner.kept[1])],
+fn parameters<T: Lanes>(proof: T::Proof, parameters: &PairParameters) -> PairParameters<T> {
+    PairParameters {
+        damping_ratio: T::all(proof, parameters.damping_ratio),
+        tangential_damping_ratio: T::all(proof, parameters.tangential_damping_ratio),
+        friction: T::all(proof, parameters.friction),
+        least_n: T::all(proof, parameters.least_n),
+        kept: [
+            T::all(proof, parameters.kept[0]),
+            T::all(proof, parameters.kept[1]),
+        ],
     }
 }
 
-impl ShareWork<'_> {
+impl PartitionWork<'_> {
     #[inline(always)]
     fn with_kind<T: Lanes>(&mut self, proof: T::Proof, kind: usize) {
         let contact = &self.scene.contacts.kinds[kind];
@@ -196,7 +206,7 @@ impl ShareWork<'_> {
                 let law = HertzMindlin {
                     young_modulus_pa: T::all(proof, law.young_modulus_pa),
                     shear_modulus_pa: T::all(proof, law.shear_modulus_pa),
-                    manner: manner(proof, &law.manner),
+                    parameters: parameters(proof, &law.parameters),
                 };
                 self.with_law::<T>(proof, kind, &law, &contact.rolling);
             }
@@ -204,7 +214,7 @@ impl ShareWork<'_> {
                 let law = Linear {
                     normal_n_m: T::all(proof, law.normal_n_m),
                     tangential_n_m: T::all(proof, law.tangential_n_m),
-                    manner: manner(proof, &law.manner),
+                    parameters: parameters(proof, &law.parameters),
                 };
                 self.with_law::<T>(proof, kind, &law, &contact.rolling);
             }
@@ -246,27 +256,27 @@ impl ShareWork<'_> {
         rolling: &impl RollingFriction<T>,
     ) {
         let Self {
-            share,
+            partition,
             books,
             scene,
         } = self;
         let pairs = &scene.contacts.pairs;
-        let (own, particles) = (&share.own, &share.particles);
-        let [of_border, close] = &share.close[kind];
+        let (own, particles) = (&partition.own, &partition.particles);
+        let [of_border, close] = &partition.close[kind];
         for some in of_border.chunks(T::COUNT) {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
-            let pair = |lane: usize| pairs[share.border[number(lane)] as usize];
-            let memory = |lane: usize| &share.border_memories[number(lane)];
-            let met = scene.meet::<T, _>(proof, law, rolling, pair, memory);
+            let pair = |lane: usize| pairs[partition.border[number(lane)] as usize];
+            let history = |lane: usize| &partition.border_histories[number(lane)];
+            let met = scene.meet::<T, _>(proof, law, rolling, pair, history);
             for lane in 0..some.len() {
                 let b = pair(lane)[1] as usize - particles.start;
                 met.forces.add_to_b(lane, &mut books.wrenches[b]);
             }
         }
-        let memories = &mut books.memories[..];
+        let histories = &mut books.histories[..];
         let wrenches = &mut books.wrenches[..];
         let lost_j = &mut books.lost_j[..];
-        let mut swallowed = share.swallowed;
+        let mut excessive_overlap = partition.excessive_overlap;
         let mut computed = 0;
         for (n, some) in close.chunks(T::COUNT).enumerate() {
             let soon = n * T::COUNT + SOON;
@@ -274,7 +284,7 @@ impl ShareWork<'_> {
                 let b = pairs[at as usize][1] as usize;
                 fetch_soon(&scene.poses[b]);
                 fetch_soon(&scene.motions[b]);
-                fetch_soon(&memories[at as usize - own.start]);
+                fetch_soon(&histories[at as usize - own.start]);
                 if let Some(wrench) = wrenches.get(b.wrapping_sub(particles.start)) {
                     fetch_soon(wrench);
                 }
@@ -289,12 +299,12 @@ impl ShareWork<'_> {
                 law,
                 rolling,
                 |lane| ends[lane],
-                |lane| &memories[numbers[lane] - own.start],
+                |lane| &histories[numbers[lane] - own.start],
             );
-            if met.swallowed != 0 {
+            if met.excessive_overlap != 0 {
                 // Lanes to spare repeat the last contact.
-                let pair = ends[met.swallowed.trailing_zeros() as usize];
-                swallowed = Some(swallowed.map_or(pair, |other| other.min(pair)));
+                let pair = ends[met.excessive_overlap.trailing_zeros() as usize];
+                excessive_overlap = Some(excessive_overlap.map_or(pair, |other| other.min(pair)));
             }
             let touched = met.touched & (0xff >> (MOST - some.len()));
             computed += touched.count_ones() as usize;
@@ -303,12 +313,12 @@ impl ShareWork<'_> {
                     let a = ends[lane][0] as usize - particles.start;
                     lost_j[a][0] += met.friction_j[lane];
                     lost_j[a][1] += met.damping_j[lane];
-                    let memory = &mut memories[numbers[lane] - own.start];
-                    memory.slid = met.slid[lane];
-                    memory.damped = met.damped[lane];
+                    let history = &mut histories[numbers[lane] - own.start];
+                    history.tangential = met.tangential[lane];
+                    history.damping = met.damped[lane];
                     if let Some([rolled, rolling_damped]) = &met.rolled {
-                        memory.rolled = rolled[lane];
-                        memory.rolling_damped = rolling_damped[lane];
+                        history.rolling = rolled[lane];
+                        history.rolling_damping = rolling_damped[lane];
                     }
                 }
             }
@@ -322,14 +332,14 @@ impl ShareWork<'_> {
                 }
             }
         }
-        share.computed += computed;
-        share.swallowed = swallowed;
+        partition.computed += computed;
+        partition.excessive_overlap = excessive_overlap;
     }
 }
 
 /// What becomes of contacts, row by row.
-struct Met {
-    slid: [[f64; 4]; MOST],
+struct ContactOutput {
+    tangential: [[f64; 4]; MOST],
     damped: [[f64; 4]; MOST],
     /// Spring and damping of rolling. None: there is no rolling friction.
     rolled: Option<[[[f64; 4]; MOST]; 2]>,
@@ -339,7 +349,7 @@ struct Met {
     /// A bit for each, from the lowest on: whether the two overlap, or did in the step before.
     touched: u8,
     /// The same: whether the two are pressed into each other by more than the radius of the smaller one.
-    swallowed: u8,
+    excessive_overlap: u8,
 }
 
 /// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
@@ -350,7 +360,7 @@ struct Forces {
 
 impl Forces {
     #[inline(always)]
-    fn new<T: Lanes>(force_on_b: Triple<T>, torques: [Triple<T>; 2]) -> Self {
+    fn new<T: Lanes>(force_on_b: Vec3<T>, torques: [Vec3<T>; 2]) -> Self {
         Self {
             on_b: rows(force_on_b),
             torques: [rows(torques[0]), rows(torques[1])],
@@ -374,7 +384,7 @@ impl Forces {
     }
 }
 
-impl Scene<'_> {
+impl StepInput<'_> {
     /// What contacts do to their particles, one for each lane.
     #[inline(always)]
     fn meet<'a, T: Lanes, R: RollingFriction<T>>(
@@ -383,54 +393,54 @@ impl Scene<'_> {
         law: &impl NormalLaw<T>,
         rolling: &R,
         pair: impl Fn(usize) -> [u32; 2],
-        memory: impl Fn(usize) -> &'a Memory,
-    ) -> Met {
-        let (place_a, a) = self.ball::<T>(proof, |lane| pair(lane)[0] as usize);
-        let (place_b, b) = self.ball::<T>(proof, |lane| pair(lane)[1] as usize);
-        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| memory(lane).slid);
-        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| memory(lane).damped);
+        history: impl Fn(usize) -> &'a ContactHistory,
+    ) -> ContactOutput {
+        let (place_a, a) = self.contact_sphere::<T>(proof, |lane| pair(lane)[0] as usize);
+        let (place_b, b) = self.contact_sphere::<T>(proof, |lane| pair(lane)[1] as usize);
+        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
+        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
         let nothing = overlap_m.zero();
-        let none = Triple(nothing, nothing, nothing);
+        let none = Vec3(nothing, nothing, nothing);
         let (rolling_rad, moment_n_m) = if R::REMEMBERS {
             (
-                vectors(proof, |lane| memory(lane).rolled),
-                vectors(proof, |lane| memory(lane).rolling_damped),
+                vectors(proof, |lane| history(lane).rolling),
+                vectors(proof, |lane| history(lane).rolling_damping),
             )
         } else {
             (none, none)
         };
-        let mut touch = touch(place_b - place_a, [a, b], self.dt);
-        let least_m = touch.radius_m.times(self.contacts.least_overlap);
+        let mut touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
+        let least_m = touch.effective_radius_m.scale(self.contacts.least_overlap);
         let relaxed = relaxed(touch.overlap_m, origin_m, least_m);
         let touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
         touch.overlap_m = relaxed.overlap_m;
-        let history = History {
-            tangential_m: Triple(sx, sy, sz),
+        let springs = ContactSprings {
+            tangential_m: Vec3(sx, sy, sz),
             rolling_rad,
             overlap_m,
         };
         let damped_before = Damped {
-            force_n: Triple(dx, dy, dz),
+            force_n: Vec3(dx, dy, dz),
             moment_n_m,
         };
         let Response {
-            history,
+            springs,
             force_on_b,
             moment_on_b,
             lost,
             damping,
             ..
-        } = response(law, rolling, &touch, &history, self.dt);
+        } = response(law, rolling, &touch, &springs, self.dt);
         let damped = damping.total();
-        let Triple(sx, sy, sz) = history.tangential_m;
-        let Triple(dx, dy, dz) = damped.force_n;
-        Met {
+        let Vec3(sx, sy, sz) = springs.tangential_m;
+        let Vec3(dx, dy, dz) = damped.force_n;
+        ContactOutput {
             touched,
-            swallowed: (touch.overlap_m).above(a.radius_m.smaller(b.radius_m)),
-            slid: T::rows([sx, sy, sz, history.overlap_m]),
+            excessive_overlap: (touch.overlap_m).above(a.radius_m.minimum(b.radius_m)),
+            tangential: T::rows([sx, sy, sz, springs.overlap_m]),
             damped: T::rows([dx, dy, dz, relaxed.origin_m]),
-            rolled: R::REMEMBERS.then(|| [rows(history.rolling_rad), rows(damped.moment_n_m)]),
+            rolled: R::REMEMBERS.then(|| [rows(springs.rolling_rad), rows(damped.moment_n_m)]),
             friction_j: (lost.sliding + lost.rolling).values(),
             damping_j: damped.lost_j(&damped_before, &touch, self.dt).values(),
             forces: Forces::new(force_on_b, torques(&touch, force_on_b, moment_on_b)),
@@ -439,23 +449,23 @@ impl Scene<'_> {
 
     /// One particle for each lane, and its centre, m.
     #[inline(always)]
-    fn ball<T: Lanes>(
+    fn contact_sphere<T: Lanes>(
         &self,
         proof: T::Proof,
         particle: impl Fn(usize) -> usize,
-    ) -> (Triple<T>, Ball<T>) {
+    ) -> (Vec3<T>, ContactSphere<T>) {
         let [x, y, z, radius_m] = T::columns(proof, |lane| self.poses[particle(lane)].position_m);
         let [vx, vy, vz, inverse_mass] =
             T::columns(proof, |lane| self.motions[particle(lane)].velocity_row());
         let [wx, wy, wz, inverse_inertia] =
             T::columns(proof, |lane| self.motions[particle(lane)].spin_row());
-        let ball = Ball {
-            velocity_m_s: Triple(vx, vy, vz),
-            spin_rad_s: Triple(wx, wy, wz),
+        let ball = ContactSphere {
+            velocity_m_s: Vec3(vx, vy, vz),
+            spin_rad_s: Vec3(wx, wy, wz),
             radius_m,
             inverse_mass_per_kg: inverse_mass,
             inverse_inertia_per_kg_m2: inverse_inertia,
         };
-        (Triple(x, y, z), ball)
+        (Vec3(x, y, z), ball)
     }
 }

@@ -1,67 +1,69 @@
 //! Viscous forces of damped bonds on the particles, from the velocities half a step ago.
 
 use crate::physics::bond::damping::{DampingCoefficients, resistance};
-use crate::physics::number::Triple;
-use crate::stages::blocks::{Four, blocks_of, fetch_second_ends, for_each_share, vectors, ways};
+use crate::physics::number::Vec3;
+use crate::stages::blocks::{
+    BondGroup, blocks_of, fetch_second_ends, for_each_partition, separations, vectors,
+};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
-use crate::state::shares::{Batch, Share, Which};
+use crate::state::partitions::{Batch, Partition, Which};
 
 /// Sets `resisting` (one for each particle) to the damping forces of the bonds.
 pub fn damping_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
     motions: &[Motion],
-    shares: &mut [Share],
+    partitions: &mut [Partition],
     resisting: &mut [Wrench],
 ) {
-    for_each_share(shares, resisting, &|share, resisting| {
-        with_lanes(ShareWork {
+    for_each_partition(partitions, resisting, &|partition, resisting| {
+        with_lanes(PartitionWork {
             bonds,
             poses,
             motions,
-            share,
+            partition,
             resisting,
         });
     });
 }
 
-/// The work on one share.
-struct ShareWork<'a> {
+/// The work on one partition.
+struct PartitionWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
     motions: &'a [Motion],
-    share: &'a mut Share,
-    /// Of the share's particles only.
+    partition: &'a mut Partition,
+    /// Of the partition's particles only.
     resisting: &'a mut [Wrench],
 }
 
-impl LaneWork for ShareWork<'_> {
+impl LaneWork for PartitionWork<'_> {
     #[inline(always)]
     fn with<T: Lanes>(self, proof: T::Proof) {
         let Self {
             bonds,
             poses,
             motions,
-            share,
+            partition,
             resisting,
         } = self;
-        for awake in &share.awake {
+        for awake in &partition.awake {
             resisting[awake.clone()].fill(Wrench::default());
         }
-        let particles = &share.particles;
-        share.computed.damped = 0;
-        for Batch { rule, which } in &share.batches {
+        let particles = &partition.particles;
+        partition.computed.damped = 0;
+        for Batch { rule, which } in &partition.batches {
             if !bonds.rules[*rule].damped {
                 continue;
             }
-            share.computed.damped += which.count();
+            partition.computed.damped += which.count();
             match which {
                 Which::Run(range) => {
                     for block in blocks_of(range) {
                         fetch_second_ends(bonds, block, poses, resisting, particles);
-                        let four = Four::of_block(bonds, block, range);
+                        let four = BondGroup::of_block(bonds, block, range);
                         for first in (0..BLOCK).step_by(T::COUNT) {
                             let (force_on_b, torques) =
                                 forces::<T>(proof, bonds, &four, first, poses, motions);
@@ -71,7 +73,7 @@ impl LaneWork for ShareWork<'_> {
                 }
                 Which::Own(list) | Which::Border(list) => {
                     for some in list.chunks(BLOCK) {
-                        let four = Four::of_list(bonds, some);
+                        let four = BondGroup::of_list(bonds, some);
                         for first in (0..BLOCK).step_by(T::COUNT) {
                             let (force_on_b, torques) =
                                 forces::<T>(proof, bonds, &four, first, poses, motions);
@@ -89,11 +91,11 @@ impl LaneWork for ShareWork<'_> {
 fn forces<T: Lanes>(
     proof: T::Proof,
     bonds: &Bonds,
-    four: &Four,
+    four: &BondGroup,
     first: usize,
     poses: &[Pose],
     motions: &[Motion],
-) -> (Triple<T>, [Triple<T>; 2]) {
+) -> (Vec3<T>, [Vec3<T>; 2]) {
     let row = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
     let ends = &four.ends[first..first + T::COUNT];
     let numbers = &four.numbers[first..first + T::COUNT];
@@ -119,8 +121,8 @@ fn forces<T: Lanes>(
         let [a, b] = bonds.levers_m(numbers[lane]);
         [a, b, 0.0, 0.0]
     });
-    let apart = ways::<T>(proof, ends, poses);
-    let length = apart.square().root();
+    let apart = separations::<T>(proof, ends, poses);
+    let length = apart.square().sqrt();
     let c = apart * length.inverse();
     resistance(&coefficients, [lever_a, lever_b], c, length, moving)
 }

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::physics::bond::incremental::{Step, advance, bond_forces};
-use crate::stages::blocks::for_each_share;
+use crate::stages::blocks::for_each_partition;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Particles, Pose, Wrench};
-use crate::state::shares::{Batch, Share, Which};
+use crate::state::partitions::{Batch, Partition, Which};
 
 /// Brings the histories up to the present places, after a drift of `time_step_s` with these motions.
 pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
@@ -37,26 +37,26 @@ pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: 
     bonds.histories = histories;
 }
 
-/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their strength to the shares' lists.
+/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their strength to the partitions' lists.
 pub fn add_incremental_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
-    shares: &mut [Share],
+    partitions: &mut [Partition],
     wrenches: &mut [Wrench],
 ) {
-    for_each_share(shares, wrenches, &|share, wrenches| {
-        of_share(bonds, poses, share, wrenches);
+    for_each_partition(partitions, wrenches, &|partition, wrenches| {
+        of_partition(bonds, poses, partition, wrenches);
     });
 }
 
-fn of_share(bonds: &Bonds, poses: &[Pose], share: &mut Share, wrenches: &mut [Wrench]) {
-    let Share {
+fn of_partition(bonds: &Bonds, poses: &[Pose], partition: &mut Partition, wrenches: &mut [Wrench]) {
+    let Partition {
         particles: own,
         batches,
         failing,
         computed,
         ..
-    } = share;
+    } = partition;
     for Batch { rule, which } in batches.iter() {
         let rule = &bonds.rules[*rule];
         if !rule.incremental {

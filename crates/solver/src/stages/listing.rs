@@ -12,7 +12,7 @@ use crate::state::State;
 /// Makes the lists anew if something may have come near since they were made.
 pub fn renew_lists(state: &mut State) {
     let resumed = state.sleep.as_mut().is_some_and(|sleep| {
-        sleep.news.clear();
+        sleep.events.clear();
         std::mem::take(&mut sleep.is_resumed)
     });
     let Some(contacts) = &mut state.contacts else {
@@ -23,21 +23,21 @@ pub fn renew_lists(state: &mut State) {
         &state.walls,
         [state.time_s, state.time_step_s],
     ) {
-        contacts.room_m = -1.0;
+        contacts.skin_left_m = -1.0;
     }
-    let room_m = contacts.room_m;
-    if room_m >= 0.0 && !resumed {
+    let skin_left_m = contacts.skin_left_m;
+    if skin_left_m >= 0.0 && !resumed {
         return;
     }
     clumps::place_all(&state.clumps, &mut state.particles);
     keep_touches(state);
     loop {
         list_awake(state);
-        if room_m >= 0.0 {
+        if skin_left_m >= 0.0 {
             // The run from which this one goes on woke nobody here, and makes its next lists when this room is used up.
             leave_out_sleepers(state);
             if let Some(contacts) = &mut state.contacts {
-                contacts.room_m = room_m;
+                contacts.skin_left_m = skin_left_m;
             }
             break;
         }
@@ -66,7 +66,7 @@ fn list_awake(state: &mut State) {
     state.clock.did(Stage::Search, p.len());
     list_near(&mut state.walls, p, skin_m);
     if contacts.alone {
-        contacts.room_m = 0.5 * skin_m;
+        contacts.skin_left_m = 0.5 * skin_m;
         return;
     }
     let clusters = state.clusters.as_ref();
@@ -91,12 +91,12 @@ fn leave_out_sleepers(state: &mut State) {
         return;
     };
     let is_awake = |pair: &[u32; 2]| pair.iter().all(|&i| !p.sleeps(i as usize));
-    (contacts.pairs, contacts.memories) = contacts
+    (contacts.pairs, contacts.histories) = contacts
         .pairs
         .iter()
-        .zip(&contacts.memories)
+        .zip(&contacts.histories)
         .filter(|(pair, _)| is_awake(pair))
-        .map(|(pair, memory)| (*pair, *memory))
+        .map(|(pair, history)| (*pair, *history))
         .unzip();
-    contacts.divide(p.len(), contacts.wanted_shares.max(1));
+    contacts.divide(p.len(), contacts.wanted_partitions.max(1));
 }

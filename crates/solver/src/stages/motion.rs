@@ -105,7 +105,7 @@ impl LaneWork for DriftWork<'_> {
                 && awake
                 && let Some(square) = move_on::<T>(proof, poses, motions, self.time_step_s)
             {
-                fastest = square.larger(fastest);
+                fastest = square.maximum(fastest);
                 continue;
             }
             for (i, (pose, motion)) in (first..).zip(poses.iter_mut().zip(motions)) {
@@ -143,9 +143,9 @@ fn move_on<T: Lanes>(
     let [vx, vy, vz, _] = T::columns(proof, |lane| motions[lane].velocity_row());
     let [wx, wy, wz, _] = T::columns(proof, |lane| motions[lane].spin_row());
     let about = [
-        wx.times(time_step_s),
-        wy.times(time_step_s),
-        wz.times(time_step_s),
+        wx.scale(time_step_s),
+        wy.scale(time_step_s),
+        wz.scale(time_step_s),
     ];
     let room = room_to_small(about);
     if room.above(room.zero()).count_ones() < T::COUNT as u32 {
@@ -154,9 +154,9 @@ fn move_on<T: Lanes>(
     let [x, y, z, radius_m] = T::columns(proof, |lane| poses[lane].position_m);
     let turned = turn_a_little(T::columns(proof, |lane| poses[lane].turned), about);
     let places = T::rows([
-        x + vx.times(time_step_s),
-        y + vy.times(time_step_s),
-        z + vz.times(time_step_s),
+        x + vx.scale(time_step_s),
+        y + vy.scale(time_step_s),
+        z + vz.scale(time_step_s),
         radius_m,
     ]);
     let turned = T::rows(turned);

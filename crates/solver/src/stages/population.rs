@@ -12,17 +12,17 @@ use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
-use crate::state::contacts::Memory;
+use crate::state::contacts::ContactHistory;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
-use crate::state::shares::divide;
+use crate::state::partitions::divide;
 use crate::state::walls::Wall;
 
 /// What is no more.
-pub const GONE: u32 = u32::MAX;
+pub const REMOVED: u32 = u32::MAX;
 
 /// What is to happen.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Changes {
+pub struct TopologyChange {
     /// Clumps that become bonded clusters: numbers, rising.
     pub to_clusters: Vec<usize>,
     /// Clusters that become clumps: their numbers, rising, and the clumps.
@@ -35,7 +35,7 @@ pub struct Changes {
 
 /// A clump that has become a bonded cluster.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Born {
+pub struct NewCluster {
     /// As it was.
     pub clump: Clump,
     /// What it is made of.
@@ -48,23 +48,23 @@ pub struct Born {
 
 /// How particles and bonds are counted now.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Renumbered {
-    /// For each particle before, its number now, or [`GONE`].
+pub struct Renumbering {
+    /// For each particle before, its number now, or [`REMOVED`].
     pub particles: Vec<u32>,
-    /// For each bond before, its number now, or [`GONE`].
+    /// For each bond before, its number now, or [`REMOVED`].
     pub bonds: Vec<u32>,
     /// Particles from this number on are carried by clumps.
     pub free: u32,
     /// Clusters that clumps have become.
-    pub born: Vec<Born>,
+    pub born: Vec<NewCluster>,
 }
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.
-pub fn change(state: &mut State, changes: Changes) -> Renumbered {
+pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {
     prepare_change(state, &changes);
     place_all(&state.clumps, &mut state.particles);
     let pressed_before_j = pressed_j(state);
-    let Changes {
+    let TopologyChange {
         to_clusters,
         to_clumps,
         coming,
@@ -78,7 +78,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
 
     // Who is where now.
     let mut new = Particles::default();
-    let mut particles = vec![GONE; old.len()];
+    let mut particles = vec![REMOVED; old.len()];
     let mut ids: Vec<u32> = Vec::new();
     let mut is_new = Vec::new();
     for i in 0..old.free {
@@ -101,7 +101,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
         }
         ids.resize(new.len(), clump.cluster);
         is_new.resize(new.len(), Some(template.material));
-        born.push(Born {
+        born.push(NewCluster {
             clump,
             template,
             first_particle,
@@ -206,7 +206,7 @@ pub fn change(state: &mut State, changes: Changes) -> Renumbered {
     count_sleepers(state);
     let pressed_j = pressed_j(state);
     state.ledger.gain(pressed_j - pressed_before_j);
-    Renumbered {
+    Renumbering {
         particles,
         bonds,
         free: state.particles.free as u32,
@@ -233,7 +233,7 @@ fn pressed_j(state: &State) -> f64 {
 fn renumber(numbers: &mut Vec<u32>, now: &[u32]) {
     numbers.retain_mut(|number| {
         *number = now[*number as usize];
-        *number != GONE
+        *number != REMOVED
     });
 }
 
@@ -261,7 +261,7 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
 }
 
 /// Bonds of particles that are still there, and those of the clusters born. Returns how they are counted now.
-fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<u32> {
+fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -> Vec<u32> {
     let free = state.particles.free as u32;
     // Those of clumps and of what has gone are beyond.
     let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
@@ -269,18 +269,18 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [Born]) -> Vec<
     let bonds: Vec<u32> = (state.bonds.ends.iter())
         .map(|&ends| {
             if now(ends).iter().any(|&end| end >= free) {
-                return GONE;
+                return REMOVED;
             }
             count += 1;
             count - 1
         })
         .collect();
     if (count as usize) < bonds.len() {
-        let gone = (0..bonds.len()).filter(|&at| bonds[at] == GONE);
+        let gone = (0..bonds.len()).filter(|&at| bonds[at] == REMOVED);
         state.broken_gone += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
         let old = std::mem::take(&mut state.bonds);
         state.bonds.rules.clone_from(&old.rules);
-        for at in (0..old.len()).filter(|&at| bonds[at] != GONE) {
+        for at in (0..old.len()).filter(|&at| bonds[at] != REMOVED) {
             state.bonds.push_copy(&old, at, now(old.ends[at]), 1.0);
         }
     } else {
@@ -322,13 +322,13 @@ fn count_anew(
     for support in &mut state.supports {
         support.held.retain_mut(|held| {
             held.particle = particles[held.particle as usize];
-            held.particle != GONE
+            held.particle != REMOVED
         });
     }
     for load in &mut state.loads {
         renumber(&mut load.particles, particles);
     }
-    state.shares = divide(&state.bonds, state.particles.free, state.threads);
+    state.partitions = divide(&state.bonds, state.particles.free, state.threads);
     for wall in &mut state.walls {
         wall.near.clear();
         wall.touching.retain_mut(|touch| {
@@ -340,7 +340,7 @@ fn count_anew(
             // Contact spheres of clumps may be larger than those of clusters.
             let less_m = old_radii_m[before] - pose.radius_m();
             if less_m > 0.0 {
-                touch.memory.slid[3] = (touch.memory.overlap_m() - less_m).max(0.0);
+                touch.history.tangential[3] = (touch.history.overlap_m() - less_m).max(0.0);
             }
             true
         });
@@ -368,30 +368,27 @@ fn count_anew(
             booked[k] += old_lost_j[i][k];
         }
     }
-    let mut remembered: Vec<([u32; 2], Memory)> = (contacts.pairs.iter().zip(&contacts.memories))
-        .filter_map(|(pair, memory)| {
-            let [a, b] = pair.map(|end| particles[end as usize]);
-            if a == GONE || b == GONE {
-                return None;
-            }
-            let mut memory = if a < b {
-                *memory
-            } else {
-                memory.turned_round()
-            };
-            let changed = [a, b].iter().any(|&i| is_new[i as usize].is_some());
-            if changed && memory.overlap_m() > 0.0 {
-                // Contact spheres of clumps may be larger than those of clusters.
-                let pair = [a.min(b), a.max(b)];
-                let now = overlap_m(&state.particles.poses, pair) - memory.origin_m();
-                memory.slid[3] = now.max(0.0).min(memory.slid[3]);
-            }
-            Some(([a.min(b), a.max(b)], memory))
-        })
-        .collect();
+    let mut remembered: Vec<([u32; 2], ContactHistory)> =
+        (contacts.pairs.iter().zip(&contacts.histories))
+            .filter_map(|(pair, history)| {
+                let [a, b] = pair.map(|end| particles[end as usize]);
+                if a == REMOVED || b == REMOVED {
+                    return None;
+                }
+                let mut history = if a < b { *history } else { history.reversed() };
+                let changed = [a, b].iter().any(|&i| is_new[i as usize].is_some());
+                if changed && history.overlap_m() > 0.0 {
+                    // Contact spheres of clumps may be larger than those of clusters.
+                    let pair = [a.min(b), a.max(b)];
+                    let now = overlap_m(&state.particles.poses, pair) - history.origin_m();
+                    history.tangential[3] = now.max(0.0).min(history.tangential[3]);
+                }
+                Some(([a.min(b), a.max(b)], history))
+            })
+            .collect();
     remembered.sort_unstable_by_key(|(pair, _)| *pair);
-    (contacts.pairs, contacts.memories) = remembered.into_iter().unzip();
+    (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
     contacts.divide(count, state.threads);
     // The next step looks for near pairs again.
-    contacts.room_m = -1.0;
+    contacts.skin_left_m = -1.0;
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::population::{Changes, Renumbered, change};
+use super::population::{Renumbering, TopologyChange, apply_topology_change};
 use super::restoring::restore;
 use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
@@ -23,7 +23,7 @@ const OUTLET_EVERY: u64 = 50;
 
 /// What has happened to bodies in a step.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Happened {
+pub enum PopulationEvent {
     /// A clump has become a bonded cluster.
     Replaced {
         /// Its number among the clusters.
@@ -82,7 +82,7 @@ pub enum Happened {
 pub const STARTS_BONDED: &str = "start";
 
 /// Does to the bodies what the scene asks for, between a kick and the drift after it. None: nothing.
-pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
+pub fn replace(state: &mut State) -> Option<(Vec<Renumbering>, Vec<PopulationEvent>)> {
     if state.rules.are_none() {
         return None;
     }
@@ -101,12 +101,12 @@ pub fn replace(state: &mut State) -> Option<(Vec<Renumbered>, Vec<Happened>)> {
     let leaving = leaving(state, &mut happened);
     let coming = coming(state, &mut happened);
     if !(leaving.is_empty() && coming.is_empty()) {
-        let changes = Changes {
+        let changes = TopologyChange {
             coming,
             leaving,
-            ..Changes::default()
+            ..TopologyChange::default()
         };
-        renumbered.push(change(state, changes));
+        renumbered.push(apply_topology_change(state, changes));
     }
     if let Some((by, restored)) = restore(state) {
         state.rules.restored += restored.len() as u32;
@@ -170,16 +170,16 @@ fn swap(
     state: &mut State,
     to_clusters: Vec<usize>,
     causes: &[&'static str],
-    happened: &mut Vec<Happened>,
-) -> Renumbered {
+    happened: &mut Vec<PopulationEvent>,
+) -> Renumbering {
     // A body that an inlet feeds as bonded starts so.
     let fired = causes.iter().filter(|cause| **cause != STARTS_BONDED);
     state.rules.replaced += fired.count() as u32;
-    let changes = Changes {
+    let changes = TopologyChange {
         to_clusters,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    let renumbered = change(state, changes);
+    let renumbered = apply_topology_change(state, changes);
     for born in &renumbered.born {
         let base = state.rules.base(born.clump.template);
         let of_scene = (base, born.clump.instance);
@@ -198,7 +198,7 @@ fn swap(
             momentum += Vector3::from(motion.velocity_m_s) / motion.inverse_mass;
             kinetic += p.kinetic_j(i, motion);
         }
-        happened.push(Happened::Replaced {
+        happened.push(PopulationEvent::Replaced {
             cluster: clump.cluster,
             body: template.body.clone(),
             cause,
@@ -215,9 +215,10 @@ fn swap(
 }
 
 /// Bodies that come through inlets in this step.
-fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
+fn coming(state: &mut State, happened: &mut Vec<PopulationEvent>) -> Vec<Clump> {
     let mut coming: Vec<Clump> = Vec::new();
-    let asks = |inlet: &Inlet| state.steps >= inlet.come.next_try && is_due(inlet, state.time_s);
+    let asks =
+        |inlet: &Inlet| state.steps >= inlet.progress.next_try && is_due(inlet, state.time_s);
     if !state.rules.inlets.iter().any(asks) {
         return coming;
     }
@@ -227,12 +228,12 @@ fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
         .as_ref()
         .map_or(0, |c| c.history.len() as u32);
     for (n, inlet) in inlets.iter_mut().enumerate() {
-        while is_due(inlet, state.time_s) && state.steps >= inlet.come.next_try {
+        while is_due(inlet, state.time_s) && state.steps >= inlet.progress.next_try {
             let Some(clump) = next_body(n, inlet, state, &coming) else {
-                if inlet.come.tries <= TRIES {
-                    inlet.come.delayed += 1;
+                if inlet.progress.tries <= TRIES {
+                    inlet.progress.delayed += 1;
                 }
-                inlet.come.next_try = state.steps + WAIT;
+                inlet.progress.next_try = state.steps + WAIT;
                 break;
             };
             let template = state.clumps.template(&clump);
@@ -246,11 +247,11 @@ fn coming(state: &mut State, happened: &mut Vec<Happened>) -> Vec<Clump> {
                 [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
                 state.gravity_m_s2,
             );
-            inlet.come.bodies += 1;
-            inlet.come.mass_kg += template.mass_kg;
-            inlet.come.tries = 0;
+            inlet.progress.bodies += 1;
+            inlet.progress.mass_kg += template.mass_kg;
+            inlet.progress.tries = 0;
             state.rules.instances += 1;
-            happened.push(Happened::Came {
+            happened.push(PopulationEvent::Came {
                 cluster: next_cluster,
                 body: template.body.clone(),
                 inlet: inlet.name.clone(),
@@ -272,13 +273,13 @@ fn half_kick(state: &State) -> Vector3<f64> {
 /// Whether an inlet owes a body.
 fn is_due(inlet: &Inlet, time_s: f64) -> bool {
     let [start_s, end_s] = inlet.between_s;
-    if inlet.come.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
+    if inlet.progress.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
         return false;
     }
     let since_s = time_s - start_s;
     match inlet.feed {
-        Feed::Number(per_s) => since_s * per_s >= f64::from(inlet.come.bodies),
-        Feed::Mass(kg_s) => since_s * kg_s >= inlet.come.mass_kg,
+        Feed::Number(per_s) => since_s * per_s >= f64::from(inlet.progress.bodies),
+        Feed::Mass(kg_s) => since_s * kg_s >= inlet.progress.mass_kg,
     }
 }
 
@@ -286,7 +287,7 @@ fn is_due(inlet: &Inlet, time_s: f64) -> bool {
 /// none of its spheres a wall.
 fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
     let seed = state.rules.seed;
-    let number = u64::from(inlet.come.bodies);
+    let number = u64::from(inlet.progress.bodies);
     let random = |of: u64, attempt: u32| uniform(seed, &[n as u64, number, of, u64::from(attempt)]);
     let which = {
         let share = random(0, 0);
@@ -301,8 +302,8 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
     let region = &state.rules.regions[inlet.region];
     let reach_m = template.reach_m * template.scale.max(1.0);
     for _ in 0..TRIES {
-        inlet.come.tries += 1;
-        let attempt = inlet.come.tries;
+        inlet.progress.tries += 1;
+        let attempt = inlet.progress.tries;
         let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
             continue;
         };
@@ -394,7 +395,7 @@ fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) ->
 }
 
 /// Clusters that have come to an outlet, and books that they go. Their numbers, rising.
-fn leaving(state: &mut State, happened: &mut Vec<Happened>) -> Vec<u32> {
+fn leaving(state: &mut State, happened: &mut Vec<PopulationEvent>) -> Vec<u32> {
     let mut leaving = Vec::new();
     if state.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
         return leaving;
@@ -425,10 +426,10 @@ fn leaving(state: &mut State, happened: &mut Vec<Happened>) -> Vec<u32> {
         let Some(outlet) = goes else {
             continue;
         };
-        outlet.gone.0 += 1;
-        outlet.gone.1 += mass_kg;
+        outlet.removed.bodies += 1;
+        outlet.removed.mass_kg += mass_kg;
         leaving.push(id);
-        happened.push(Happened::Left {
+        happened.push(PopulationEvent::Left {
             cluster: id,
             outlet: outlet.name.clone(),
             mass_kg,

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::population::{Changes, Renumbered, change};
-use super::replacement::Happened;
+use super::population::{Renumbering, TopologyChange, apply_topology_change};
+use super::replacement::PopulationEvent;
 use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
 use crate::clusters::fragments::{Fragment, fragment, mass_and_centre};
@@ -24,7 +24,7 @@ use crate::state::particles::Motion;
 const EVERY: u64 = 200;
 
 /// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it. None: of none.
-pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
+pub fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let rules = &state.rules;
     if rules.restores.iter().all(Option::is_none) || !state.steps.is_multiple_of(EVERY) {
         return None;
@@ -61,7 +61,7 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
             continue;
         }
         gained_j -= inner_j.max(0.0) + strain_j;
-        happened.push(Happened::Restored {
+        happened.push(PopulationEvent::Restored {
             cluster: id,
             body: state.clumps.templates[base].body.clone(),
             particles: fragment.particles,
@@ -85,11 +85,11 @@ pub fn restore(state: &mut State) -> Option<(Renumbered, Vec<Happened>)> {
         })
         .collect();
     state.ledger.gain(gained_j);
-    let changes = Changes {
+    let changes = TopologyChange {
         to_clumps,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    Some((change(state, changes), happened))
+    Some((apply_topology_change(state, changes), happened))
 }
 
 /// The template of the body that a cluster comes from, and its instance. None: it never was a clump.

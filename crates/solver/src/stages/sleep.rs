@@ -7,23 +7,23 @@ use nalgebra::Vector3;
 use super::clumps::{place_all, synchronous};
 use super::contacts::contact_energy_j;
 use super::neighbours::near_pairs;
-use super::population::Changes;
+use super::population::TopologyChange;
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::check::totals::synchronous_motions;
 use crate::clock::Stage;
 use crate::disjoint::{find, join};
 use crate::state::State;
-use crate::state::contacts::{Contacts, Memory};
+use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::Wrench;
-use crate::state::shares::divide_awake;
-use crate::state::sleep::{Bed, KeptPair, KeptTouch, News, Sleep};
+use crate::state::partitions::divide_awake;
+use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep, SleepEvent};
 use crate::state::walls::{Push, Wall};
 
 /// Steps between two looks at who is slow.
 const EVERY: u64 = 100;
 
 /// Lets those bodies fall asleep that have been slow for long enough and touch none that has not, between a kick and the drift after it.
-pub fn look(state: &mut State) {
+pub fn update_sleep(state: &mut State) {
     if let Some(sleep) = &mut state.sleep {
         let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
         sleep.particle_steps[0] += all - left_out;
@@ -37,15 +37,18 @@ pub fn look(state: &mut State) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };
-    sleep.beds.resize(clusters.history.len(), Bed::AWAKE);
-    let slow_for = |bed: &Bed| !bed.asleep && state.time_s - bed.slow_since_s >= sleep.after_s;
-    for (bed, speed_m_s) in sleep.beds.iter_mut().zip(speeds_m_s) {
-        bed.slow_since_s = match speed_m_s {
-            Some(speed_m_s) if speed_m_s < sleep.speed_m_s => bed.slow_since_s.min(state.time_s),
+    sleep
+        .of_cluster
+        .resize(clusters.history.len(), ClusterSleep::AWAKE);
+    let slow_for =
+        |body: &ClusterSleep| !body.asleep && state.time_s - body.slow_since_s >= sleep.after_s;
+    for (body, speed_m_s) in sleep.of_cluster.iter_mut().zip(speeds_m_s) {
+        body.slow_since_s = match speed_m_s {
+            Some(speed_m_s) if speed_m_s < sleep.speed_m_s => body.slow_since_s.min(state.time_s),
             _ => f64::INFINITY,
         };
     }
-    let may: Vec<bool> = sleep.beds.iter().map(slow_for).collect();
+    let may: Vec<bool> = sleep.of_cluster.iter().map(slow_for).collect();
     let falling = at_rest_together(state, may);
     if !falling.is_empty() {
         fall_asleep(state, &falling);
@@ -105,7 +108,7 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
         may[id(touch.particle) as usize] = false;
     }
     let mut names: Vec<u32> = (0..may.len() as u32).collect();
-    for (pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
+    for (pair, memory) in contacts.pairs.iter().zip(&contacts.histories) {
         if memory.overlap_m() > 0.0 {
             join(&mut names, id(pair[0]), id(pair[1]));
         }
@@ -208,9 +211,9 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
         clump.torque_n_m = [0.0; 3];
     }
     for &id in falling {
-        sleep.beds[id as usize].asleep = true;
+        sleep.of_cluster[id as usize].asleep = true;
     }
-    sleep.news.push(News {
+    sleep.events.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "asleep",
@@ -218,7 +221,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
         bodies: falling.len(),
     });
     if let Some(contacts) = &mut state.contacts {
-        contacts.room_m = -1.0;
+        contacts.skin_left_m = -1.0;
     }
     count_sleepers(state);
 }
@@ -268,31 +271,31 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };
-    let mut names: Vec<u32> = (0..sleep.beds.len() as u32).collect();
+    let mut names: Vec<u32> = (0..sleep.of_cluster.len() as u32).collect();
     for kept in &sleep.pairs {
         let [a, b] = kept.pair.map(|i| clusters.of_particle[i as usize]);
         join(&mut names, a, b);
     }
-    let mut wakes = vec![false; sleep.beds.len()];
+    let mut wakes = vec![false; sleep.of_cluster.len()];
     for &id in ids {
         wakes[find(&mut names, id) as usize] = true;
     }
     let mut bodies = 0;
-    for (id, bed) in (0..).zip(&mut sleep.beds) {
-        if bed.asleep && wakes[find(&mut names, id) as usize] {
-            *bed = Bed::AWAKE;
+    for (id, body) in (0..).zip(&mut sleep.of_cluster) {
+        if body.asleep && wakes[find(&mut names, id) as usize] {
+            *body = ClusterSleep::AWAKE;
             bodies += 1;
         }
     }
-    sleep.news.push(News {
+    sleep.events.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "awake",
         cause,
         bodies,
     });
-    let beds = &sleep.beds;
-    let is_awake = |i: u32| !beds[clusters.of_particle[i as usize] as usize].asleep;
+    let of_cluster = &sleep.of_cluster;
+    let is_awake = |i: u32| !of_cluster[clusters.of_particle[i as usize] as usize].asleep;
     put_back(
         &mut sleep.pairs,
         &mut sleep.touches,
@@ -305,7 +308,7 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
 
 /// Wakes the bodies that are about to go or to become others, with all that sleep with them, and puts what is kept of the rest back into the lists, where it
 /// is counted anew.
-pub fn prepare_change(state: &mut State, changes: &Changes) {
+pub fn prepare_change(state: &mut State, changes: &TopologyChange) {
     let Some(sleep) = &state.sleep else {
         return;
     };
@@ -327,19 +330,20 @@ pub fn prepare_change(state: &mut State, changes: &Changes) {
 
 /// Puts what is kept of those particles that are awake back into the lists.
 fn put_back(
-    pairs: &mut Vec<KeptPair>,
-    touches: &mut Vec<KeptTouch>,
+    pairs: &mut Vec<FrozenContact>,
+    touches: &mut Vec<FrozenWallContact>,
     contacts: Option<&mut Contacts>,
     walls: &mut [Wall],
     is_awake: impl Fn(u32) -> bool,
 ) {
     if let Some(contacts) = contacts {
-        let before = contacts.pairs.iter().zip(&contacts.memories);
-        let mut all: Vec<([u32; 2], Memory)> = before.map(|(pair, m)| (*pair, *m)).collect();
+        let before = contacts.pairs.iter().zip(&contacts.histories);
+        let mut all: Vec<([u32; 2], ContactHistory)> =
+            before.map(|(pair, m)| (*pair, *m)).collect();
         let back = pairs.extract_if(.., |kept| is_awake(kept.pair[0]));
-        all.extend(back.map(|kept| (kept.pair, kept.memory)));
+        all.extend(back.map(|kept| (kept.pair, kept.history)));
         all.sort_by_key(|(pair, _)| *pair);
-        (contacts.pairs, contacts.memories) = all.into_iter().unzip();
+        (contacts.pairs, contacts.histories) = all.into_iter().unzip();
     }
     for kept in touches.extract_if(.., |kept| is_awake(kept.touch.particle)) {
         walls[kept.wall].touching.push(kept.touch);
@@ -360,14 +364,14 @@ pub fn keep_touches(state: &mut State) {
         return;
     }
     let known = sleep.pairs.len() + sleep.touches.len();
-    for (at, (&pair, &memory)) in contacts.pairs.iter().zip(&contacts.memories).enumerate() {
+    for (at, (&pair, &memory)) in contacts.pairs.iter().zip(&contacts.histories).enumerate() {
         let both_sleep = pair.iter().all(|&i| p.sleeps(i as usize));
         // Pairs that are listed and do not touch remember nothing.
-        if both_sleep && memory != Memory::default() {
+        if both_sleep && memory != ContactHistory::default() {
             let elastic_j = contact_energy_j(contacts, p, at);
-            sleep.pairs.push(KeptPair {
+            sleep.pairs.push(FrozenContact {
                 pair,
-                memory,
+                history: memory,
                 elastic_j,
             });
         }
@@ -380,7 +384,7 @@ pub fn keep_touches(state: &mut State) {
         wall.touching = awake;
         sleep
             .touches
-            .extend(asleep.into_iter().map(|touch| KeptTouch {
+            .extend(asleep.into_iter().map(|touch| FrozenWallContact {
                 wall: n,
                 touch,
                 push: push_at_rest(wall, contacts, p, &touch),
@@ -397,11 +401,11 @@ pub fn keep_touches(state: &mut State) {
 }
 
 /// What walls do to those who sleep on them.
-fn sum_pushes(touches: &[KeptTouch], walls: &mut [Wall]) {
+fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
     for wall in walls.iter_mut() {
         wall.slept_on = Push::default();
     }
-    for KeptTouch { wall, push, .. } in touches {
+    for FrozenWallContact { wall, push, .. } in touches {
         walls[*wall]
             .slept_on
             .add(push.force_n, push.torque_n_m, push.belt_w);
@@ -414,7 +418,7 @@ pub fn count_sleepers(state: &mut State) {
         return;
     };
     let p = &mut state.particles;
-    sleep.bodies = sleep.beds.iter().filter(|bed| bed.asleep).count();
+    sleep.bodies = sleep.of_cluster.iter().filter(|body| body.asleep).count();
     p.asleep.clear();
     if sleep.bodies > 0 {
         let of_particle = clusters.of_particle.iter();
@@ -427,7 +431,7 @@ pub fn count_sleepers(state: &mut State) {
         0 => 0,
         _ => (0..bonds.len()).filter(rests).count() as u64,
     };
-    state.shares = divide_awake(bonds, p.free, state.threads, &p.asleep);
+    state.partitions = divide_awake(bonds, p.free, state.threads, &p.asleep);
     for clump in &mut state.clumps.all {
         clump.asleep = sleep.is_asleep(clump.cluster);
     }

@@ -7,22 +7,24 @@ use rayon::prelude::*;
 use super::loads::factor_at;
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::Damped;
+use crate::physics::contact::kinematics::{
+    ContactKinematics, ContactSphere, WallPoint, torques, wall_contact_kinematics,
+};
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::touch::{Ball, Foot, Touch as Contact, torques, touch_at_wall};
-use crate::physics::contact::{History, NormalLaw, Response, response};
-use crate::physics::number::Triple;
+use crate::physics::contact::{ContactSprings, NormalLaw, Response, response};
+use crate::physics::number::Vec3;
 use crate::physics::rigid::turn;
 use crate::stages::contacts::{stored_energy_j, stored_force_n};
-use crate::state::contacts::{ContactKind, Contacts, Law, Memory, Rolling};
+use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
 use crate::state::particles::{Particles, Pose};
-use crate::state::walls::{Push, Wall, WallTouch};
+use crate::state::walls::{Push, Wall, WallContact};
 
 /// Particles handled by one task.
 const CHUNK: usize = 256;
 /// A contact that moves on to another flat part of a wall keeps what it remembers if the normal turns by less than that of this cosine.
 const SAME_WAY: f64 = 0.9;
-/// Share of what is missing that a servo makes good in a step.
+/// Fraction of what is missing that a servo makes good in a step.
 const SERVO: f64 = 0.1;
 
 /// Lists the particles whose surface is less than `skin_m` from a wall, without those that sleep.
@@ -96,7 +98,7 @@ pub fn wall_wrenches(
                 }
                 if !touches.is_empty() || !before.is_empty() {
                     let kind = wall.kind(materials[particle as usize]);
-                    let at = |there: &Touch, old: Option<&WallTouch>| {
+                    let at = |there: &Touch, old: Option<&WallContact>| {
                         meet_at(wall, kind, known, particle, there, old, *least_overlap, dt)
                     };
                     let first_found = found.len();
@@ -124,7 +126,7 @@ pub fn wall_wrenches(
 
 /// What a particle and a wall do to each other at one place.
 struct Met {
-    touch: WallTouch,
+    touch: WallContact,
     /// Feature of what is remembered.
     old: Option<u32>,
     /// Where, m.
@@ -162,7 +164,7 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     if met.crossed {
         wall.crossed = Some(met.touch.particle);
     }
-    if met.touch.memory != Memory::default() {
+    if met.touch.history != ContactHistory::default() {
         wall.touching.push(met.touch);
     }
 }
@@ -172,8 +174,8 @@ fn meet(
     frame: &Frame,
     pose: &Pose,
     touches: &[Touch],
-    before: &[WallTouch],
-    at: &dyn Fn(&Touch, Option<&WallTouch>) -> Met,
+    before: &[WallContact],
+    at: &dyn Fn(&Touch, Option<&WallContact>) -> Met,
     found: &mut Vec<Met>,
 ) {
     let first_found = found.len();
@@ -199,7 +201,7 @@ fn meet(
 }
 
 /// Whether a particle touches a solid from the other side than a step before: it went through one that is thinner than itself.
-fn comes_out_behind(touch: &WallTouch, before: &[WallTouch]) -> bool {
+fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
     let normal = Vector3::from(touch.normal);
     before
         .iter()
@@ -209,15 +211,15 @@ fn comes_out_behind(touch: &WallTouch, before: &[WallTouch]) -> bool {
 /// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat part to the next, that of a feature which it
 /// touches no more and whose normal was about the same.
 fn remembered<'a>(
-    before: &'a [WallTouch],
+    before: &'a [WallContact],
     touches: &[Touch],
     touch: &Touch,
     normal: &Vector3<f64>,
-) -> Option<&'a WallTouch> {
+) -> Option<&'a WallContact> {
     let same = before.iter().find(|old| old.feature == touch.feature);
     same.or_else(|| {
-        let left = |old: &&WallTouch| touches.iter().all(|t| t.feature != old.feature);
-        let alike = |old: &&WallTouch| Vector3::from(old.normal).dot(normal) > SAME_WAY;
+        let left = |old: &&WallContact| touches.iter().all(|t| t.feature != old.feature);
+        let alike = |old: &&WallContact| Vector3::from(old.normal).dot(normal) > SAME_WAY;
         before.iter().filter(left).find(alike)
     })
 }
@@ -229,7 +231,7 @@ fn meet_at(
     particles: &Particles,
     particle: u32,
     there: &Touch,
-    old: Option<&WallTouch>,
+    old: Option<&WallContact>,
     least_overlap: f64,
     dt: f64,
 ) -> Met {
@@ -244,55 +246,55 @@ fn meet_at(
     let [spin, _] = wall.spins_rad_s.map(Vector3::from);
     let belt = Vector3::from(wall.surface_velocity_m_s);
     let belt = belt - normal * belt.dot(&normal);
-    let foot = Foot {
+    let foot = WallPoint {
         normal: normal.into(),
         normal_before: old.map_or(normal, |old| old.normal.into()).into(),
         distance_m: there.distance_m,
         velocity_m_s: (velocity + spin.cross(&arm) + belt).into(),
         spin_rad_s: spin.into(),
     };
-    let ball = Ball {
+    let ball = ContactSphere {
         velocity_m_s: Vector3::from(motion.velocity_m_s).into(),
         spin_rad_s: Vector3::from(motion.spin_rad_s).into(),
-        ..particles.ball_at_rest(i)
+        ..particles.contact_sphere_at_rest(i)
     };
-    let mut touch = touch_at_wall(&foot, ball, dt);
-    let memory = old.map_or(Memory::default(), |old| old.memory);
-    let least_m = least_overlap * touch.radius_m;
-    let relaxed = relaxed(touch.overlap_m, memory.origin_m(), least_m);
+    let mut touch = wall_contact_kinematics(&foot, ball, dt);
+    let history = old.map_or(ContactHistory::default(), |old| old.history);
+    let least_m = least_overlap * touch.effective_radius_m;
+    let relaxed = relaxed(touch.overlap_m, history.origin_m(), least_m);
     touch.overlap_m = relaxed.overlap_m;
-    let vector = |[x, y, z, _]: [f64; 4]| Triple(x, y, z);
-    let history = History {
-        tangential_m: vector(memory.slid),
-        rolling_rad: vector(memory.rolled),
-        overlap_m: memory.overlap_m(),
+    let vector = |[x, y, z, _]: [f64; 4]| Vec3(x, y, z);
+    let springs = ContactSprings {
+        tangential_m: vector(history.tangential),
+        rolling_rad: vector(history.rolling),
+        overlap_m: history.overlap_m(),
     };
     let damped_before = Damped {
-        force_n: vector(memory.damped),
-        moment_n_m: vector(memory.rolling_damped),
+        force_n: vector(history.damping),
+        moment_n_m: vector(history.rolling_damping),
     };
     let Response {
-        history,
+        springs,
         force_on_b,
         moment_on_b,
         energy,
         lost,
         damping,
-    } = of_kind(kind, &touch, &history, dt);
+    } = of_kind(kind, &touch, &springs, dt);
     let damped = damping.total();
     let [_, torque] = torques(&touch, force_on_b, moment_on_b);
-    let row = |Triple(x, y, z): Triple<f64>, last: f64| [x, y, z, last];
+    let row = |Vec3(x, y, z): Vec3<f64>, last: f64| [x, y, z, last];
     Met {
         old: old.map(|old| old.feature),
-        touch: WallTouch {
+        touch: WallContact {
             particle,
             feature: there.feature,
             normal: normal.into(),
-            memory: Memory {
-                slid: row(history.tangential_m, history.overlap_m),
-                damped: row(damped.force_n, relaxed.origin_m),
-                rolled: row(history.rolling_rad, 0.0),
-                rolling_damped: row(damped.moment_n_m, 0.0),
+            history: ContactHistory {
+                tangential: row(springs.tangential_m, springs.overlap_m),
+                damping: row(damped.force_n, relaxed.origin_m),
+                rolling: row(springs.rolling_rad, 0.0),
+                rolling_damping: row(damped.moment_n_m, 0.0),
             },
         },
         point,
@@ -307,7 +309,7 @@ fn meet_at(
         ],
         crossed: touch.overlap_m > ball.radius_m
             || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
-        stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.radius_m),
+        stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.effective_radius_m),
     }
 }
 
@@ -316,14 +318,14 @@ pub fn push_at_rest(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
-    old: &WallTouch,
+    old: &WallContact,
 ) -> Push {
     let pose = &particles.poses[old.particle as usize];
     let there = Touch {
         point: pose.place().into(),
         feature: old.feature,
         normal: old.normal.map(|n| -n),
-        distance_m: pose.radius_m() - old.memory.overlap_m() - old.memory.origin_m(),
+        distance_m: pose.radius_m() - old.history.overlap_m() - old.history.origin_m(),
     };
     let kind = wall.kind(contacts.materials[old.particle as usize]);
     let met = meet_at(
@@ -344,20 +346,20 @@ pub fn push_at_rest(
 }
 
 /// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it overlaps by `overlap_m`.
-pub fn wall_touch(
+pub fn wall_contact(
     particles: &Particles,
     i: usize,
     normal: &Vector3<f64>,
     overlap_m: f64,
-) -> Contact {
-    let foot = Foot {
+) -> ContactKinematics {
+    let foot = WallPoint {
         normal: (*normal).into(),
         normal_before: (*normal).into(),
         distance_m: particles.poses[i].radius_m() - overlap_m,
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
+        velocity_m_s: Vec3(0.0, 0.0, 0.0),
+        spin_rad_s: Vec3(0.0, 0.0, 0.0),
     };
-    touch_at_wall(&foot, particles.ball_at_rest(i), 0.0)
+    wall_contact_kinematics(&foot, particles.contact_sphere_at_rest(i), 0.0)
 }
 
 /// Elastic energy of something that touches a wall, as it was taken down, J.
@@ -365,7 +367,7 @@ pub fn touch_energy_j(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
-    touch: &WallTouch,
+    touch: &WallContact,
 ) -> f64 {
     let kind = wall.kind(contacts.materials[touch.particle as usize]);
     match &kind.law {
@@ -379,14 +381,14 @@ pub fn touch_force_n(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
-    old: &WallTouch,
+    old: &WallContact,
 ) -> Vector3<f64> {
-    let (i, memory) = (old.particle as usize, &old.memory);
-    let mut touch = wall_touch(particles, i, &old.normal.into(), memory.overlap_m());
-    touch.overlap_m = memory.overlap_m();
+    let (i, history) = (old.particle as usize, &old.history);
+    let mut touch = wall_contact(particles, i, &old.normal.into(), history.overlap_m());
+    touch.overlap_m = history.overlap_m();
     match &wall.kind(contacts.materials[i]).law {
-        Law::HertzMindlin(law) => stored_force_n(law, &touch, memory),
-        Law::Linear(law) => stored_force_n(law, &touch, memory),
+        Law::HertzMindlin(law) => stored_force_n(law, &touch, history),
+        Law::Linear(law) => stored_force_n(law, &touch, history),
     }
 }
 
@@ -407,16 +409,21 @@ fn stored_j(
     law: &impl NormalLaw<f64>,
     rolling: &Rolling,
     particles: &Particles,
-    old: &WallTouch,
+    old: &WallContact,
 ) -> f64 {
-    let (i, memory) = (old.particle as usize, &old.memory);
-    let mut touch = wall_touch(particles, i, &old.normal.into(), memory.overlap_m());
-    touch.overlap_m = memory.overlap_m();
-    stored_energy_j(law, rolling, &touch, memory)
+    let (i, history) = (old.particle as usize, &old.history);
+    let mut touch = wall_contact(particles, i, &old.normal.into(), history.overlap_m());
+    touch.overlap_m = history.overlap_m();
+    stored_energy_j(law, rolling, &touch, history)
 }
 
 /// The laws of a kind of contact.
-fn of_kind(kind: &ContactKind, touch: &Contact, history: &History, dt: f64) -> Response {
+fn of_kind(
+    kind: &ContactKind,
+    touch: &ContactKinematics,
+    history: &ContactSprings,
+    dt: f64,
+) -> Response {
     match &kind.law {
         Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch, history, dt),
         Law::Linear(law) => with_law(law, &kind.rolling, touch, history, dt),
@@ -426,8 +433,8 @@ fn of_kind(kind: &ContactKind, touch: &Contact, history: &History, dt: f64) -> R
 fn with_law(
     law: &impl NormalLaw<f64>,
     rolling: &Rolling,
-    touch: &Contact,
-    history: &History,
+    touch: &ContactKinematics,
+    history: &ContactSprings,
     dt: f64,
 ) -> Response {
     match rolling {

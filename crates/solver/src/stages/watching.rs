@@ -7,8 +7,8 @@ use super::contacts::{overlap_m, pair_force_n};
 use super::walls::{gap_m, touch_force_n};
 use crate::clock::Stage;
 use crate::state::State;
-use crate::state::contacts::{Contacts, Memory};
-use crate::state::walls::{Wall, WallTouch};
+use crate::state::contacts::{ContactHistory, Contacts};
+use crate::state::walls::{Wall, WallContact};
 use crate::state::watches::{Seen, Watch, Watched};
 use dem_io::scene::Quantity;
 
@@ -114,23 +114,23 @@ impl Met {
         sign: impl Fn([u32; 2]) -> Option<f64>,
     ) {
         let p = &state.particles;
-        for (&pair, memory) in contacts.pairs.iter().zip(&contacts.memories) {
+        for (&pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
             let Some(sign) = sign(pair) else {
                 continue;
             };
-            if memory.overlap_m() > 0.0 {
-                self.force_n += sign * pair_force_n(contacts, p, pair, memory);
-                self.overlap_m = self.overlap_m.max(memory.overlap_m());
+            if history.overlap_m() > 0.0 {
+                self.force_n += sign * pair_force_n(contacts, p, pair, history);
+                self.overlap_m = self.overlap_m.max(history.overlap_m());
             } else if self.overlap_m <= 0.0 {
-                let apart_m = memory.origin_m() - overlap_m(&p.poses, pair);
+                let apart_m = history.origin_m() - overlap_m(&p.poses, pair);
                 self.overlap_m = self.overlap_m.max(-apart_m.max(0.0));
             }
         }
         for kept in state.sleep.iter().flat_map(|sleep| &sleep.pairs) {
             if let Some(sign) = sign(kept.pair) {
-                let memory = at_rest(&kept.memory);
-                self.force_n += sign * pair_force_n(contacts, p, kept.pair, &memory);
-                self.overlap_m = self.overlap_m.max(memory.overlap_m());
+                let history = at_rest(&kept.history);
+                self.force_n += sign * pair_force_n(contacts, p, kept.pair, &history);
+                self.overlap_m = self.overlap_m.max(history.overlap_m());
             }
         }
     }
@@ -143,17 +143,17 @@ impl Met {
         (number, wall): (usize, &Wall),
         of: &[bool],
     ) {
-        let mut add = |touch: &WallTouch| {
-            if of[touch.particle as usize] && touch.memory.overlap_m() > 0.0 {
+        let mut add = |touch: &WallContact| {
+            if of[touch.particle as usize] && touch.history.overlap_m() > 0.0 {
                 self.force_n += touch_force_n(wall, contacts, &state.particles, touch);
-                self.overlap_m = self.overlap_m.max(touch.memory.overlap_m());
+                self.overlap_m = self.overlap_m.max(touch.history.overlap_m());
             }
         };
         wall.touching.iter().for_each(&mut add);
         let kept = state.sleep.iter().flat_map(|sleep| &sleep.touches);
         for kept in kept.filter(|kept| kept.wall == number) {
-            add(&WallTouch {
-                memory: at_rest(&kept.touch.memory),
+            add(&WallContact {
+                history: at_rest(&kept.touch.history),
                 ..kept.touch
             });
         }
@@ -161,10 +161,10 @@ impl Met {
 }
 
 /// What a contact of bodies that sleep remembers, without its damping: nothing moves.
-fn at_rest(memory: &Memory) -> Memory {
-    let [.., origin_m] = memory.damped;
-    Memory {
-        damped: [0.0, 0.0, 0.0, origin_m],
-        ..*memory
+fn at_rest(history: &ContactHistory) -> ContactHistory {
+    let [.., origin_m] = history.damping;
+    ContactHistory {
+        damping: [0.0, 0.0, 0.0, origin_m],
+        ..*history
     }
 }

@@ -86,7 +86,7 @@ impl BondBlock {
 /// Stiffness in bending of a round bond, N m/rad, from that along it, N/m: E I/L0 from E A/L0.
 #[inline(always)]
 pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
-    normal.times(0.25) * radius_m * radius_m
+    normal.scale(0.25) * radius_m * radius_m
 }
 
 /// All bonds of a scene, sorted by their first particle and then by their second.
@@ -108,8 +108,8 @@ pub struct Bonds {
     pub rules: Vec<BondRule>,
     /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the material only.
     pub torsion_per_bending: Vec<f64>,
-    /// Ends of stretches of bonds that follow the same rule, and the rule.
-    pub stretches: Vec<(usize, usize)>,
+    /// Ends of rule_runs of bonds that follow the same rule, and the rule.
+    pub rule_runs: Vec<(usize, usize)>,
 }
 
 impl Bonds {
@@ -160,9 +160,9 @@ impl Bonds {
         }
         self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
         let end = self.len();
-        match self.stretches.last_mut() {
+        match self.rule_runs.last_mut() {
             Some((last, of)) if *of == rule => *last = end,
-            _ => self.stretches.push((end, rule)),
+            _ => self.rule_runs.push((end, rule)),
         }
     }
 
@@ -276,15 +276,15 @@ impl Bonds {
 
     /// Number of the rule that bond `at` follows.
     pub fn rule_of(&self, at: usize) -> usize {
-        let stretch = self.stretches.partition_point(|(end, _)| *end <= at);
-        self.stretches[stretch].1
+        let stretch = self.rule_runs.partition_point(|(end, _)| *end <= at);
+        self.rule_runs[stretch].1
     }
 
-    /// The stretches of bonds of one rule that a range of bonds consists of: rule and bonds.
+    /// The rule_runs of bonds of one rule that a range of bonds consists of: rule and bonds.
     pub fn runs(&self, range: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
-        let starts = std::iter::once(0).chain(self.stretches.iter().map(|(end, _)| *end));
+        let starts = std::iter::once(0).chain(self.rule_runs.iter().map(|(end, _)| *end));
         starts
-            .zip(&self.stretches)
+            .zip(&self.rule_runs)
             .map(move |(start, &(end, rule))| (rule, start.max(range.start)..end.min(range.end)))
             .filter(|(_, run)| run.start < run.end)
     }

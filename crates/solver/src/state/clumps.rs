@@ -58,7 +58,7 @@ pub struct Scatter {
     pub modulus: f64,
 }
 
-/// What clumps of one shape have in common. Kept once, however many there are.
+/// What clumps of one shape have in common. Stored once, however many there are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// Name of the body in the scene.

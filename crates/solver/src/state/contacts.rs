@@ -51,23 +51,23 @@ pub struct ContactKind {
 /// What a contact remembers. Two cache lines, of which contacts without rolling friction use the first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
-pub struct Memory {
+pub struct ContactHistory {
     /// Tangential spring x, y, z and the overlap of the law, m.
-    pub slid: [f64; 4],
+    pub tangential: [f64; 4],
     /// Damping force on the second end x, y, z, N, and the overlap at which the law begins, m, which is 0 but for pairs that
     /// [parted overlapping](crate::physics::contact::relaxation).
-    pub damped: [f64; 4],
+    pub damping: [f64; 4],
     /// Rolling spring x, y, z, rad, and nothing.
-    pub rolled: [f64; 4],
+    pub rolling: [f64; 4],
     /// Damping moment on the second end x, y, z, N m, and nothing.
-    pub rolling_damped: [f64; 4],
+    pub rolling_damping: [f64; 4],
 }
 
-impl Memory {
+impl ContactHistory {
     /// Of a pair whose law begins at this overlap, m.
     pub fn parted_at(overlap_m: f64) -> Self {
         Self {
-            damped: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
+            damping: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
             ..Self::default()
         }
     }
@@ -75,32 +75,32 @@ impl Memory {
     /// Of a pair whose law has been pressed by this overlap, m, and by nothing else.
     pub fn pressed_by(overlap_m: f64) -> Self {
         Self {
-            slid: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
+            tangential: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
             ..Self::default()
         }
     }
 
     /// The same of a pair that is named the other way round.
-    pub fn turned_round(&self) -> Self {
+    pub fn reversed(&self) -> Self {
         let back = |[x, y, z, last]: [f64; 4]| [-x, -y, -z, last];
         Self {
-            slid: back(self.slid),
-            damped: back(self.damped),
-            rolled: back(self.rolled),
-            rolling_damped: back(self.rolling_damped),
+            tangential: back(self.tangential),
+            damping: back(self.damping),
+            rolling: back(self.rolling),
+            rolling_damping: back(self.rolling_damping),
         }
     }
 
     /// Overlap of the law, m; above 0 where the two press on each other.
     #[inline(always)]
     pub fn overlap_m(&self) -> f64 {
-        self.slid[3]
+        self.tangential[3]
     }
 
     /// Overlap at which the law begins, m.
     #[inline(always)]
     pub fn origin_m(&self) -> f64 {
-        self.damped[3]
+        self.damping[3]
     }
 }
 
@@ -116,21 +116,21 @@ pub struct Contacts {
     /// Pairs that touch or are near, the smaller index first, sorted.
     pub pairs: Vec<[u32; 2]>,
     /// What each remembers. Length as `pairs`.
-    pub memories: Vec<Memory>,
+    pub histories: Vec<ContactHistory>,
     /// Who works on what.
-    pub shares: Vec<ContactShare>,
-    /// Number of shares that was asked for: few contacts make fewer.
-    pub wanted_shares: usize,
+    pub partitions: Vec<ContactPartition>,
+    /// Number of partitions that was asked for: few contacts make fewer.
+    pub wanted_partitions: usize,
     /// Surfaces closer than this were near when pairs were looked for, m.
     pub skin_m: f64,
     /// What every particle may move before pairs have to be looked for again, m.
-    pub room_m: f64,
+    pub skin_left_m: f64,
     /// What the fastest particle moved in the last step, m.
     pub moved_m: f64,
     /// Of the near pairs those that were closer than this when all were looked at are computed, m.
     pub close_m: f64,
     /// What every particle may move before all are looked at again, m: that is due at 0.
-    pub close_room_m: f64,
+    pub close_skin_left_m: f64,
     /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No pairs are looked for.
     pub alone: bool,
     /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
@@ -142,12 +142,12 @@ pub struct Contacts {
     /// The same of particles that are no more, J.
     pub lost_by_gone_j: [f64; 2],
     /// The first pair that is pressed into each other by more than the radius of the smaller one, of this step.
-    pub swallowed: Option<[u32; 2]>,
+    pub excessive_overlap: Option<[u32; 2]>,
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ContactShare {
+pub struct ContactPartition {
     /// Its particles.
     pub particles: Range<usize>,
     /// Its contacts: their first particles are its own.
@@ -155,7 +155,7 @@ pub struct ContactShare {
     /// Contacts of which only the second particle is its own.
     pub border: Vec<u32>,
     /// What those remembered before this step.
-    pub border_memories: Vec<Memory>,
+    pub border_histories: Vec<ContactHistory>,
     /// For each kind the contacts that were close when all were looked at, or at the look before: numbers in `border`, and in all.
     pub close: Vec<[Vec<u32>; 2]>,
     /// Which of its contacts were close when all were looked at: a bit for each, eight to a byte.
@@ -164,8 +164,8 @@ pub struct ContactShare {
     pub computed: usize,
     /// How many of those with rolling friction.
     pub rolled: usize,
-    /// See [`Contacts::swallowed`].
-    pub swallowed: Option<[u32; 2]>,
+    /// See [`Contacts::excessive_overlap`].
+    pub excessive_overlap: Option<[u32; 2]>,
 }
 
 impl Contacts {
@@ -183,31 +183,31 @@ impl Contacts {
     /// Takes a new list of pairs; pairs that were listed before keep what they remember. The overlap of one that is listed for the first time is the
     /// origin of its law: there was nothing between the two before, be it a bond or nothing at all.
     pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64) {
-        let mut before = self.pairs.iter().zip(&self.memories).peekable();
-        let memories = pairs
+        let mut before = self.pairs.iter().zip(&self.histories).peekable();
+        let histories = pairs
             .iter()
             .map(|pair| {
                 while before.next_if(|(old, _)| *old < pair).is_some() {}
                 match before.peek() {
-                    Some((old, memory)) if *old == pair => **memory,
-                    _ => Memory::parted_at(overlap_m(*pair)),
+                    Some((old, history)) if *old == pair => **history,
+                    _ => ContactHistory::parted_at(overlap_m(*pair)),
                 }
             })
             .collect();
-        self.memories = memories;
+        self.histories = histories;
         self.pairs = pairs;
     }
 
     /// How many pairs begin their law at an overlap that they parted with.
     pub fn relaxing(&self) -> usize {
-        let relaxes = |memory: &&Memory| memory.origin_m() > 0.0;
-        self.memories.iter().filter(relaxes).count()
+        let relaxes = |history: &&ContactHistory| history.origin_m() > 0.0;
+        self.histories.iter().filter(relaxes).count()
     }
 
-    /// Divides the contacts into `count` shares of about the same number each.
+    /// Divides the contacts into `count` partitions of about the same number each.
     pub fn divide(&mut self, particles: usize, count: usize) {
-        self.wanted_shares = count;
-        self.close_room_m = 0.0;
+        self.wanted_partitions = count;
+        self.close_skin_left_m = 0.0;
         let wanted = self.pairs.len().div_ceil(count).max(1);
         let mut starts = vec![0];
         for k in 1..count {
@@ -220,38 +220,38 @@ impl Contacts {
         }
         starts.push(particles);
         starts.dedup();
-        self.shares = starts
+        self.partitions = starts
             .windows(2)
             .map(|w| {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
                 let own = first_of(w[0])..first_of(w[1]);
-                let remembers = |memory: &Memory| *memory != Memory::default();
-                let was_close = self.memories[own.clone()].chunks(8).map(|eight| {
-                    (0..).zip(eight).fold(0, |bits, (lane, memory)| {
-                        bits | u8::from(remembers(memory)) << lane
+                let remembers = |history: &ContactHistory| *history != ContactHistory::default();
+                let was_close = self.histories[own.clone()].chunks(8).map(|eight| {
+                    (0..).zip(eight).fold(0, |bits, (lane, history)| {
+                        bits | u8::from(remembers(history)) << lane
                     })
                 });
-                ContactShare {
+                ContactPartition {
                     particles: w[0]..w[1],
                     was_close: was_close.collect(),
                     own,
                     border: Vec::new(),
-                    border_memories: Vec::new(),
-                    swallowed: None,
+                    border_histories: Vec::new(),
+                    excessive_overlap: None,
                     close: vec![Default::default(); self.kinds.len()],
                     computed: 0,
                     rolled: 0,
                 }
             })
             .collect();
-        for s in 0..self.shares.len() {
-            for at in self.shares[s].own.clone() {
+        for s in 0..self.partitions.len() {
+            for at in self.partitions[s].own.clone() {
                 let b = self.pairs[at][1] as usize;
-                if b >= self.shares[s].particles.end {
+                if b >= self.partitions[s].particles.end {
                     let of_b = self
-                        .shares
-                        .partition_point(|share| share.particles.end <= b);
-                    self.shares[of_b].border.push(at as u32);
+                        .partitions
+                        .partition_point(|partition| partition.particles.end <= b);
+                    self.partitions[of_b].border.push(at as u32);
                 }
             }
         }

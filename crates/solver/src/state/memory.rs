@@ -11,10 +11,13 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
     let (p, b) = (&state.particles, &state.bonds);
     match stage {
         Stage::Bonds => {
-            let of_shares = state.shares.iter().flat_map(|share| &share.batches);
+            let of_partitions = state
+                .partitions
+                .iter()
+                .flat_map(|partition| &partition.batches);
             size_of_val(&b.ends[..])
                 + size_of_val(&b.blocks[..])
-                + of_shares
+                + of_partitions
                     .map(|batch| 4 * batch.which.listed())
                     .sum::<usize>()
         }
@@ -35,12 +38,12 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
             clusters_for(state, stage) + watched.sum::<usize>()
         }
         Stage::Contacts => state.contacts.as_ref().map_or(0, |c| {
-            let of_shares = c.shares.iter().map(|share| {
-                size_of_val(&share.border[..])
-                    + size_of_val(&share.border_memories[..])
-                    + share.was_close.len()
+            let of_partitions = c.partitions.iter().map(|partition| {
+                size_of_val(&partition.border[..])
+                    + size_of_val(&partition.border_histories[..])
+                    + partition.was_close.len()
             });
-            size_of_val(&c.memories[..]) + of_shares.sum::<usize>()
+            size_of_val(&c.histories[..]) + of_partitions.sum::<usize>()
         }),
         Stage::Walls => {
             let of_wall = |wall: &super::walls::Wall| {
@@ -56,7 +59,7 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
                 + templates.map(|template| template.bytes()).sum::<usize>()
         }
         Stage::Sleep => state.sleep.as_ref().map_or(0, |sleep| {
-            size_of_val(&sleep.beds[..])
+            size_of_val(&sleep.of_cluster[..])
                 + size_of_val(&sleep.pairs[..])
                 + size_of_val(&sleep.touches[..])
                 + p.asleep.len()
@@ -80,7 +83,7 @@ pub fn bytes(state: &State, stage: Stage) -> usize {
         | Stage::Replacement
         | Stage::Population
         | Stage::Gravity
-        | Stage::Ledger
+        | Stage::EnergyLedger
         | Stage::Checks => 0,
     }
 }

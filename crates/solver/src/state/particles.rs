@@ -4,8 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::total::End;
-use crate::physics::contact::touch::Ball;
-use crate::physics::number::Triple;
+use crate::physics::contact::kinematics::ContactSphere;
+use crate::physics::number::Vec3;
 use crate::state::clumps::rotation;
 
 /// Where a particle is and how it is turned. One cache line.
@@ -161,10 +161,10 @@ impl Particles {
     }
 
     /// Particle `i` as contacts see it, at rest.
-    pub fn ball_at_rest(&self, i: usize) -> Ball {
-        Ball {
-            velocity_m_s: Triple(0.0, 0.0, 0.0),
-            spin_rad_s: Triple(0.0, 0.0, 0.0),
+    pub fn contact_sphere_at_rest(&self, i: usize) -> ContactSphere {
+        ContactSphere {
+            velocity_m_s: Vec3(0.0, 0.0, 0.0),
+            spin_rad_s: Vec3(0.0, 0.0, 0.0),
             radius_m: self.poses[i].radius_m(),
             inverse_mass_per_kg: self.motions[i].inverse_mass,
             inverse_inertia_per_kg_m2: self.motions[i].inverse_inertia,

@@ -65,7 +65,7 @@ pub struct Inlet {
     /// Largest number of bodies.
     pub count: u32,
     /// How far it has come.
-    pub come: Come,
+    pub progress: InletProgress,
 }
 
 impl Inlet {
@@ -78,8 +78,8 @@ impl Inlet {
         }
         let per_s = match self.feed {
             Feed::Number(per_s) => per_s,
-            Feed::Mass(_) if self.come.bodies == 0 => 0.0,
-            Feed::Mass(kg_s) => kg_s / self.come.mass_kg * f64::from(self.come.bodies),
+            Feed::Mass(_) if self.progress.bodies == 0 => 0.0,
+            Feed::Mass(kg_s) => kg_s / self.progress.mass_kg * f64::from(self.progress.bodies),
         };
         // The first is due at once, and none at the end.
         let should = if time_s < end_s {
@@ -87,13 +87,13 @@ impl Inlet {
         } else {
             (since_s * per_s).ceil()
         };
-        (should.min(f64::from(self.count)) as u32).saturating_sub(self.come.bodies)
+        (should.min(f64::from(self.count)) as u32).saturating_sub(self.progress.bodies)
     }
 }
 
 /// How far an inlet has come.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Come {
+pub struct InletProgress {
     /// Bodies that have come.
     pub bodies: u32,
     /// Their mass, kg.
@@ -115,8 +115,17 @@ pub struct Outlet {
     pub region: usize,
     /// What is outside of the region goes; else what is inside.
     pub removes_outside: bool,
-    /// Bodies and fragments that have gone, and their mass, kg.
-    pub gone: (u32, f64),
+    /// Bodies and fragments that it has removed.
+    pub removed: OutletTotals,
+}
+
+/// What an outlet has removed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct OutletTotals {
+    /// Bodies and fragments.
+    pub bodies: u32,
+    /// Their mass, kg.
+    pub mass_kg: f64,
 }
 
 /// All of it.

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contacts::Memory;
-use super::walls::{Push, WallTouch};
+use super::contacts::ContactHistory;
+use super::walls::{Push, WallContact};
 
 /// Bodies that sleep, by the numbers of their clusters: clumps as well as clusters.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,11 +13,11 @@ pub struct Sleep {
     /// It has been as slow for so long, s.
     pub after_s: f64,
     /// For each cluster whether it sleeps, and since when it has been slow, s (infinite: it is not). Clusters beyond the end are awake and not slow.
-    pub beds: Vec<Bed>,
+    pub of_cluster: Vec<ClusterSleep>,
     /// Contacts between particles that sleep, by pair. They are in no list of contacts.
-    pub pairs: Vec<KeptPair>,
+    pub pairs: Vec<FrozenContact>,
     /// Contacts between particles that sleep and walls, by wall and particle.
-    pub touches: Vec<KeptTouch>,
+    pub touches: Vec<FrozenWallContact>,
     /// Number of bodies that sleep.
     pub bodies: usize,
     /// Number of their particles.
@@ -27,21 +27,21 @@ pub struct Sleep {
     /// Particles times steps that were done, and that were left out.
     pub particle_steps: [u64; 2],
     /// Bodies that fell asleep or woke in this step.
-    pub news: Vec<News>,
+    pub events: Vec<SleepEvent>,
     /// Lists are to be made from what a checkpoint holds: nobody wakes of it.
     pub is_resumed: bool,
 }
 
 /// What is known of a cluster.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Bed {
+pub struct ClusterSleep {
     /// Whether it sleeps.
     pub asleep: bool,
     /// Since when no point of it has been fast, s; infinite: since never.
     pub slow_since_s: f64,
 }
 
-impl Bed {
+impl ClusterSleep {
     /// Of a body that is awake and moves.
     pub const AWAKE: Self = Self {
         asleep: false,
@@ -51,22 +51,22 @@ impl Bed {
 
 /// A contact between two particles that sleep.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KeptPair {
+pub struct FrozenContact {
     /// The smaller number first.
     pub pair: [u32; 2],
     /// What it remembers.
-    pub memory: Memory,
+    pub history: ContactHistory,
     /// J.
     pub elastic_j: f64,
 }
 
 /// A contact between a particle that sleeps and a wall at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KeptTouch {
+pub struct FrozenWallContact {
     /// Which wall.
     pub wall: usize,
     /// What it remembers.
-    pub touch: WallTouch,
+    pub touch: WallContact,
     /// What the wall does to the particle.
     pub push: Push,
     /// J.
@@ -75,7 +75,7 @@ pub struct KeptTouch {
 
 /// Bodies that fell asleep or woke together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct News {
+pub struct SleepEvent {
     /// At this step.
     pub step: u64,
     /// s.
@@ -100,8 +100,8 @@ impl Sleep {
 
     /// Whether a cluster sleeps.
     pub fn is_asleep(&self, cluster: u32) -> bool {
-        let bed = self.beds.get(cluster as usize);
-        bed.is_some_and(|bed| bed.asleep)
+        let body = self.of_cluster.get(cluster as usize);
+        body.is_some_and(|body| body.asleep)
     }
 
     /// Elastic energy of the contacts that are kept, J.

@@ -3,7 +3,7 @@
 use dem_io::scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
-use super::contacts::{ContactKind, Memory};
+use super::contacts::{ContactHistory, ContactKind};
 use crate::geometry::{Bounds, Frame, Shape};
 
 /// A wall of the scene.
@@ -30,7 +30,7 @@ pub struct Wall {
     /// Particles that are near, rising.
     pub near: Vec<u32>,
     /// What touches it, by particle and then by feature.
-    pub touching: Vec<WallTouch>,
+    pub touching: Vec<WallContact>,
     /// What it does to the particles that touch it.
     pub push: Push,
     /// The part of that which is damping.
@@ -108,7 +108,7 @@ impl Wall {
 
 /// A particle that touches a wall, and what is remembered of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WallTouch {
+pub struct WallContact {
     /// Which particle.
     pub particle: u32,
     /// Where on the wall: see [`crate::geometry::Touch`].
@@ -116,7 +116,7 @@ pub struct WallTouch {
     /// Unit vector from the wall to the centre. Length 3.
     pub normal: [f64; 3],
     /// Springs, overlap and origin.
-    pub memory: Memory,
+    pub history: ContactHistory,
 }
 
 /// What a wall does to the particles that touch it, together.

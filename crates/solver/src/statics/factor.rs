@@ -28,7 +28,7 @@ pub enum NoFactor {
     /// A pivot is zero, negative or not a number: the matrix is not positive definite; or of one that is not symmetric, singular.
     Pivot,
     /// They do not fit into memory.
-    Memory,
+    ContactHistory,
 }
 
 impl Factor {
@@ -39,12 +39,12 @@ impl Factor {
     pub fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
         let pattern = pattern(matrix);
         if !matrix.symmetric {
-            let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::Memory)?;
+            let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::ContactHistory)?;
             return Ok(Self::Gauss(symbolic, None));
         }
         let usual = (Default::default(), Default::default());
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, usual.0, usual.1);
-        let symbolic = symbolic.map_err(|_| NoFactor::Memory)?;
+        let symbolic = symbolic.map_err(|_| NoFactor::ContactHistory)?;
         Ok(Self::Cholesky(symbolic, Vec::new()))
     }
 
@@ -67,12 +67,12 @@ impl Factor {
                 if entries.is_empty() {
                     let needed = symbolic.len_val();
                     let got = entries.try_reserve_exact(needed);
-                    got.map_err(|_| NoFactor::Memory)?;
+                    got.map_err(|_| NoFactor::ContactHistory)?;
                     entries.resize(needed, 0.0);
                 }
                 let room =
                     symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-                let mut room = MemBuffer::try_new(room).map_err(|_| NoFactor::Memory)?;
+                let mut room = MemBuffer::try_new(room).map_err(|_| NoFactor::ContactHistory)?;
                 let done = symbolic.factorize_numeric_llt(
                     entries,
                     values,
@@ -93,7 +93,7 @@ impl Factor {
                 let new = Lu::try_new_with_symbolic(symbolic.clone(), values);
                 *factors = Some(new.map_err(|error| match error {
                     faer::sparse::linalg::LuError::SymbolicSingular { .. } => NoFactor::Pivot,
-                    faer::sparse::linalg::LuError::Generic(_) => NoFactor::Memory,
+                    faer::sparse::linalg::LuError::Generic(_) => NoFactor::ContactHistory,
                 })?);
                 Ok(())
             }

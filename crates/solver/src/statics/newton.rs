@@ -73,7 +73,7 @@ pub enum Cause {
     /// The steps do not come to an end.
     NoConvergence,
     /// The factors do not fit into memory.
-    Memory,
+    ContactHistory,
     /// It was told to stop.
     Interrupted,
 }
@@ -83,7 +83,7 @@ pub enum Cause {
 pub struct Unsolved {
     /// Why it ended.
     pub cause: Cause,
-    /// Share of loads and displacements for which an equilibrium was found.
+    /// Fraction of loads and displacements for which an equilibrium was found.
     pub share: f64,
     /// Residual over the largest bond force at the end of the last try.
     pub residual: f64,
@@ -121,7 +121,7 @@ pub fn equilibrium(
     let symmetric = !freedoms.has_free_torques(state);
     let matrix = Matrix::pattern(state, &freedoms, symmetric);
     let out_of_memory = |_| Unsolved {
-        cause: Cause::Memory,
+        cause: Cause::ContactHistory,
         share: 0.0,
         residual: 1.0,
     };
@@ -150,7 +150,7 @@ pub fn equilibrium(
             Err(cause) => {
                 search.state.particles.poses = before;
                 by = 0.5 * (to - share);
-                let is_hopeless = matches!(cause, Cause::Memory | Cause::Interrupted);
+                let is_hopeless = matches!(cause, Cause::ContactHistory | Cause::Interrupted);
                 if is_hopeless || by < SMALLEST {
                     return Err(Unsolved {
                         cause,
@@ -257,7 +257,7 @@ impl Search<'_> {
             .assemble(bonds, &self.freedoms, &particles.poses);
         self.factor.compute(&self.matrix).map_err(|why| match why {
             NoFactor::Pivot => Cause::Pivot,
-            NoFactor::Memory => Cause::Memory,
+            NoFactor::ContactHistory => Cause::ContactHistory,
         })
     }
 
@@ -266,10 +266,10 @@ impl Search<'_> {
         let State {
             bonds,
             particles,
-            shares,
+            partitions,
             ..
         } = &mut *self.state;
-        bond_wrenches(bonds, &particles.poses, shares, &mut particles.wrenches);
+        bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
         let unknowns = self.freedoms.unknowns();
         unknowns
             .map(|(i, k)| six(&particles.wrenches[i])[k] + share * self.load[i][k])

@@ -15,7 +15,7 @@ use super::newton::Equilibrium;
 use crate::check::ledger::Balance;
 use crate::clusters::fragments as fragments_of;
 use crate::machine::machine;
-use crate::measure::Gauge;
+use crate::measure::Probe;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
 use crate::output::inputs::Inputs;
@@ -136,7 +136,7 @@ impl EquilibriumSummary {
 pub(super) struct AtRest<'a> {
     pub(super) state: &'a State,
     pub(super) scene: &'a Scene,
-    pub(super) gauges: &'a [Gauge],
+    pub(super) probes: &'a [Probe],
     pub(super) balance: &'a Balance,
     pub(super) masses: &'a BTreeMap<String, BodyMass>,
 }
@@ -189,7 +189,7 @@ impl AtRest<'_> {
             momentum_error: f64::NAN,
             angular_momentum_error: f64::NAN,
             ledger: *self.balance,
-            measures: self.gauges.iter().map(Gauge::result).collect(),
+            measures: self.probes.iter().map(Probe::result).collect(),
             time_by_stage: Vec::new(),
             left_out: Vec::new(),
             notes,
@@ -214,7 +214,7 @@ impl AtRest<'_> {
         measured: &[f64],
         summary: &Summary,
     ) -> Result<()> {
-        let columns = series::columns(self.scene.walls.keys(), self.gauges);
+        let columns = series::columns(self.scene.walls.keys(), self.probes);
         let mut rows = SeriesFile::create(&folder.series(), &columns)?;
         rows.append(
             self.state.time_s,

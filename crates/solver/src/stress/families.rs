@@ -10,7 +10,7 @@ use crate::physics::bond::stiffness::BondModel;
 
 const TIMOSHENKO: (BondModel, &str) = (BondModel::Timoshenko, "timoshenko");
 
-/// Three equal spheres, the second bond so much thinner than the first that it is softer by the ratio.
+/// Three equal spheres, the second bond so much thinner than the first that it is stiffness_ratio by the ratio.
 ///
 /// # Errors
 /// None: these are bodies.

@@ -70,7 +70,7 @@ impl Impact {
         }
     }
 
-    /// Share of the relative velocity that each of the two loses and gains, times (1 + e): m* over the mass of the first, and over that of the second.
+    /// Fraction of the relative velocity that each of the two loses and gains, times (1 + e): m* over the mass of the first, and over that of the second.
     fn shares(&self) -> [f64; 2] {
         match self.target {
             Target::Plane | Target::Sheet => [1.0, 0.0],

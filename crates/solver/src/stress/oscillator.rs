@@ -86,7 +86,7 @@ impl Row {
         self.share * bonds.map(of_bond).fold(f64::INFINITY, f64::min)
     }
 
-    /// Modes of the stretches of the bonds: square of the circular frequency, 1/s2, and what the last stretched bond puts into each stretch by it,
+    /// Modes of the rule_runs of the bonds: square of the circular frequency, 1/s2, and what the last stretched bond puts into each stretch by it,
     /// over that stretch.
     fn modes(&self) -> Vec<(f64, Vec<f64>)> {
         let m = |sphere: usize| self.mass_kg(sphere);
@@ -94,7 +94,7 @@ impl Row {
         if self.distances_m.len() == 1 {
             return vec![(k(0) * (1.0 / m(0) + 1.0 / m(1)), vec![1.0])];
         }
-        // s'' = -[[a, -b], [-c, d]] s of the two stretches.
+        // s'' = -[[a, -b], [-c, d]] s of the two rule_runs.
         let a = k(0) * (1.0 / m(0) + 1.0 / m(1));
         let b = k(1) / m(1);
         let c = k(0) / m(1);
@@ -149,7 +149,7 @@ impl Row {
         })
     }
 
-    /// How far each sphere has moved once the stretches are longer by this, m: the centre of mass stays.
+    /// How far each sphere has moved once the rule_runs are longer by this, m: the centre of mass stays.
     fn moved_m(&self, gained_m: &[f64]) -> Vec<f64> {
         let mut moved = vec![0.0];
         for gained in gained_m {

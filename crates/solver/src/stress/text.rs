@@ -7,7 +7,7 @@ use dem_io::units::significant;
 use super::prediction::{Prediction, Shown};
 use super::verdict::{CaseResult, Judged, Observation};
 
-/// Share of the largest deviation from which on runs count as equally far off.
+/// Fraction of the largest deviation from which on runs count as equally far off.
 const AS_FAR: f64 = 0.99;
 
 /// The head of the table.

@@ -10,19 +10,19 @@ pub struct Extrapolated {
     /// Observed order. None: it cannot be told.
     pub order: Option<f64>,
     /// What speaks against it. None: nothing.
-    pub doubt: Option<Doubt>,
+    pub doubt: Option<Doubtful>,
 }
 
 /// What speaks against an extrapolation. The value is that of the finest size then, and the uncertainty three times what the finest three differ by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Doubt {
+pub enum Doubtful {
     /// The values go up and down.
     NotMonotone,
     /// They do not come nearer to each other.
     DoesNotConverge,
 }
 
-impl Doubt {
+impl Doubtful {
     /// In words.
     pub fn text(self) -> &'static str {
         match self {
@@ -88,12 +88,12 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
         return found(None, rounding);
     }
     if fine * coarse <= 0.0 {
-        return found(Some(Doubt::NotMonotone), 3.0 * range);
+        return found(Some(Doubtful::NotMonotone), 3.0 * range);
     }
     let ratio = |p: f64| (h3.powf(p) - h2.powf(p)) / (h2.powf(p) - h1.powf(p));
     let wanted = coarse / fine;
     if wanted <= ratio(ORDERS[0]) {
-        return found(Some(Doubt::DoesNotConverge), 3.0 * range);
+        return found(Some(Doubtful::DoesNotConverge), 3.0 * range);
     }
     // The ratio rises with the order.
     let [mut low, mut high] = ORDERS;
@@ -178,11 +178,11 @@ mod tests {
     #[test]
     fn values_that_go_up_and_down_are_flagged() {
         let found = richardson(&[(0.1, 1.0), (0.2, 1.1), (0.4, 0.9)]).unwrap();
-        assert_eq!(found.doubt, Some(Doubt::NotMonotone));
+        assert_eq!(found.doubt, Some(Doubtful::NotMonotone));
         assert_eq!((found.value, found.order), (1.0, None));
         assert!((found.uncertainty - 0.6).abs() < 1e-12);
         let found = richardson(&[(0.1, 1.0), (0.2, 1.2), (0.4, 1.3)]).unwrap();
-        assert_eq!(found.doubt, Some(Doubt::DoesNotConverge));
+        assert_eq!(found.doubt, Some(Doubtful::DoesNotConverge));
         let found = richardson(&[(0.1, 1.0), (0.2, 1.0), (0.4, 1.0)]).unwrap();
         assert_eq!((found.doubt, found.value), (None, 1.0));
         assert!(richardson(&[(0.1, 1.0), (0.2, 1.0), (0.2, 1.0)]).is_none());

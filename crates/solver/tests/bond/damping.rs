@@ -283,12 +283,13 @@ fn matrix_of_chain(coefficients: &DampingCoefficients, levers_m: &[f64; 2]) -> D
                 velocity_m_s: Vector3::from_column_slice(&unit[end..end + 3]),
                 spin_rad_s: Vector3::from_column_slice(&unit[end + 3..end + 6]),
             });
-            let answer = damping_forces(coefficients, levers_m, &Vector3::x(), LENGTH_M, &ends);
+            let bond_response =
+                damping_forces(coefficients, levers_m, &Vector3::x(), LENGTH_M, &ends);
             let blocks = [
-                -answer.force_on_b,
-                answer.torques[0],
-                answer.force_on_b,
-                answer.torques[1],
+                -bond_response.force_on_b,
+                bond_response.torques[0],
+                bond_response.force_on_b,
+                bond_response.torques[1],
             ];
             for (block, push) in blocks.iter().enumerate() {
                 for (axis, push) in push.iter().enumerate() {

@@ -7,7 +7,7 @@ use dem_run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
 use dem_run::state::clumps::Clump;
-use dem_run::state::shares::divide;
+use dem_run::state::partitions::divide;
 
 use crate::books::feed;
 use crate::{go, planned};
@@ -26,7 +26,7 @@ fn busy(threads: usize) -> Plan {
     let state = &mut plan.state;
     // So few particles are not worth a second thread but for this test.
     state.threads = threads;
-    state.shares = divide(&state.bonds, state.particles.free, threads);
+    state.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
     if let Some(contacts) = &mut state.contacts {
         contacts.divide(count, threads);
@@ -38,8 +38,13 @@ fn busy(threads: usize) -> Plan {
 /// All that a run goes on from or tells.
 pub(crate) fn same(a: &State, b: &State) -> bool {
     let rules = |s: &State| {
-        let come: Vec<_> = s.rules.inlets.iter().map(|inlet| inlet.come).collect();
-        let gone: Vec<_> = s.rules.outlets.iter().map(|outlet| outlet.gone).collect();
+        let come: Vec<_> = s.rules.inlets.iter().map(|inlet| inlet.progress).collect();
+        let gone: Vec<_> = s
+            .rules
+            .outlets
+            .iter()
+            .map(|outlet| outlet.removed)
+            .collect();
         (
             come,
             gone,
@@ -102,16 +107,16 @@ fn one_thread_and_more_give_the_same_bits() {
         (state, bodies)
     });
     let (one, bodies) = &all[0];
-    let waited = one.rules.inlets[0].come.delayed;
+    let waited = one.rules.inlets[0].progress.delayed;
     eprintln!(
         "{} came, {waited} waited, {} replaced, {} bonds broken, {:?} gone",
-        one.rules.inlets[0].come.bodies,
+        one.rules.inlets[0].progress.bodies,
         one.rules.replaced,
         one.broken_count,
-        one.rules.outlets[0].gone
+        one.rules.outlets[0].removed
     );
     assert!(waited > 0 && one.rules.replaced > 5 && one.broken_count > 10);
-    assert!(one.rules.outlets[0].gone.0 > 5);
+    assert!(one.rules.outlets[0].removed.bodies > 5);
     for (other, other_bodies) in &all[1..] {
         assert!(same(one, other) && bodies == other_bodies);
         assert_eq!(one.ledger, other.ledger);
@@ -146,13 +151,13 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
     let mut kept: Vec<State> = Vec::new();
     let (mut waiting, mut swaps, mut gone) = (false, 0, 0);
     while state.time_s < 0.08 {
-        let before = (state.rules.replaced, state.rules.outlets[0].gone.0);
+        let before = (state.rules.replaced, state.rules.outlets[0].removed.bodies);
         let early = taken_before_swap(&state, &bodies, number, swaps);
         go(&mut state, &mut bodies);
         if state.steps.is_multiple_of(500) {
             kept.push(state.clone());
         }
-        let come = &state.rules.inlets[0].come;
+        let come = &state.rules.inlets[0].progress;
         let mut take = |why| moments.push((state.steps, taken(&state, &bodies, number), why));
         if come.tries > 0 && !waiting {
             waiting = true;
@@ -164,7 +169,7 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
                 take("after a swap");
                 moments.extend(early.map(|bytes| (state.steps - 1, bytes, "before a swap")));
             }
-        } else if state.rules.outlets[0].gone.0 > before.1 {
+        } else if state.rules.outlets[0].removed.bodies > before.1 {
             gone += 1;
             if gone == 2 {
                 take("after something has gone");

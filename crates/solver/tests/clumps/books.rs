@@ -2,7 +2,7 @@
 
 use dem_run::check::ledger::{Balance, balance};
 use dem_run::plan::Plan;
-use dem_run::stages::replacement::{Happened, replace};
+use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::state::State;
 use dem_run::step::{act, move_on};
 
@@ -34,7 +34,7 @@ pub(crate) struct Books {
     pub(crate) worst: [f64; 3],
     pub(crate) last: Balance,
     pub(crate) state: State,
-    pub(crate) happened: Vec<Happened>,
+    pub(crate) happened: Vec<PopulationEvent>,
 }
 
 pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
@@ -80,17 +80,20 @@ fn mass_inside_kg(state: &State) -> f64 {
 /// What came, was replaced and went, and whether mass agrees.
 fn counted(books: &Books) -> [usize; 3] {
     let state = &books.state;
-    let count = |is: fn(&Happened) -> bool| books.happened.iter().filter(|h| is(h)).count();
-    let came = count(|h| matches!(h, Happened::Came { .. }));
-    let replaced = count(|h| matches!(h, Happened::Replaced { .. }));
-    let left = count(|h| matches!(h, Happened::Left { .. }));
-    let (come, gone) = (state.rules.inlets[0].come, state.rules.outlets[0].gone);
-    assert_eq!((come.bodies as usize, gone.0 as usize), (came, left));
+    let count = |is: fn(&PopulationEvent) -> bool| books.happened.iter().filter(|h| is(h)).count();
+    let came = count(|h| matches!(h, PopulationEvent::Came { .. }));
+    let replaced = count(|h| matches!(h, PopulationEvent::Replaced { .. }));
+    let left = count(|h| matches!(h, PopulationEvent::Left { .. }));
+    let (come, gone) = (
+        state.rules.inlets[0].progress,
+        state.rules.outlets[0].removed,
+    );
+    assert_eq!((come.bodies as usize, gone.bodies as usize), (came, left));
     assert_eq!(state.rules.replaced as usize, replaced);
     let inside = mass_inside_kg(state);
     let wanted = come.bodies as f64 * state.clumps.templates[0].mass_kg;
     assert!((come.mass_kg / wanted - 1.0).abs() < 1e-13);
-    assert!(((inside + gone.1) / come.mass_kg - 1.0).abs() < 1e-12);
+    assert!(((inside + gone.mass_kg) / come.mass_kg - 1.0).abs() < 1e-12);
     assert!((state.ledger.mass_kg() - inside).abs() < 1e-12 * come.mass_kg);
     [came, replaced, left]
 }
@@ -210,12 +213,15 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     let left = state.bonds.len() as u64;
     eprintln!(
         "{broken} bonds broken, {left} there, {:?}",
-        state.rules.outlets[0].gone
+        state.rules.outlets[0].removed
     );
     assert!(broken > left, "{broken} {left}");
     let inside = mass_inside_kg(&state);
-    let (come, gone) = (state.rules.inlets[0].come, state.rules.outlets[0].gone);
-    assert!(((inside + gone.1) / come.mass_kg - 1.0).abs() < 1e-12);
+    let (come, gone) = (
+        state.rules.inlets[0].progress,
+        state.rules.outlets[0].removed,
+    );
+    assert!(((inside + gone.mass_kg) / come.mass_kg - 1.0).abs() < 1e-12);
     let there = (0..state.bonds.len()).filter(|at| state.bonds.is_broken(*at));
     assert_eq!(state.broken_count - state.broken_gone, there.count() as u64);
 }

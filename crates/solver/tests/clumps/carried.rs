@@ -95,10 +95,10 @@ fn after_swap(top: &str, under: Option<&str>) {
         .contacts
         .as_ref()
         .unwrap()
-        .memories
+        .histories
         .iter()
-        .map(|m| m.slid);
-    let touching = touching.chain(state.walls[0].touching.iter().map(|t| t.memory.slid));
+        .map(|m| m.tangential);
+    let touching = touching.chain(state.walls[0].touching.iter().map(|t| t.history.tangential));
     let touching: Vec<[f64; 4]> = touching.filter(|s| s[3] > 0.0).collect();
     let depth_m = touching.iter().map(|s| s[3]).sum::<f64>() / touching.len() as f64;
     let springs: Vec<f64> = touching.iter().map(|[x, y, ..]| x.hypot(*y)).collect();

@@ -1,6 +1,6 @@
 //! Bodies come as often, in such shares and so turned as the scene says, and where there is place.
 
-use dem_run::stages::replacement::Happened;
+use dem_run::stages::replacement::PopulationEvent;
 use dem_run::state::State;
 use dem_run::state::clumps::{Clump, rotation};
 use nalgebra::Vector3;
@@ -19,7 +19,7 @@ fn fed(bodies: &str, inlet: &str) -> State {
     plan.state
 }
 
-fn run_to(state: &mut State, end_s: f64) -> Vec<Happened> {
+fn run_to(state: &mut State, end_s: f64) -> Vec<PopulationEvent> {
     let mut all = Vec::new();
     while state.time_s < end_s - 0.5 * state.time_step_s {
         all.extend(happens(state));
@@ -43,19 +43,19 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
         };
         let exact = (since_s / 2e-3).round();
         let is_edge = (since_s / 2e-3 - exact).abs() < 1e-6;
-        let come = f64::from(state.rules.inlets[0].come.bodies);
+        let come = f64::from(state.rules.inlets[0].progress.bodies);
         assert!(
             come == due || (is_edge && (come - due).abs() < 1.5),
             "{now_s}: {come} {due}"
         );
     }
-    assert_eq!(state.rules.inlets[0].come.bodies, 20);
+    assert_eq!(state.rules.inlets[0].progress.bodies, 20);
     assert_eq!(state.clumps.all.len(), 20);
-    assert_eq!(state.rules.inlets[0].come.delayed, 0);
+    assert_eq!(state.rules.inlets[0].progress.delayed, 0);
     // No more than so many.
     let mut state = fed(&format!("{BALL}{WIDE}"), &format!("{inlet}count = 7\n"));
     run_to(&mut state, 0.08);
-    assert_eq!(state.rules.inlets[0].come.bodies, 7);
+    assert_eq!(state.rules.inlets[0].progress.bodies, 7);
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn a_rate_by_mass_is_kept_to_a_body() {
     for _ in 0..2000 {
         let now_s = state.time_s;
         happens(&mut state);
-        let come_kg = state.rules.inlets[0].come.mass_kg;
+        let come_kg = state.rules.inlets[0].progress.mass_kg;
         assert!(come_kg > 0.05 * now_s && come_kg <= 0.05 * now_s + heaviest * (1.0 + 1e-12));
         let there: f64 = state.clumps.mass_kg();
         assert!((there / come_kg - 1.0).abs() < 1e-12);
@@ -204,7 +204,7 @@ fn who_finds_no_place_waits_and_is_counted_once() {
         happens(&mut state);
         assert!(none_overlap(&state));
     }
-    let come = &state.rules.inlets[0].come;
+    let come = &state.rules.inlets[0].progress;
     assert_eq!(
         (come.bodies, come.delayed, state.clumps.all.len()),
         (10, 9, 10)
@@ -250,8 +250,8 @@ fn nothing_comes_into_the_middle_of_a_clump() {
     state.time_step_s = 1e-5;
     assert!(state.particles.len() < 512);
     run_to(&mut state, 1e-3);
-    assert_eq!(state.rules.inlets[0].come.bodies, 0);
-    assert_eq!(state.rules.inlets[0].come.delayed, 1);
+    assert_eq!(state.rules.inlets[0].progress.bodies, 0);
+    assert_eq!(state.rules.inlets[0].progress.delayed, 1);
 }
 
 /// The region lies half in a floor, and a lump needs room above it.
@@ -309,7 +309,7 @@ fn who_is_due_and_has_not_come_is_counted() {
             go(&mut plan.state, &mut plan.bodies);
         }
         let inlet = &plan.state.rules.inlets[0];
-        assert_eq!(inlet.come.bodies, 1, "{rest}");
+        assert_eq!(inlet.progress.bodies, 1, "{rest}");
         assert_eq!(inlet.owed(time_s), waiting, "{rest} at {time_s} s");
     }
 }

@@ -30,8 +30,8 @@ use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
 use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::population::Renumbered;
-use dem_run::stages::replacement::{Happened, replace};
+use dem_run::stages::population::Renumbering;
+use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::state::State;
 use dem_run::state::particles::Particles;
 use dem_run::step::{act, move_on};
@@ -115,7 +115,7 @@ pub(crate) fn planned(text: &str) -> Plan {
 }
 
 /// What a step has changed.
-pub(crate) type Changed = Option<(Vec<Renumbered>, Vec<Happened>)>;
+pub(crate) type Changed = Option<(Vec<Renumbering>, Vec<PopulationEvent>)>;
 
 /// A step as a run takes it.
 pub(crate) fn go(state: &mut State, bodies: &mut Vec<PlacedBody>) -> Changed {
@@ -129,7 +129,7 @@ pub(crate) fn go(state: &mut State, bodies: &mut Vec<PlacedBody>) -> Changed {
 }
 
 /// A step of which only what happened is asked.
-pub(crate) fn happens(state: &mut State) -> Vec<Happened> {
+pub(crate) fn happens(state: &mut State) -> Vec<PopulationEvent> {
     go(state, &mut Vec::new()).map_or(Vec::new(), |(_, happened)| happened)
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::Body;
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::replacement::Happened;
+use dem_run::stages::replacement::PopulationEvent;
 
 use crate::{HEAD, MEETS, Whole, happens, scene};
 
@@ -131,7 +131,7 @@ fn a_cluster_weighs_what_its_clump_did() {
         let happened = happens(&mut plan.state);
         replaced = happened
             .iter()
-            .any(|one| matches!(one, Happened::Replaced { .. }));
+            .any(|one| matches!(one, PopulationEvent::Replaced { .. }));
     }
     assert!(plan.state.clumps.all.is_empty());
     assert!((mass_kg(&plan) / wanted_kg - 1.0).abs() < 1e-12);
@@ -151,7 +151,7 @@ fn an_inlet_feeds_by_that_mass() {
         happens(&mut plan.state);
     }
     // One at once, and one every 25 ms.
-    let come = &plan.state.rules.inlets[0].come;
+    let come = &plan.state.rules.inlets[0].progress;
     assert_eq!(come.bodies, 9);
     assert!((come.mass_kg / (9.0 * 0.25) - 1.0).abs() < 1e-12);
 }

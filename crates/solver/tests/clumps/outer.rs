@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dem_run::stages::population::{Changes, change};
+use dem_run::stages::population::{TopologyChange, apply_topology_change};
 use dem_run::state::State;
 use dem_run::state::clumps::{Clump, Template};
 use dem_run::step::step;
@@ -52,11 +52,11 @@ fn with_all_spheres(state: &State) -> State {
     let mut state = state.clone();
     let coming: Vec<Clump> = state.clumps.all.clone();
     let leaving = coming.iter().map(|clump| clump.cluster).collect();
-    let changes = Changes {
+    let changes = TopologyChange {
         leaving,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    change(&mut state, changes);
+    apply_topology_change(&mut state, changes);
     assert!(state.particles.is_empty() && state.clumps.all.is_empty());
     for template in &mut state.clumps.templates {
         let outer = (0..template.spheres.len() as u32).collect();
@@ -65,11 +65,11 @@ fn with_all_spheres(state: &State) -> State {
             ..(**template).clone()
         });
     }
-    let changes = Changes {
+    let changes = TopologyChange {
         coming,
-        ..Changes::default()
+        ..TopologyChange::default()
     };
-    change(&mut state, changes);
+    apply_topology_change(&mut state, changes);
     state
 }
 
@@ -111,7 +111,7 @@ fn make_no_difference(few: State) {
         assert!(same(&few, &all), "at {} s", few.time_s);
         on_ground += u32::from(!few.walls[0].touching.is_empty());
         let contacts = few.contacts.as_ref().unwrap();
-        on_each_other += u32::from(contacts.memories.iter().any(|m| m.overlap_m() > 0.0));
+        on_each_other += u32::from(contacts.histories.iter().any(|m| m.overlap_m() > 0.0));
     }
     eprintln!(
         "{} steps: {on_ground} with the ground, {on_each_other} with each other",

@@ -68,7 +68,7 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     let wall = &state.walls[0];
     assert_eq!(wall.touching.len(), count as usize);
     for touch in &wall.touching {
-        let overlap_m = touch.memory.overlap_m();
+        let overlap_m = touch.history.overlap_m();
         assert!(
             (overlap_m / depth_m - 1.0).abs() < 1e-6,
             "{overlap_m:e} {depth_m:e}"

@@ -1,8 +1,8 @@
 //! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
 
 use dem_run::check::totals::elastic_energy;
-use dem_run::stages::population::{Changes, change};
-use dem_run::stages::replacement::{Happened, replace};
+use dem_run::stages::population::{TopologyChange, apply_topology_change};
+use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::stages::restoring::restore;
 use dem_run::state::State;
 use dem_run::step::{act, move_on};
@@ -41,7 +41,7 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
     for _ in 0..10 {
         let (_, happened) = restore(&mut state).unwrap();
         assert!(
-            matches!(&happened[..], [Happened::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
+            matches!(&happened[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
         );
         let clump = state.clumps.all[0];
         // The template of the scene serves again.
@@ -60,11 +60,11 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
             size
         ));
         let to_clusters = vec![0];
-        change(
+        apply_topology_change(
             &mut state,
-            Changes {
+            TopologyChange {
                 to_clusters,
-                ..Changes::default()
+                ..TopologyChange::default()
             },
         );
     }
@@ -94,7 +94,7 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let bonds = state.bonds.len();
     assert!(strain_j > 0.0);
     let (_, happened) = restore(&mut state).unwrap();
-    let [Happened::Restored { lost_j, .. }] = &happened[..] else {
+    let [PopulationEvent::Restored { lost_j, .. }] = &happened[..] else {
         panic!("{happened:?}");
     };
     assert!(
@@ -107,11 +107,11 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
         (1, 2)
     );
     let to_clusters = vec![0];
-    change(
+    apply_topology_change(
         &mut state,
-        Changes {
+        TopologyChange {
             to_clusters,
-            ..Changes::default()
+            ..TopologyChange::default()
         },
     );
     assert_eq!(state.bonds.len(), bonds - 1);
@@ -152,7 +152,8 @@ fn books_hold_over_what_becomes_rigid_again() {
         );
     let books = [4e-6, 2e-6].map(|step_s| booked(&text, step_s, 0.2));
     for books in &books {
-        let restored = |happened: &&Happened| matches!(happened, Happened::Restored { .. });
+        let restored =
+            |happened: &&PopulationEvent| matches!(happened, PopulationEvent::Restored { .. });
         let restored = books.happened.iter().filter(restored).count();
         assert!(restored >= 2, "{restored}");
         assert!(

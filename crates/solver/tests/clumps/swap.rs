@@ -3,7 +3,7 @@
 use dem_run::plan::Plan;
 use dem_run::shape::fit::best_rotation;
 use dem_run::stages::clumps::place_all;
-use dem_run::stages::replacement::{Happened, replace};
+use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::state::State;
 use dem_run::state::clumps::{numbers, rotation};
 use dem_run::step::{act, move_on};
@@ -71,7 +71,7 @@ fn swapped(far_m: f64, seed: u64) {
         let size = (about.norm() + template.reach_m) * mass * speed;
         assert!((origin - wanted).norm() < 1e-12 * size);
     }
-    let Happened::Replaced {
+    let PopulationEvent::Replaced {
         mass_kg,
         momentum_n_s,
         kinetic_j,
@@ -143,7 +143,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
     let replaced: Vec<(&str, u32)> = happened
         .iter()
         .map(|one| match one {
-            Happened::Replaced { body, cluster, .. } => (body.as_str(), *cluster),
+            PopulationEvent::Replaced { body, cluster, .. } => (body.as_str(), *cluster),
             _ => panic!("{one:?}"),
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::stages::replacement::Happened;
+use dem_run::stages::replacement::PopulationEvent;
 use dem_run::state::State;
 use dem_run::state::clumps::Clump;
 
@@ -38,7 +38,7 @@ fn replaced(when: &str) -> Option<(f64, &'static str, [Clump; 2])> {
         let mut acted = state.clone();
         dem_run::step::act(&mut acted);
         let now = acted.clumps.all[0];
-        if let [Happened::Replaced { cause, .. }] = happens(&mut state)[..] {
+        if let [PopulationEvent::Replaced { cause, .. }] = happens(&mut state)[..] {
             return Some((now_s, cause, [before, now]));
         }
         before = now;

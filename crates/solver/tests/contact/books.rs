@@ -4,9 +4,9 @@ use super::world::{Body, World, ZERO, material};
 use dem_run::physics::contact::NormalLaw;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::Behaviour;
+use dem_run::physics::contact::pair_parameters::PairInput;
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
-use dem_run::physics::number::Triple;
+use dem_run::physics::number::Vec3;
 
 /// An oblique impact of two uneven spheres that spin: what is missing in the books, over the energy at the start, and each loss over it.
 fn missing<L: NormalLaw<f64>, R: RollingFriction<f64>>(
@@ -16,12 +16,12 @@ fn missing<L: NormalLaw<f64>, R: RollingFriction<f64>>(
 ) -> (f64, [f64; 4]) {
     let mut a = Body::sphere(0.01, 2500.0, ZERO);
     // Apart by a little, so that the contact begins between steps.
-    let direction = Triple(2.0, 3.0, 6.0);
+    let direction = Vec3(2.0, 3.0, 6.0);
     let mut b = Body::sphere(0.02, 2500.0, direction * (0.03001 / 7.0));
-    a.velocity = Triple(0.3, -0.2, 0.5);
-    a.spin = Triple(20.0, -30.0, 10.0);
-    b.velocity = Triple(-0.2, -1.1, -0.9);
-    b.spin = Triple(-15.0, 40.0, 25.0);
+    a.velocity = Vec3(0.3, -0.2, 0.5);
+    a.spin = Vec3(20.0, -30.0, 10.0);
+    b.velocity = Vec3(-0.2, -1.1, -0.9);
+    b.spin = Vec3(-15.0, 40.0, 25.0);
     let mut world = World::new(law, rolling, [a, b], dt);
     let start = world.kinetic();
     let (momentum, angular) = (world.momentum(), world.angular_momentum());
@@ -60,8 +60,8 @@ fn check<L: NormalLaw<f64> + Copy, R: RollingFriction<f64> + Copy>(law: L, rolli
 #[test]
 fn books_of_energy_are_exact_to_second_order() {
     let rock = material(1e8, 0.25);
-    let hertz = |mu| HertzMindlin::new([rock, rock], &Behaviour::new(0.6, mu));
-    let linear = |mu| Linear::new(2e5, 0.8, &Behaviour::new(0.6, mu));
+    let hertz = |mu| HertzMindlin::new([rock, rock], &PairInput::new(0.6, mu));
+    let linear = |mu| Linear::new(2e5, 0.8, &PairInput::new(0.6, mu));
     let spring = ElasticPlastic {
         friction: 0.05,
         damping_ratio: 0.3,

@@ -1,16 +1,17 @@
 //! The formulas of doc/contacts.md, computed here from what the page says, against the program.
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::kinematics::{
+    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
+    wall_contact_kinematics,
+};
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use dem_run::physics::contact::touch::{
-    Ball, Foot, Touch, relative_velocity, torques, touch, touch_at_wall,
-};
-use dem_run::physics::contact::{History, NormalLaw, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::{ContactSprings, NormalLaw, response};
+use dem_run::physics::number::Vec3;
 use nalgebra::Vector3;
 
 use super::assert_near;
@@ -43,49 +44,49 @@ fn zeta(restitution: f64) -> f64 {
     low
 }
 
-fn ball(radius_m: f64, velocity: [f64; 3], spin: [f64; 3]) -> Ball {
+fn ball(radius_m: f64, velocity: [f64; 3], spin: [f64; 3]) -> ContactSphere {
     let mass_kg = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
     let [x, y, z] = velocity;
     let [wx, wy, wz] = spin;
-    Ball {
-        velocity_m_s: Triple(x, y, z),
-        spin_rad_s: Triple(wx, wy, wz),
+    ContactSphere {
+        velocity_m_s: Vec3(x, y, z),
+        spin_rad_s: Vec3(wx, wy, wz),
         radius_m,
         inverse_mass_per_kg: 1.0 / mass_kg,
         inverse_inertia_per_kg_m2: 2.5 / (mass_kg * radius_m * radius_m),
     }
 }
 
-fn balls() -> [Ball; 2] {
+fn balls() -> [ContactSphere; 2] {
     [
         ball(1e-3, [0.1, -0.05, 0.02], [3.0, -20.0, 7.0]),
         ball(2e-3, [-0.04, 0.03, 0.06], [-5.0, 11.0, 2.0]),
     ]
 }
 
-fn vector(of: Triple<f64>) -> Vector3<f64> {
+fn vector(of: Vec3<f64>) -> Vector3<f64> {
     of.into()
 }
 
 /// The two spheres, and the second of them on a wall; with R*, m* and the unit normal.
-fn touches() -> [(Touch, f64, f64); 2] {
+fn touches() -> [(ContactKinematics, f64, f64); 2] {
     let [a, b] = balls();
     let apart = Vector3::new(1.0, 2.0, -2.0) / 3.0 * (a.radius_m + b.radius_m - OVERLAP_M);
-    let pair = touch(apart.into(), [a, b], 0.0);
-    let normal = Triple(0.0, 0.6, 0.8);
-    let foot = Foot {
+    let pair = contact_kinematics(apart.into(), [a, b], 0.0);
+    let normal = Vec3(0.0, 0.6, 0.8);
+    let foot = WallPoint {
         normal,
         normal_before: normal,
         distance_m: b.radius_m - OVERLAP_M,
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
+        velocity_m_s: Vec3(0.0, 0.0, 0.0),
+        spin_rad_s: Vec3(0.0, 0.0, 0.0),
     };
     let radius_m = a.radius_m * b.radius_m / (a.radius_m + b.radius_m);
     let mass_kg = 1.0 / (a.inverse_mass_per_kg + b.inverse_mass_per_kg);
     [
         (pair, radius_m, mass_kg),
         (
-            touch_at_wall(&foot, b, 0.0),
+            wall_contact_kinematics(&foot, b, 0.0),
             b.radius_m,
             1.0 / b.inverse_mass_per_kg,
         ),
@@ -93,7 +94,7 @@ fn touches() -> [(Touch, f64, f64); 2] {
 }
 
 /// Velocity of b against a at the surfaces, along the normal and across it, by the page.
-fn sliding(touch: &Touch) -> [Vector3<f64>; 2] {
+fn sliding(touch: &ContactKinematics) -> [Vector3<f64>; 2] {
     let [a, b] = balls();
     let n = vector(touch.normal);
     let is_wall = touch.levers_m[0] == 0.0;
@@ -106,8 +107,12 @@ fn sliding(touch: &Touch) -> [Vector3<f64>; 2] {
 }
 
 /// With no spring yet, what acts across the normal is the dashpot alone.
-fn check_dashpots(law: &impl NormalLaw<f64>, touch: &Touch, [c_n, c_t, elastic_n]: [f64; 3]) {
-    let found = response(law, &NoRolling, touch, &History::default(), 0.0);
+fn check_dashpots(
+    law: &impl NormalLaw<f64>,
+    touch: &ContactKinematics,
+    [c_n, c_t, elastic_n]: [f64; 3],
+) {
+    let found = response(law, &NoRolling, touch, &ContactSprings::default(), 0.0);
     let force = vector(found.force_on_b);
     let n = vector(touch.normal);
     let [along, across] = sliding(touch);
@@ -116,7 +121,7 @@ fn check_dashpots(law: &impl NormalLaw<f64>, touch: &Touch, [c_n, c_t, elastic_n
     let off = (force - n * force.dot(&n) + c_t * across).norm();
     assert!(off < 1e-9 * c_t * across.norm(), "{off:e}");
     // Friction turns each end by its lever.
-    let [on_a, on_b] = torques(touch, found.force_on_b, Triple(0.0, 0.0, 0.0)).map(vector);
+    let [on_a, on_b] = torques(touch, found.force_on_b, Vec3(0.0, 0.0, 0.0)).map(vector);
     let arm = (-c_t * across).cross(&n);
     let lever_b = balls()[1].radius_m - 0.5 * OVERLAP_M;
     assert!((on_b - lever_b * arm).norm() < 1e-9 * on_b.norm());
@@ -129,14 +134,14 @@ fn check_dashpots(law: &impl NormalLaw<f64>, touch: &Touch, [c_n, c_t, elastic_n
 #[test]
 fn dashpots_and_levers_are_those_of_the_page() {
     // Friction so high that it never bounds them.
-    let behaviour = Behaviour::new(RESTITUTION, 1e3);
+    let pair_input = PairInput::new(RESTITUTION, 1e3);
     let materials = [0, 1].map(|k| Elastic {
         young_modulus_pa: YOUNG_PA[k],
         poisson_ratio: POISSON[k],
     });
     let zeta = zeta(RESTITUTION);
-    let hertz = HertzMindlin::new(materials, &behaviour);
-    let linear = Linear::new(2e4, 0.4, &behaviour);
+    let hertz = HertzMindlin::new(materials, &pair_input);
+    let linear = Linear::new(2e4, 0.4, &pair_input);
     let [soft, shear] = [0, 1].map(|of_shear| {
         let one = |k: usize| {
             let (e, nu) = (YOUNG_PA[k], POISSON[k]);
@@ -159,7 +164,7 @@ fn dashpots_and_levers_are_those_of_the_page() {
         check_dashpots(&linear, &touch, [c(2e4), c(0.4 * 2e4), 2e4 * OVERLAP_M]);
         let [along, across] = sliding(&touch);
         let [a, b] = balls();
-        let still = Triple(0.0, 0.0, 0.0);
+        let still = Vec3(0.0, 0.0, 0.0);
         let [va, wa] = if touch.levers_m[0] == 0.0 {
             [still; 2]
         } else {
@@ -174,27 +179,31 @@ fn dashpots_and_levers_are_those_of_the_page() {
 #[test]
 fn friction_bounds_the_dashpot() {
     for (touch, ..) in touches() {
-        let law = Linear::new(2e4, 0.4, &Behaviour::new(0.1, 1e-4));
-        let found = response(&law, &NoRolling, &touch, &History::default(), 0.0);
+        let law = Linear::new(2e4, 0.4, &PairInput::new(0.1, 1e-4));
+        let found = response(&law, &NoRolling, &touch, &ContactSprings::default(), 0.0);
         let n = vector(touch.normal);
         let force = vector(found.force_on_b);
         let across = force - n * force.dot(&n);
         assert_near(across.norm(), 1e-4 * force.dot(&n), 1e-9);
-        let law = Linear::new(2e4, 0.4, &Behaviour::new(1.0, 1e3));
-        let found = response(&law, &NoRolling, &touch, &History::default(), 0.0);
+        let law = Linear::new(2e4, 0.4, &PairInput::new(1.0, 1e3));
+        let found = response(&law, &NoRolling, &touch, &ContactSprings::default(), 0.0);
         let force = vector(found.force_on_b);
         assert!((force - n * force.dot(&n)).norm() < 1e-12 * force.norm());
     }
 }
 
 /// Moment on b of a contact that has rolled by so much across the normal, N m.
-fn moment(rolling: &impl RollingFriction<f64>, touch: &Touch, rolled_rad: f64) -> Vector3<f64> {
-    let law = Linear::new(2e4, 0.4, &Behaviour::new(1.0, 0.5));
+fn moment(
+    rolling: &impl RollingFriction<f64>,
+    touch: &ContactKinematics,
+    rolled_rad: f64,
+) -> Vector3<f64> {
+    let law = Linear::new(2e4, 0.4, &PairInput::new(1.0, 0.5));
     let across = vector(touch.normal).cross(&Vector3::new(1.0, 0.0, 0.5));
-    let history = History {
+    let history = ContactSprings {
         rolling_rad: (across.normalize() * rolled_rad).into(),
         overlap_m: OVERLAP_M,
-        ..History::default()
+        ..ContactSprings::default()
     };
     vector(response(&law, rolling, touch, &history, 0.0).moment_on_b)
 }

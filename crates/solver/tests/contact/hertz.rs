@@ -3,11 +3,11 @@
 use super::world::{Body, RIGID, World, Z, frictionless, material};
 use super::{assert_near, reference};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
 use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::rolling::{ElasticPlastic, NoRolling};
-use dem_run::physics::contact::touch::{Foot, touch_at_wall};
-use dem_run::physics::contact::{History, NormalLaw, linearised, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::{ContactSprings, NormalLaw, linearised, response};
+use dem_run::physics::number::Vec3;
 use std::f64::consts::PI;
 
 /// What a central impact was.
@@ -23,7 +23,7 @@ pub(crate) fn central_impact<L: NormalLaw<f64>>(
     world: &mut World<L, NoRolling>,
     speed: f64,
 ) -> Central {
-    world.bodies[1].velocity = Triple(0.0, 0.0, -speed);
+    world.bodies[1].velocity = Vec3(0.0, 0.0, -speed);
     let (mut overlap, mut force) = (0.0_f64, 0.0_f64);
     world.step();
     for step in 1.. {
@@ -58,15 +58,16 @@ fn elastic_impacts_are_those_of_hertz() {
         );
         assert_near(law.young_modulus_pa, row.e_star, 1e-14);
         assert_near(law.shear_modulus_pa, row.g_star, 1e-14);
-        let b = Body::sphere(row.radius, row.rho, Triple(0.0, 0.0, row.radius));
+        let b = Body::sphere(row.radius, row.rho, Vec3(0.0, 0.0, row.radius));
         let a = if row.two_spheres {
-            Body::sphere(row.radius, row.rho, Triple(0.0, 0.0, -row.radius))
+            Body::sphere(row.radius, row.rho, Vec3(0.0, 0.0, -row.radius))
         } else {
             Body::floor()
         };
         let mut world = World::new(law, NoRolling, [a, b], row.t_contact / 2000.0);
         let touch = world.touch();
-        let limit = law.overlap_at_impact_m(touch.radius_m, touch.mass_kg, row.v_rel);
+        let limit =
+            law.overlap_at_impact_m(touch.effective_radius_m, touch.effective_mass_kg, row.v_rel);
         assert_near(limit, row.delta_max, 1e-13);
         let found = central_impact(&mut world, row.v_rel);
         assert_near(found.duration, row.t_contact, row.tolerance_rel);
@@ -79,7 +80,7 @@ fn elastic_impacts_are_those_of_hertz() {
 
 #[test]
 fn a_linear_impact_lasts_half_a_swing() {
-    let b = Body::sphere(0.01, 2500.0, Triple(0.0, 0.0, 0.01));
+    let b = Body::sphere(0.01, 2500.0, Vec3(0.0, 0.0, 0.01));
     let law = Linear::new(1e6, 0.8, &frictionless());
     let half_swing = PI / (1e6 * b.per_mass).sqrt();
     let mut world = World::new(law, NoRolling, [Body::floor(), b], half_swing / 2000.0);
@@ -97,17 +98,17 @@ fn a_linear_impact_lasts_half_a_swing() {
 fn a_sphere_sinks_in_by_its_weight() {
     let row = reference().static_weight_overlap;
     let cake = material(row.young, row.nu);
-    let foot = Foot {
+    let foot = WallPoint {
         normal: Z,
         normal_before: Z,
         distance_m: row.radius - row.overlap,
-        velocity_m_s: Triple(0.0, 0.0, 0.0),
-        spin_rad_s: Triple(0.0, 0.0, 0.0),
+        velocity_m_s: Vec3(0.0, 0.0, 0.0),
+        spin_rad_s: Vec3(0.0, 0.0, 0.0),
     };
     let ball = Body::sphere(row.radius, row.rho, Z);
-    let touch = touch_at_wall(&foot, ball.ball(), 0.0);
+    let touch = wall_contact_kinematics(&foot, ball.ball(), 0.0);
     let law = HertzMindlin::new([RIGID, cake], &frictionless());
-    let found = response(&law, &NoRolling, &touch, &History::default(), 0.0);
+    let found = response(&law, &NoRolling, &touch, &ContactSprings::default(), 0.0);
     assert_near(found.force_on_b.2, 9.81 / ball.per_mass, 1e-11);
 }
 
@@ -120,16 +121,16 @@ fn stiffnesses_are_derivatives() {
         friction: 0.2,
         damping_ratio: 0.3,
     };
-    let [a, b] = [-0.49e-3, 0.49e-3].map(|z| Body::sphere(0.5e-3, 2050.0, Triple(0.0, 0.0, z)));
+    let [a, b] = [-0.49e-3, 0.49e-3].map(|z| Body::sphere(0.5e-3, 2050.0, Vec3(0.0, 0.0, z)));
     let world = World::new(law, rolling, [a, b], 1e-6);
     let touch = world.touch();
     let found = linearised(&law, &rolling, &touch);
     let force = |change: f64| {
-        let touch = dem_run::physics::contact::touch::Touch {
+        let touch = dem_run::physics::contact::kinematics::ContactKinematics {
             overlap_m: touch.overlap_m + change,
             ..touch
         };
-        response(&law, &rolling, &touch, &History::default(), 0.0)
+        response(&law, &rolling, &touch, &ContactSprings::default(), 0.0)
             .force_on_b
             .2
     };
@@ -140,9 +141,9 @@ fn stiffnesses_are_derivatives() {
         1e-9,
     );
     let g = 26e6 / 2.6;
-    let k_t = 8.0 * g / (2.0 * 1.7) * (touch.radius_m * touch.overlap_m).sqrt();
+    let k_t = 8.0 * g / (2.0 * 1.7) * (touch.effective_radius_m * touch.overlap_m).sqrt();
     assert_near(found.tangential_n_m, k_t, 1e-14);
-    let arm = 0.2 * touch.radius_m;
+    let arm = 0.2 * touch.effective_radius_m;
     assert_near(
         found.rolling_n_m_rad,
         2.25 * found.normal_n_m * arm * arm,

@@ -3,24 +3,26 @@
 use super::reference;
 use super::world::{Body, RIGID, World, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::manner::{Behaviour, Kept, Pull};
+use dem_run::physics::contact::pair_parameters::{
+    AttractiveDamping, PairInput, TangentialUnloading,
+};
 use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::number::Triple;
+use dem_run::physics::number::Vec3;
 
 const RADIUS: f64 = 0.0025;
 const SPEED: f64 = 3.9;
 
 /// Normal and tangential restitution and spin after an impact at this angle to the normal.
-fn impact(material_name: &str, angle: f64, behaviour: &Behaviour, steps: f64) -> [f64; 3] {
+fn impact(material_name: &str, angle: f64, pair_input: &PairInput, steps: f64) -> [f64; 3] {
     let (young, nu, density) = if material_name == "Al2O3" {
         (380e9, 0.23, 4000.0)
     } else {
         (70e9, 0.33, 2700.0)
     };
-    let law = HertzMindlin::new([RIGID, material(young, nu)], behaviour);
-    let mut b = Body::sphere(RADIUS, density, Triple(0.0, 0.0, RADIUS));
+    let law = HertzMindlin::new([RIGID, material(young, nu)], pair_input);
+    let mut b = Body::sphere(RADIUS, density, Vec3(0.0, 0.0, RADIUS));
     let (sine, cosine) = angle.to_radians().sin_cos();
-    b.velocity = Triple(SPEED * sine, 0.0, -SPEED * cosine);
+    b.velocity = Vec3(SPEED * sine, 0.0, -SPEED * cosine);
     let mass = 1.0 / b.per_mass;
     let overlap = law.overlap_at_impact_m(RADIUS, mass, SPEED * cosine);
     let duration = 2.943_275_184_324_704_3 * overlap / (SPEED * cosine);
@@ -38,12 +40,12 @@ fn impact(material_name: &str, angle: f64, behaviour: &Behaviour, steps: f64) ->
     ]
 }
 
-fn row_behaviour(e: f64, mu: f64, kept: Kept) -> Behaviour {
-    Behaviour {
+fn row_behaviour(e: f64, mu: f64, kept: TangentialUnloading) -> PairInput {
+    PairInput {
         tangential_damping: 0.0,
-        pull: Pull::AsDamped,
+        pull: AttractiveDamping::AsDamped,
         kept,
-        ..Behaviour::new(e, mu)
+        ..PairInput::new(e, mu)
     }
 }
 
@@ -55,16 +57,16 @@ fn row_behaviour(e: f64, mu: f64, kept: Kept) -> Behaviour {
 fn impacts_at_all_angles_are_those_of_the_independent_implementation() {
     for row in reference().chung_ooi_4.rows {
         let mut cases = vec![
-            (Kept::Force, &row.variant1),
-            (Kept::Elongation, &row.variant2),
+            (TangentialUnloading::Force, &row.variant1),
+            (TangentialUnloading::Elongation, &row.variant2),
         ];
         if row.angle >= 20.0 {
-            cases.push((Kept::LesserForce, &row.variant2));
+            cases.push((TangentialUnloading::LesserForce, &row.variant2));
         }
         for (kept, wanted) in cases {
-            let behaviour = row_behaviour(row.e, row.mu, kept);
+            let pair_input = row_behaviour(row.e, row.mu, kept);
             for steps in [2000.0, 20000.0] {
-                let found = impact(&row.material, row.angle, &behaviour, steps);
+                let found = impact(&row.material, row.angle, &pair_input, steps);
                 let errors = [
                     found[0] - wanted.e_n,
                     found[1] - wanted.e_t,
@@ -90,6 +92,6 @@ fn a_grazing_impact_wins_no_energy() {
         let spin = spin * RADIUS / (SPEED * 2.0_f64.to_radians().sin());
         e_t * e_t + 0.4 * spin * spin
     };
-    assert!(energy(Kept::Elongation) > 1.007);
-    assert!(energy(Kept::LesserForce) < 0.95);
+    assert!(energy(TangentialUnloading::Elongation) > 1.007);
+    assert!(energy(TangentialUnloading::LesserForce) < 0.95);
 }

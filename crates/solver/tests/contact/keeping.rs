@@ -2,12 +2,12 @@
 
 use super::world::{Body, Vector, World, ZERO, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::kinematics::{ContactSphere, contact_kinematics, torques};
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::Behaviour;
+use dem_run::physics::contact::pair_parameters::PairInput;
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
-use dem_run::physics::contact::touch::{Ball, torques, touch};
-use dem_run::physics::contact::{History, NormalLaw, Response, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::{ContactSprings, NormalLaw, Response, response};
+use dem_run::physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
@@ -21,24 +21,24 @@ pub(crate) const DT: f64 = 1e-6;
 pub(crate) fn hertz() -> HertzMindlin {
     HertzMindlin::new(
         [material(1e9, 0.25), material(3e9, 0.2)],
-        &Behaviour::new(0.5, 0.3),
+        &PairInput::new(0.5, 0.3),
     )
 }
 
 pub(crate) fn linear() -> Linear {
-    Linear::new(1e6, 0.8, &Behaviour::new(0.5, 0.3))
+    Linear::new(1e6, 0.8, &PairInput::new(0.5, 0.3))
 }
 
 /// Two balls that touch and what they remember.
 #[derive(Debug, Clone, Copy)]
 struct Scene {
     apart: Vector,
-    balls: [Ball; 2],
-    history: History,
+    balls: [ContactSphere; 2],
+    history: ContactSprings,
 }
 
 pub(crate) fn triple(v: Vector3<f64>) -> Vector {
-    Triple(v.x, v.y, v.z)
+    Vec3(v.x, v.y, v.z)
 }
 
 fn scenes() -> impl Strategy<Value = Scene> {
@@ -46,7 +46,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
         .prop_filter("a direction", |v| Vector3::from(*v).norm() > 0.1)
         .prop_map(|v| triple(Vector3::from(v).normalize()));
     let vector = |size: f64| {
-        prop::array::uniform3(-size..size).prop_map(|v: [f64; 3]| Triple(v[0], v[1], v[2]))
+        prop::array::uniform3(-size..size).prop_map(|v: [f64; 3]| Vec3(v[0], v[1], v[2]))
     };
     (
         unit,
@@ -59,7 +59,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
     )
         .prop_map(
             |(normal, radii, overlap, velocities, spins, springs, before)| {
-                let [a, b] = [0, 1].map(|end| Ball {
+                let [a, b] = [0, 1].map(|end| ContactSphere {
                     velocity_m_s: velocities[end],
                     spin_rad_s: spins[end],
                     ..Body::sphere(radii[end], 2500.0, ZERO).ball()
@@ -72,7 +72,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
                 Scene {
                     apart,
                     balls: [a, b],
-                    history: History {
+                    history: ContactSprings {
                         tangential_m: across(springs[0]),
                         rolling_rad: across(springs[1]),
                         overlap_m: before,
@@ -87,7 +87,7 @@ fn answer(
     rolling: &impl RollingFriction<f64>,
     scene: &Scene,
 ) -> Response {
-    let touch = touch(scene.apart, scene.balls, DT);
+    let touch = contact_kinematics(scene.apart, scene.balls, DT);
     response(law, rolling, &touch, &scene.history, DT)
 }
 
@@ -95,14 +95,14 @@ pub(crate) fn vectors(r: &Response) -> [Vector; 4] {
     [
         r.force_on_b,
         r.moment_on_b,
-        r.history.tangential_m,
-        r.history.rolling_rad,
+        r.springs.tangential_m,
+        r.springs.rolling_rad,
     ]
 }
 
 fn scalars(r: &Response) -> [f64; 6] {
     [
-        r.history.overlap_m,
+        r.springs.overlap_m,
         r.energy.normal,
         r.energy.tangential,
         r.energy.rolling,
@@ -115,12 +115,12 @@ fn turned(scene: &Scene, by: &Rotation3<f64>) -> Scene {
     let turn = |v: Vector| triple(by * Vector3::new(v.0, v.1, v.2));
     Scene {
         apart: turn(scene.apart),
-        balls: scene.balls.map(|ball| Ball {
+        balls: scene.balls.map(|ball| ContactSphere {
             velocity_m_s: turn(ball.velocity_m_s),
             spin_rad_s: turn(ball.spin_rad_s),
             ..ball
         }),
-        history: History {
+        history: ContactSprings {
             tangential_m: turn(scene.history.tangential_m),
             rolling_rad: turn(scene.history.rolling_rad),
             ..scene.history
@@ -136,7 +136,7 @@ fn check(
     by: &Rotation3<f64>,
 ) -> Result<(), TestCaseError> {
     let found = answer(law, rolling, scene);
-    let met = touch(scene.apart, scene.balls, DT);
+    let met = contact_kinematics(scene.apart, scene.balls, DT);
     let n = met.normal;
 
     // Never a pull; never more friction than there may be.
@@ -145,7 +145,7 @@ fn check(
     let room = 1e-9 * normal.abs();
     prop_assert!(normal >= -1e-12 * across.square().sqrt());
     prop_assert!(across.square().sqrt() <= 0.3 * normal + room);
-    prop_assert!(found.moment_on_b.square().sqrt() <= 0.1 * met.radius_m * normal + room);
+    prop_assert!(found.moment_on_b.square().sqrt() <= 0.1 * met.effective_radius_m * normal + room);
     prop_assert!(found.moment_on_b.dot(n).abs() <= 1e-12 * normal.abs());
     if met.overlap_m <= 0.0 {
         prop_assert!(vectors(&found).iter().all(|v| *v == ZERO));
@@ -172,16 +172,18 @@ fn check(
 
     // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and where sliding begins the damper's share is the root
     // of a difference that may be rounding: half the digits.
-    let grip = law.grip(&met, scene.history.overlap_m, DT);
+    let normal_response = law.evaluate(&met, scene.history.overlap_m, DT);
     let speed = met.velocity_m_s.square().sqrt();
-    let size = grip.elastic_n + grip.normal_damping_n_s_m * speed;
+    let size = normal_response.elastic_n + normal_response.normal_damping_n_s_m * speed;
     let force_off = size * (1e-8 + 1e-16 / met.overlap_m.abs());
-    let moment_off = force_off * met.radius_m;
-    let rolling_n_m_rad = 2.25 * grip.normal_n_m[1] * (0.1 * met.radius_m).powi(2);
+    let moment_off = force_off * met.effective_radius_m;
+    let rolling_n_m_rad =
+        2.25 * normal_response.normal_n_m[1] * (0.1 * met.effective_radius_m).powi(2);
     let offs = [
         force_off,
         moment_off,
-        force_off / grip.tangential_n_m[1] + 1e-8 * scene.history.tangential_m.square().sqrt(),
+        force_off / normal_response.tangential_n_m[1]
+            + 1e-8 * scene.history.tangential_m.square().sqrt(),
         moment_off / rolling_n_m_rad + 1e-8 * scene.history.rolling_rad.square().sqrt(),
     ];
     let other = answer(law, rolling, &turned(scene, by));
@@ -200,7 +202,7 @@ fn check(
     let other = Scene {
         apart: -scene.apart,
         balls: [b, a],
-        history: History {
+        history: ContactSprings {
             tangential_m: -scene.history.tangential_m,
             rolling_rad: -scene.history.rolling_rad,
             ..scene.history
@@ -236,11 +238,11 @@ fn sliding_loses_friction_times_way() {
         MOMENT,
         [
             Body::floor(),
-            Body::sphere(0.01, 2500.0, Triple(0.0, 0.0, 0.00999)),
+            Body::sphere(0.01, 2500.0, Vec3(0.0, 0.0, 0.00999)),
         ],
         DT,
     );
-    world.bodies[1].velocity = Triple(3.0, 4.0, 0.0);
+    world.bodies[1].velocity = Vec3(3.0, 4.0, 0.0);
     world.bodies[1].per_mass = 0.0;
     world.bodies[1].per_inertia = 0.0;
     for _ in 0..1000 {
@@ -263,8 +265,8 @@ fn sliding_loses_friction_times_way() {
 #[test]
 fn a_contact_goes_on_from_its_history() {
     let ball = Body {
-        velocity: Triple(0.3, 0.1, -0.5),
-        ..Body::sphere(0.01, 2500.0, Triple(0.0, 0.0, 0.01))
+        velocity: Vec3(0.3, 0.1, -0.5),
+        ..Body::sphere(0.01, 2500.0, Vec3(0.0, 0.0, 0.01))
     };
     let mut one = World::new(hertz(), SPRING, [Body::floor(), ball], DT);
     for _ in 0..20 {

@@ -2,12 +2,12 @@
 
 use super::world::{Vector, Z, ZERO, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::kinematics::ContactKinematics;
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::{Behaviour, Kept};
+use dem_run::physics::contact::pair_parameters::{PairInput, TangentialUnloading};
 use dem_run::physics::contact::rolling::ElasticPlastic;
-use dem_run::physics::contact::touch::Touch;
-use dem_run::physics::contact::{ContactEnergy, History, NormalLaw, Response, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Response, response};
+use dem_run::physics::number::Vec3;
 use proptest::prelude::*;
 
 /// A state of a contact that is led: overlap over 1e-5 m, displacement across over 1e-6 m, turn across over 1e-3 rad.
@@ -18,20 +18,20 @@ const ROLLING: ElasticPlastic = ElasticPlastic {
     damping_ratio: 0.0,
 };
 
-fn undamped(kept: Kept) -> Behaviour {
-    Behaviour {
+fn undamped(kept: TangentialUnloading) -> PairInput {
+    PairInput {
         kept,
-        ..Behaviour::new(1.0, 0.3)
+        ..PairInput::new(1.0, 0.3)
     }
 }
 
-fn hertz(kept: Kept) -> HertzMindlin {
+fn hertz(kept: TangentialUnloading) -> HertzMindlin {
     let rock = material(1e9, 0.25);
     HertzMindlin::new([rock, rock], &undamped(kept))
 }
 
-fn touch(overlap_m: f64, moved: Vector, turned: Vector) -> Touch {
-    Touch {
+fn touch(overlap_m: f64, moved: Vector, turned: Vector) -> ContactKinematics {
+    ContactKinematics {
         normal: Z,
         middle: Z,
         overlap_m,
@@ -39,9 +39,9 @@ fn touch(overlap_m: f64, moved: Vector, turned: Vector) -> Touch {
         velocity_m_s: moved,
         spin_rad_s: turned,
         mean_spin_rad_s: 0.0,
-        radius_m: 0.005,
-        mass_kg: 0.01,
-        rolling_inertia_kg_m2: 1e-6,
+        effective_radius_m: 0.005,
+        effective_mass_kg: 0.01,
+        effective_rolling_inertia_kg_m2: 1e-6,
     }
 }
 
@@ -58,7 +58,7 @@ struct Led {
 /// Leads a contact along straight lines between places, in so many steps each, of 1 s.
 fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
     let start = touch(places[0][0] * 1e-5, ZERO, ZERO);
-    let mut last = response(law, &ROLLING, &start, &History::default(), 0.0);
+    let mut last = response(law, &ROLLING, &start, &ContactSprings::default(), 0.0);
     let (mut work, mut lost, mut bound, mut scale) = (0.0, 0.0, 0.0, 0.0_f64);
     for pair in places.windows(2) {
         for step in 1..=steps {
@@ -66,35 +66,35 @@ fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
                 |place: usize, part: f64| pair[0][place] * (1.0 - part) + pair[1][place] * part;
             let part = f64::from(step) / f64::from(steps);
             let by = |place: usize| (pair[1][place] - pair[0][place]) / f64::from(steps);
-            let moved = Triple(by(1) * 1e-6, by(2) * 1e-6, 0.0);
-            let turned = Triple(by(3) * 1e-3, by(4) * 1e-3, 0.0);
+            let moved = Vec3(by(1) * 1e-6, by(2) * 1e-6, 0.0);
+            let turned = Vec3(by(3) * 1e-3, by(4) * 1e-3, 0.0);
             let touch = touch(at(0, part) * 1e-5, moved, turned);
-            let next = response(law, &ROLLING, &touch, &last.history, 1.0);
-            let held = |r: &Response| Triple(r.force_on_b.0, r.force_on_b.1, 0.0);
+            let next = response(law, &ROLLING, &touch, &last.springs, 1.0);
+            let held = |r: &Response| Vec3(r.force_on_b.0, r.force_on_b.1, 0.0);
             work -= 0.5 * (held(&last) + held(&next)).dot(moved);
             work -= 0.5 * (last.moment_on_b + next.moment_on_b).dot(turned);
             lost += next.lost.sliding + next.lost.rolling;
 
-            let grip = law.grip(&touch, last.history.overlap_m, 1.0);
-            let kept = grip.softer.min(1.0);
-            let [before, now] = grip.tangential_n_m;
+            let normal_response = law.evaluate(&touch, last.springs.overlap_m, 1.0);
+            let kept = normal_response.stiffness_ratio.min(1.0);
+            let [before, now] = normal_response.tangential_n_m;
             bound += least(
                 before,
                 now,
                 kept,
-                last.history.tangential_m,
+                last.springs.tangential_m,
                 moved,
-                next.history.tangential_m,
+                next.springs.tangential_m,
             );
             let rolling = |k: f64| k * 2.25 * (0.1 * 0.005_f64).powi(2);
-            let [before, now] = grip.normal_n_m.map(rolling);
+            let [before, now] = normal_response.normal_n_m.map(rolling);
             bound += least(
                 before,
                 now,
                 kept,
-                last.history.rolling_rad,
+                last.springs.rolling_rad,
                 turned,
-                next.history.rolling_rad,
+                next.springs.rolling_rad,
             );
             scale = scale.max(next.energy.tangential + next.energy.rolling);
             last = next;
@@ -136,23 +136,27 @@ fn a_stuck_contact_creates_no_energy() {
         [0.25, 0.1, 0.0, 0.0, 0.0],
         [0.25, -0.1, 0.0, 0.0, 0.0],
     ];
-    let forceful = lead(&hertz(Kept::Force), &places, 1000);
+    let forceful = lead(&hertz(TangentialUnloading::Force), &places, 1000);
     assert!(forceful.work < -0.1 * forceful.scale, "{}", forceful.work);
-    let careful = lead(&hertz(Kept::LesserForce), &places, 1000);
+    let careful = lead(&hertz(TangentialUnloading::LesserForce), &places, 1000);
     assert!(careful.work > 0.0, "{}", careful.work);
 }
 
 /// The normal force is the derivative of the energy, so pressing and letting go loses nothing.
 #[test]
 fn the_normal_force_comes_from_an_energy() {
-    check_energy(&hertz(Kept::LesserForce));
-    check_energy(&Linear::new(1e6, 0.8, &undamped(Kept::LesserForce)));
+    check_energy(&hertz(TangentialUnloading::LesserForce));
+    check_energy(&Linear::new(
+        1e6,
+        0.8,
+        &undamped(TangentialUnloading::LesserForce),
+    ));
 }
 
 fn check_energy(law: &impl NormalLaw<f64>) {
     let at = |overlap: f64| {
         let touch = touch(overlap, ZERO, ZERO);
-        response(law, &ROLLING, &touch, &History::default(), 0.0)
+        response(law, &ROLLING, &touch, &ContactSprings::default(), 0.0)
     };
     for overlap in [1e-7, 1e-6, 1e-5] {
         let h = 1e-4 * overlap;
@@ -206,11 +210,11 @@ fn check<L: NormalLaw<f64>>(
 proptest! {
     #[test]
     fn no_loop_creates_energy_with_hertz(places in places(), steps in 1..200_u32) {
-        check(&hertz(Kept::LesserForce), places, steps)?;
+        check(&hertz(TangentialUnloading::LesserForce), places, steps)?;
     }
 
     #[test]
     fn no_loop_creates_energy_with_a_linear_law(places in places(), steps in 1..200_u32) {
-        check(&Linear::new(1e6, 0.8, &undamped(Kept::LesserForce)), places, steps)?;
+        check(&Linear::new(1e6, 0.8, &undamped(TangentialUnloading::LesserForce)), places, steps)?;
     }
 }

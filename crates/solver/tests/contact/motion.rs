@@ -2,9 +2,11 @@
 
 use super::keeping::{DT, SPRING, hertz, linear, triple, vectors};
 use super::world::{Body, Z, ZERO};
-use dem_run::physics::contact::touch::{Ball, Foot, touch, touch_at_wall};
-use dem_run::physics::contact::{History, NormalLaw, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::kinematics::{
+    ContactSphere, WallPoint, contact_kinematics, wall_contact_kinematics,
+};
+use dem_run::physics::contact::{ContactSprings, NormalLaw, response};
+use dem_run::physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
 
@@ -17,9 +19,9 @@ fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 
     let body = Body::sphere(radius, 2500.0, ZERO).ball();
     let apart = Vector3::new(0.0, 0.0, 2.0 * radius - overlap);
     let spring = Vector3::new(1e-5, 0.5e-5, 0.0);
-    let mut history = History {
+    let mut history = ContactSprings {
         tangential_m: triple(spring),
-        rolling_rad: Triple(2e-4, -1e-4, 0.0),
+        rolling_rad: Vec3(2e-4, -1e-4, 0.0),
         overlap_m: overlap,
     };
     let (mut before, mut first, mut worst) = (apart, None, 0.0_f64);
@@ -33,14 +35,14 @@ fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 
         };
         let dt = if step == 0 { 0.0 } else { dt };
         let velocity = if step == 0 { ZERO } else { triple(moved / dt) };
-        let balls = [ZERO, velocity].map(|velocity_m_s| Ball {
+        let balls = [ZERO, velocity].map(|velocity_m_s| ContactSphere {
             velocity_m_s,
             spin_rad_s: if step == 0 { ZERO } else { spin },
             ..body
         });
-        let met = touch(triple(now), balls, dt);
+        let met = contact_kinematics(triple(now), balls, dt);
         let found = response(law, &SPRING, &met, &history, dt);
-        history = found.history;
+        history = found.springs;
         let [force, moment] = [found.force_on_b, found.moment_on_b]
             .map(|v| by.inverse() * Vector3::new(v.0, v.1, v.2));
         let (first_force, first_moment) = *first.get_or_insert((force, moment));
@@ -73,40 +75,40 @@ fn turning_of_the_whole_changes_no_force() {
 /// A wall is the limit of a large held sphere, and what moves along with a wall feels no more than on one at rest.
 #[test]
 fn a_wall_is_an_end_of_endless_mass_and_radius() {
-    let ball = Ball {
-        velocity_m_s: Triple(0.3, -0.1, -0.2),
-        spin_rad_s: Triple(4.0, 5.0, 6.0),
+    let ball = ContactSphere {
+        velocity_m_s: Vec3(0.3, -0.1, -0.2),
+        spin_rad_s: Vec3(4.0, 5.0, 6.0),
         ..Body::sphere(0.01, 2500.0, ZERO).ball()
     };
-    let foot = Foot {
+    let foot = WallPoint {
         normal: Z,
         normal_before: Z,
         distance_m: 0.00999,
         velocity_m_s: ZERO,
         spin_rad_s: ZERO,
     };
-    let history = History {
-        tangential_m: Triple(1e-6, 2e-6, 0.0),
-        rolling_rad: Triple(1e-5, -1e-5, 0.0),
+    let history = ContactSprings {
+        tangential_m: Vec3(1e-6, 2e-6, 0.0),
+        rolling_rad: Vec3(1e-5, -1e-5, 0.0),
         overlap_m: 0.9e-5,
     };
     let at_wall = response(
         &hertz(),
         &SPRING,
-        &touch_at_wall(&foot, ball, DT),
+        &wall_contact_kinematics(&foot, ball, DT),
         &history,
         DT,
     );
     // Against a sphere of this radius, held, whose surface is a plane to rounding.
     let radius = 1e6;
-    let huge = Ball {
+    let huge = ContactSphere {
         velocity_m_s: ZERO,
         spin_rad_s: ZERO,
         radius_m: radius,
         inverse_mass_per_kg: 0.0,
         inverse_inertia_per_kg_m2: 0.0,
     };
-    let met = touch(Triple(0.0, 0.0, radius + 0.00999), [huge, ball], DT);
+    let met = contact_kinematics(Vec3(0.0, 0.0, radius + 0.00999), [huge, ball], DT);
     let at_sphere = response(&hertz(), &SPRING, &met, &history, DT);
     for (wall, sphere) in vectors(&at_wall).into_iter().zip(vectors(&at_sphere)) {
         let off = (wall - sphere).square().sqrt();
@@ -114,13 +116,13 @@ fn a_wall_is_an_end_of_endless_mass_and_radius() {
         assert!(off <= 3e-5 * wall.square().sqrt(), "{wall:?} {sphere:?}");
     }
     // Carried along by a moving wall, the same to rounding.
-    let drift = Triple(1.0, 2.0, 3.0);
-    let moving = touch_at_wall(
-        &Foot {
+    let drift = Vec3(1.0, 2.0, 3.0);
+    let moving = wall_contact_kinematics(
+        &WallPoint {
             velocity_m_s: drift,
             ..foot
         },
-        Ball {
+        ContactSphere {
             velocity_m_s: ball.velocity_m_s + drift,
             ..ball
         },

@@ -2,11 +2,11 @@
 
 use super::world::{Body, RIGID, World, frictionless, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::kinematics::ContactKinematics;
 use dem_run::physics::contact::relaxation::{Relaxed, relaxed};
 use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::contact::touch::Touch;
-use dem_run::physics::contact::{History, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::{ContactSprings, response};
+use dem_run::physics::number::Vec3;
 use proptest::prelude::*;
 
 fn origins(path: &[f64], origin: f64, least: f64) -> Vec<Relaxed> {
@@ -39,22 +39,22 @@ fn a_pair_presses_from_where_it_parted() {
 fn faces_that_part_never_fly_apart() {
     let law = HertzMindlin::new([RIGID, material(26e6, 0.3)], &frictionless());
     for speed in [0.0, 0.1, 1.0] {
-        let mut ball = Body::sphere(0.5e-3, 2050.0, Triple(0.0, 0.0, 0.48e-3));
-        ball.velocity = Triple(0.0, 0.0, -speed);
+        let mut ball = Body::sphere(0.5e-3, 2050.0, Vec3(0.0, 0.0, 0.48e-3));
+        ball.velocity = Vec3(0.0, 0.0, -speed);
         let mut world = World::new(law, NoRolling, [Body::floor(), ball], 2e-8);
         let (mut origin, start) = (20e-6, world.kinetic());
-        let mut history = History::default();
+        let mut history = ContactSprings::default();
         for _ in 0..50_000 {
             let touch = world.touch();
             let found = relaxed(touch.overlap_m, origin, 0.0);
             assert!(found.origin_m <= origin && found.origin_m >= 0.0);
             origin = found.origin_m;
-            let touch = Touch {
+            let touch = ContactKinematics {
                 overlap_m: found.overlap_m,
                 ..touch
             };
             let found = response(&law, &NoRolling, &touch, &history, world.dt);
-            history = found.history;
+            history = found.springs;
             let ball = &mut world.bodies[1];
             ball.velocity = ball.velocity + found.force_on_b * (world.dt * ball.per_mass);
             ball.place = ball.place + ball.velocity * world.dt;

@@ -6,12 +6,12 @@ use super::{assert_near, reference};
 use dem_run::physics::contact::NormalLaw;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::{Behaviour, Pull};
+use dem_run::physics::contact::pair_parameters::{AttractiveDamping, PairInput};
 use dem_run::physics::contact::restitution::{
     damping_ratio, damping_ratio_with_attraction, restitution,
 };
 use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::number::Triple;
+use dem_run::physics::number::Vec3;
 use std::f64::consts::PI;
 
 const RADIUS: f64 = 0.0025;
@@ -37,7 +37,7 @@ fn impact_within<L: NormalLaw<f64>>(
     share: f64,
 ) -> Impact {
     let above = SPEED * share * duration / steps;
-    let b = Body::sphere(RADIUS, 4000.0, Triple(0.0, 0.0, RADIUS + above));
+    let b = Body::sphere(RADIUS, 4000.0, Vec3(0.0, 0.0, RADIUS + above));
     let mut world = World::new(law, NoRolling, [Body::floor(), b], duration / steps);
     let found = central_impact(&mut world, SPEED);
     Impact {
@@ -47,17 +47,17 @@ fn impact_within<L: NormalLaw<f64>>(
     }
 }
 
-fn hertz(behaviour: &Behaviour) -> (HertzMindlin, (f64, f64)) {
-    let law = HertzMindlin::new([RIGID, material(380e9, 0.23)], behaviour);
-    let mass = 1.0 / Body::sphere(RADIUS, 4000.0, Triple(0.0, 0.0, 0.0)).per_mass;
+fn hertz(pair_input: &PairInput) -> (HertzMindlin, (f64, f64)) {
+    let law = HertzMindlin::new([RIGID, material(380e9, 0.23)], pair_input);
+    let mass = 1.0 / Body::sphere(RADIUS, 4000.0, Vec3(0.0, 0.0, 0.0)).per_mass;
     let overlap = law.overlap_at_impact_m(RADIUS, mass, SPEED);
     (law, (2.943_275_184_324_704_3 * overlap / SPEED, overlap))
 }
 
-fn behaviour(restitution: f64, pull: Pull) -> Behaviour {
-    Behaviour {
+fn pair_input(restitution: f64, pull: AttractiveDamping) -> PairInput {
+    PairInput {
         pull,
-        ..Behaviour::new(restitution, 0.0)
+        ..PairInput::new(restitution, 0.0)
     }
 }
 
@@ -108,18 +108,18 @@ fn impacts_are_those_of_the_independent_implementation() {
     for row in reference().tsuji_restitution {
         for (pull, e, duration) in [
             (
-                Pull::AsDamped,
+                AttractiveDamping::AsDamped,
                 row.e_actual_force_until_overlap_zero,
                 row.duration_ratio_vs_elastic,
             ),
             (
-                Pull::None,
+                AttractiveDamping::None,
                 row.e_actual_truncated_no_attraction,
                 row.duration_ratio_truncated,
             ),
         ] {
-            let (mut law, elastic) = hertz(&behaviour(row.e_nominal, pull));
-            law.manner.damping_ratio = row.beta;
+            let (mut law, elastic) = hertz(&pair_input(row.e_nominal, pull));
+            law.parameters.damping_ratio = row.beta;
             for steps in [2000.0, 20000.0] {
                 let found = impact(law, elastic, steps);
                 assert_near(found.e, e, 2.0 / steps);
@@ -131,8 +131,8 @@ fn impacts_are_those_of_the_independent_implementation() {
 }
 
 fn linear(wanted: f64) -> (Linear, (f64, f64)) {
-    let law = Linear::new(1e7, 1.0, &behaviour(wanted, Pull::None));
-    let mass = 1.0 / Body::sphere(RADIUS, 4000.0, Triple(0.0, 0.0, 0.0)).per_mass;
+    let law = Linear::new(1e7, 1.0, &pair_input(wanted, AttractiveDamping::None));
+    let mass = 1.0 / Body::sphere(RADIUS, 4000.0, Vec3(0.0, 0.0, 0.0)).per_mass;
     let swing = (mass / 1e7).sqrt();
     (law, (PI * swing, SPEED * swing))
 }
@@ -141,7 +141,7 @@ fn linear(wanted: f64) -> (Linear, (f64, f64)) {
 fn a_wanted_restitution_comes_out_of_both_laws() {
     for step in 1..=10 {
         let wanted = f64::from(step) / 10.0;
-        let (hertz, of_hertz) = hertz(&behaviour(wanted, Pull::None));
+        let (hertz, of_hertz) = hertz(&pair_input(wanted, AttractiveDamping::None));
         let (linear, of_linear) = linear(wanted);
         for steps in [2000.0, 20000.0] {
             assert_near(impact(hertz, of_hertz, steps).e, wanted, 1.0 / steps);
@@ -177,7 +177,7 @@ fn restitution_of_the_linear_law_is_of_second_order_in_the_step() {
 #[test]
 fn little_is_left_of_the_lag_of_the_velocity_in_hertz_law() {
     for (wanted, lag) in [(0.1, 2.15), (0.3, 0.61), (0.6, 0.11)] {
-        let (law, elastic) = hertz(&behaviour(wanted, Pull::None));
+        let (law, elastic) = hertz(&pair_input(wanted, AttractiveDamping::None));
         for steps in [25.0, 50.0, 100.0] {
             let [_, mean, _] = over_moments(law, elastic, steps);
             assert_near(mean, wanted, 0.2 * lag / steps);

@@ -4,11 +4,11 @@ use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
 use dem_run::physics::contact::Response;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::manner::Behaviour;
+use dem_run::physics::contact::pair_parameters::PairInput;
 use dem_run::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use dem_run::physics::number::Triple;
+use dem_run::physics::number::Vec3;
 
 const DT: f64 = 1e-5;
 const DENSITY: f64 = 2500.0;
@@ -20,13 +20,13 @@ fn lying<R: RollingFriction<f64>>(
     mu: f64,
     gravity: (f64, f64),
 ) -> World<HertzMindlin, R> {
-    let law = HertzMindlin::new([RIGID, material(1e8, 0.3)], &Behaviour::new(0.3, mu));
-    let mut ball = Body::sphere(radius, DENSITY, Triple(0.0, 0.0, radius));
+    let law = HertzMindlin::new([RIGID, material(1e8, 0.3)], &PairInput::new(0.3, mu));
+    let mut ball = Body::sphere(radius, DENSITY, Vec3(0.0, 0.0, radius));
     let weight = gravity.1 / ball.per_mass;
     let overlap = (0.75 * weight / (law.young_modulus_pa * radius.sqrt())).powf(2.0 / 3.0);
     ball.place.2 -= overlap;
     let mut world = World::new(law, rolling, [Body::floor(), ball], DT);
-    world.gravity = Triple(gravity.0, 0.0, -gravity.1);
+    world.gravity = Vec3(gravity.0, 0.0, -gravity.1);
     world
 }
 
@@ -42,7 +42,7 @@ fn run<R: RollingFriction<f64>>(world: &mut World<HertzMindlin, R>, seconds: f64
 fn a_sphere_that_slides_comes_to_roll() {
     let wanted = reference().slide_to_roll;
     let mut world = lying(NoRolling, wanted.radius, wanted.mu, (0.0, wanted.g));
-    world.bodies[1].velocity = Triple(wanted.v0, 0.0, 0.0);
+    world.bodies[1].velocity = Vec3(wanted.v0, 0.0, 0.0);
     let start = world.kinetic();
     let lever = world.touch().levers_m[1];
     let off = 1.0 - lever / wanted.radius;
@@ -107,8 +107,8 @@ fn spheres_and_blocks_on_inclines() {
 fn a_constant_moment_stops_a_sphere_for_good() {
     let mut world = lying(ConstantMoment { friction: 0.05 }, 0.01, 0.5, (0.0, 9.81));
     let ball = &mut world.bodies[1];
-    ball.velocity = Triple(0.1, 0.0, 0.0);
-    ball.spin = Triple(0.0, 10.0, 0.0);
+    ball.velocity = Vec3(0.1, 0.0, 0.0);
+    ball.spin = Vec3(0.0, 10.0, 0.0);
     let lever = world.touch().levers_m[1];
     let rate = 0.05 * 9.81 * 0.01 * lever / (lever * lever + 0.4e-4);
     run(&mut world, 0.1);
@@ -117,8 +117,9 @@ fn a_constant_moment_stops_a_sphere_for_good() {
     assert_near((before - world.bodies[1].velocity.0) / 0.1, rate, 1e-6);
     // It stops after 0.285 s. What is stored in the tangential spring then swings out, by no more than this at first.
     let touch = world.touch();
-    let k_t = 8.0 * world.law.shear_modulus_pa * (touch.radius_m * touch.overlap_m).sqrt();
-    let recoil = rate * (touch.mass_kg / k_t).sqrt() / lever;
+    let k_t =
+        8.0 * world.law.shear_modulus_pa * (touch.effective_radius_m * touch.overlap_m).sqrt();
+    let recoil = rate * (touch.effective_mass_kg / k_t).sqrt() / lever;
     for step in 0..30_000 {
         world.step();
         let spin = world.bodies[1].spin.1;

@@ -1,17 +1,18 @@
 //! Two bodies that touch, moved by leapfrog, with books of their energy.
 
-use dem_run::physics::contact::manner::{Behaviour, Elastic};
-use dem_run::physics::contact::rolling::RollingFriction;
-use dem_run::physics::contact::touch::{
-    Ball, Foot, Touch, relative_velocity, torques, touch, touch_at_wall,
+use dem_run::physics::contact::kinematics::{
+    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
+    wall_contact_kinematics,
 };
-use dem_run::physics::contact::{Damping, History, NormalLaw, Response, response};
-use dem_run::physics::number::Triple;
+use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_run::physics::contact::rolling::RollingFriction;
+use dem_run::physics::contact::{ContactSprings, Damping, NormalLaw, Response, response};
+use dem_run::physics::number::Vec3;
 use std::f64::consts::PI;
 
-pub(crate) type Vector = Triple<f64>;
-pub(crate) const ZERO: Vector = Triple(0.0, 0.0, 0.0);
-pub(crate) const Z: Vector = Triple(0.0, 0.0, 1.0);
+pub(crate) type Vector = Vec3<f64>;
+pub(crate) const ZERO: Vector = Vec3(0.0, 0.0, 0.0);
+pub(crate) const Z: Vector = Vec3(0.0, 0.0, 1.0);
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Body {
@@ -46,8 +47,8 @@ impl Body {
         }
     }
 
-    pub(crate) fn ball(&self) -> Ball {
-        Ball {
+    pub(crate) fn ball(&self) -> ContactSphere {
+        ContactSphere {
             velocity_m_s: self.velocity,
             spin_rad_s: self.spin,
             radius_m: self.radius,
@@ -73,7 +74,7 @@ pub(crate) struct World<L, R> {
     pub(crate) rolling: R,
     /// A radius of 0 for the first: a floor.
     pub(crate) bodies: [Body; 2],
-    pub(crate) history: History,
+    pub(crate) history: ContactSprings,
     pub(crate) gravity: Vector,
     pub(crate) dt: f64,
     /// Step before: 0 at the start.
@@ -91,7 +92,7 @@ impl<L: NormalLaw<f64>, R: RollingFriction<f64>> World<L, R> {
             law,
             rolling,
             bodies,
-            history: History::default(),
+            history: ContactSprings::default(),
             gravity: ZERO,
             dt,
             before: 0.0,
@@ -101,23 +102,23 @@ impl<L: NormalLaw<f64>, R: RollingFriction<f64>> World<L, R> {
         }
     }
 
-    pub(crate) fn touch(&self) -> Touch {
+    pub(crate) fn touch(&self) -> ContactKinematics {
         let [a, b] = &self.bodies;
         if a.radius > 0.0 {
-            return touch(b.place - a.place, [a.ball(), b.ball()], self.before);
+            return contact_kinematics(b.place - a.place, [a.ball(), b.ball()], self.before);
         }
-        let foot = Foot {
+        let foot = WallPoint {
             normal: Z,
             normal_before: Z,
             distance_m: b.place.2 - a.place.2,
             velocity_m_s: a.velocity,
             spin_rad_s: a.spin,
         };
-        let touch = touch_at_wall(&foot, b.ball(), self.before);
+        let touch = wall_contact_kinematics(&foot, b.ball(), self.before);
         if !self.whole_lever {
             return touch;
         }
-        Touch {
+        ContactKinematics {
             levers_m: [0.0, b.radius],
             velocity_m_s: b.velocity - a.velocity - (b.spin * b.radius).cross(Z),
             ..touch
@@ -150,7 +151,7 @@ impl<L: NormalLaw<f64>, R: RollingFriction<f64>> World<L, R> {
         }
         let power = self.powers(&touch, &response.damping);
         self.pending = power.map(|power| 0.5 * self.dt * power);
-        self.history = response.history;
+        self.history = response.springs;
 
         for body in &mut self.bodies {
             body.place = body.place + body.velocity * self.dt;
@@ -159,7 +160,7 @@ impl<L: NormalLaw<f64>, R: RollingFriction<f64>> World<L, R> {
         response
     }
 
-    fn powers(&self, touch: &Touch, damping: &Damping) -> [f64; 4] {
+    fn powers(&self, touch: &ContactKinematics, damping: &Damping) -> [f64; 4] {
         let [a, b] = &self.bodies;
         let velocity = relative_velocity(touch, [a.velocity, b.velocity], [a.spin, b.spin]);
         let power = damping.power_w(velocity, b.spin - a.spin);
@@ -201,6 +202,6 @@ pub(crate) fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Elastic {
 }
 
 /// A pair that neither damps nor rubs.
-pub(crate) fn frictionless() -> Behaviour {
-    Behaviour::new(1.0, 0.0)
+pub(crate) fn frictionless() -> PairInput {
+    PairInput::new(1.0, 0.0)
 }

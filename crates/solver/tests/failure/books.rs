@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_io::scene::Factor;
-use dem_run::check::ledger::{Balance, Ledger, balance};
+use dem_run::check::ledger::{Balance, EnergyLedger, balance};
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::stages::loads::SetLoad;
 use dem_run::state::State;
@@ -65,7 +65,7 @@ fn shaken(incremental: bool, besides: Besides) -> State {
         }
         Besides::Damping => damp(&mut state, 0.2),
     }
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     state
 }
 
@@ -127,7 +127,7 @@ fn a_support_at_rest_does_no_work_in_a_break() {
             let m = 1.0 / state.particles.motions[1].inverse_mass;
             let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
             state.particles.motions[1].velocity_m_s = [speed, 0.1 * speed, 0.0];
-            state.ledger = Ledger::opened(&state);
+            state.ledger = EnergyLedger::opened(&state);
             while state.broken_count == 0 {
                 act(&mut state);
                 assert_eq!(balance(&mut state).support_work_j, 0.0);
@@ -151,7 +151,7 @@ fn a_bond_between_supports_breaks_without_an_error() {
         let speed = to_failure / (steps * state.time_step_s);
         hold(&mut state, std::iter::once(1), speed);
         state.particles.motions[1].velocity_m_s[0] = speed;
-        state.ledger = Ledger::opened(&state);
+        state.ledger = EnergyLedger::opened(&state);
         let (mut largest_j, mut scale_j) = (0.0_f64, 0.0);
         let mut last_reaction = 0.0;
         while state.broken_count == 0 {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_io::scene::{BondKind, Test, TestKind};
-use dem_run::laboratory::evaluate::{Evidence, TestResult, evaluate};
+use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
 use dem_run::laboratory::setup::{Setup, Specimen};
 use dem_run::laboratory::theory::{Beam, KAPPA};
@@ -105,7 +105,7 @@ fn evaluated_at(
     broken: bool,
 ) -> TestResult {
     let bonds = clay(SCENE);
-    evaluate(&Evidence {
+    evaluate(&TestInput {
         test,
         setup,
         record,
@@ -300,7 +300,7 @@ fn a_body_that_holds_has_no_strength() {
 /// No strength of bonds makes a body stronger in proportion if they have none.
 #[test]
 fn bonds_without_strength_are_not_calibrated() {
-    let result = evaluate(&Evidence {
+    let result = evaluate(&TestInput {
         test: &test(TestKind::FourPointBending),
         setup: &setup(Specimen::Beam(BEAM)),
         record: &record(2e4, 50.0),

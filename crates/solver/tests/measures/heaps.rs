@@ -189,7 +189,7 @@ measures.slope = {{ of = \"heap\", quantity = \"angle_of_repose\", reference = \
     ));
     run.act();
     let value = run.read()["slope"];
-    let result = run.gauges[0].result();
+    let result = run.probes[0].result();
     assert_eq!(
         (result.unit.as_str(), result.reference),
         ("deg", Some(30.0))

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
 use dem_run::check::ledger::balance;
-use dem_run::measure::{Gauge, gauges, place_watches, read_gauges, renumber as renumber_gauges};
+use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
 use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::clumps::place_all;
@@ -42,7 +42,7 @@ pub(crate) fn try_plan(scene: &Scene) -> Result<Plan> {
 /// A scene that is stepped, and its measures.
 pub(crate) struct Measured {
     pub(crate) state: State,
-    pub(crate) gauges: Vec<Gauge>,
+    pub(crate) probes: Vec<Probe>,
     bodies: Vec<PlacedBody>,
 }
 
@@ -50,13 +50,13 @@ impl Measured {
     pub(crate) fn new(text: &str) -> Self {
         let scene = scene(text);
         let plan = try_plan(&scene).unwrap();
-        let gauges = gauges(&scene, &plan);
+        let probes = probes(&scene, &plan);
         let mut state = plan.state;
-        place_watches(&gauges, &mut state);
+        place_watches(&probes, &mut state);
         let bodies = plan.bodies;
         Self {
             state,
-            gauges,
+            probes,
             bodies,
         }
     }
@@ -74,7 +74,7 @@ impl Measured {
         for by in &renumbered {
             renumber(&mut self.bodies, by);
         }
-        renumber_gauges(&mut self.gauges, &renumbered, &self.bodies, &mut self.state);
+        renumber_probes(&mut self.probes, &renumbered, &self.bodies, &mut self.state);
         true
     }
 
@@ -86,8 +86,8 @@ impl Measured {
     pub(crate) fn read(&mut self) -> BTreeMap<String, f64> {
         place_all(&self.state.clumps, &mut self.state.particles);
         let balance = balance(&mut self.state);
-        let values = read_gauges(&mut self.gauges, &self.state, &balance);
-        let names = self.gauges.iter().map(|gauge| gauge.name.clone());
+        let values = read_probes(&mut self.probes, &self.state, &balance);
+        let names = self.probes.iter().map(|probe| probe.name.clone());
         names.zip(values).collect()
     }
 
@@ -97,7 +97,7 @@ impl Measured {
             self.act();
             if self.state.time_s >= end_s {
                 self.read();
-                let results = self.gauges.iter().map(Gauge::result);
+                let results = self.probes.iter().map(Probe::result);
                 return results.map(|result| (result.name, result.value)).collect();
             }
             self.replace();

@@ -37,7 +37,7 @@ fn an_absolute_tolerance_is_in_the_unit_of_the_measure() {
             true,
         ),
     ] {
-        let result = falling(more).gauges[0].result();
+        let result = falling(more).probes[0].result();
         assert_near(result.value, 2.0, 0.0);
         assert_eq!(result.is_good(), good, "{more}");
     }

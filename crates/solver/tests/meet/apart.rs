@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use dem_io::Body;
 use dem_io::scene::{BodySource, scene_from_text};
-use dem_run::check::ledger::{Ledger, balance};
+use dem_run::check::ledger::{EnergyLedger, balance};
 use dem_run::measure::bond_utilisation;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::plan::{Plan, plan};
@@ -83,7 +83,7 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
             let clusters = state.clusters.as_ref().unwrap();
             assert_eq!(clusters.living().count(), 64);
             let contacts = state.contacts.as_ref().unwrap();
-            let overlapping = contacts.memories.iter().filter(|m| m.origin_m() > 0.0);
+            let overlapping = contacts.histories.iter().filter(|m| m.origin_m() > 0.0);
             // 144 nearest neighbours; at 0.5 also the 216 across the squares.
             assert_eq!(overlapping.count(), if overlap < 0.4 { 144 } else { 360 });
             // Bonds at rest pull by what rounding leaves of their lengths.
@@ -111,7 +111,7 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
         motion.velocity_m_s = [0, 1, 2].map(|_| 0.3 * any());
         motion.spin_rad_s = [0, 1, 2].map(|_| 50.0 * any());
     }
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     let strong = state.bonds.rules[0].criteria.unwrap();
     let end_s = 2e-3;
     let mut worst = 0.0_f64;

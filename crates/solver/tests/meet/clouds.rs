@@ -1,10 +1,10 @@
 //! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however often near pairs are looked for.
 
-use dem_run::check::ledger::{Ledger, balance};
+use dem_run::check::ledger::{EnergyLedger, balance};
 use dem_run::clusters::Clusters;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_run::run::Progress;
 use dem_run::snapshot::{Snapshot, fingerprint};
@@ -25,8 +25,8 @@ pub(crate) fn scattered() -> impl FnMut() -> f64 {
     }
 }
 
-fn behaviour() -> Behaviour {
-    Behaviour::new(0.6, 0.4)
+fn pair_input() -> PairInput {
+    PairInput::new(0.6, 0.4)
 }
 
 fn hertz() -> Law {
@@ -34,7 +34,7 @@ fn hertz() -> Law {
         young_modulus_pa: 1e7,
         poisson_ratio: 0.3,
     };
-    Law::HertzMindlin(HertzMindlin::new([material; 2], &behaviour()))
+    Law::HertzMindlin(HertzMindlin::new([material; 2], &pair_input()))
 }
 
 pub(crate) fn kinds() -> [ContactKind; 3] {
@@ -44,7 +44,7 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
             rolling: Rolling::Free,
         },
         ContactKind {
-            law: Law::Linear(Linear::new(2e3, 2.0 / 7.0, &behaviour())),
+            law: Law::Linear(Linear::new(2e3, 2.0 / 7.0, &pair_input())),
             rolling: Rolling::Constant(ConstantMoment { friction: 0.1 }),
         },
         ContactKind {
@@ -77,7 +77,7 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
         kind_of: vec![0, 1, 1, 2],
         materials: (0..count).map(|i| u8::from(i % 3 == 0)).collect(),
         skin_m,
-        room_m: -1.0,
+        skin_left_m: -1.0,
         relaxes: true,
         least_overlap: 1e-3,
         lost_j: vec![[0.0; 2]; count],
@@ -86,7 +86,7 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     contacts.divide(count, shares);
     state.contacts = Some(contacts);
     state.clusters = Some(Clusters::new(count, &state.bonds));
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     state
 }
 
@@ -131,13 +131,13 @@ fn to_look_at_all_pairs_in_each_step_changes_no_bit() {
             let contacts = state.contacts.as_mut().unwrap();
             if always {
                 // Nothing seems to move: who is close now is not computed longer than now.
-                (contacts.moved_m, contacts.close_room_m) = (0.0, 0.0);
+                (contacts.moved_m, contacts.close_skin_left_m) = (0.0, 0.0);
             }
-            looks += usize::from(contacts.close_room_m <= 0.0);
+            looks += usize::from(contacts.close_skin_left_m <= 0.0);
             step(&mut state);
         }
         let contacts = state.contacts.unwrap();
-        let books = (contacts.memories, contacts.lost_j);
+        let books = (contacts.histories, contacts.lost_j);
         (looks, state.particles.poses, state.particles.motions, books)
     };
     let (often, seldom) = (run(true), run(false));

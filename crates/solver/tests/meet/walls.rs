@@ -1,7 +1,7 @@
 //! Clouds of spheres that fall on walls: fixed, turning, on a belt, pressed by a servo.
 
 use dem_io::scene::{Factor, WallMotion};
-use dem_run::check::ledger::{Ledger, balance};
+use dem_run::check::ledger::{EnergyLedger, balance};
 use dem_run::check::limit::{Bound, limit};
 use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
@@ -34,7 +34,7 @@ fn falling(walls: Vec<Wall>, time_step_s: f64) -> State {
         motion.velocity_m_s[2] -= 1.0;
     }
     state.walls = walls;
-    state.ledger = Ledger::opened(&state);
+    state.ledger = EnergyLedger::opened(&state);
     state
 }
 

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Random;
 
-/// Share of the smallest radius.
+/// Fraction of the smallest radius.
 const BALL: f64 = 0.7;
 
 struct Packed {

@@ -5,7 +5,7 @@ use dem_run::run::Progress;
 use dem_run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
-use dem_run::state::shares::divide;
+use dem_run::state::partitions::divide;
 
 use crate::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
 
@@ -23,7 +23,7 @@ fn pile(threads: usize) -> Plan {
     let state = &mut plan.state;
     // So few particles are not worth a second thread but for this test.
     state.threads = threads;
-    state.shares = divide(&state.bonds, state.particles.free, threads);
+    state.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
     if let Some(contacts) = &mut state.contacts {
         contacts.divide(count, threads);
@@ -54,7 +54,7 @@ fn same(a: &State, b: &State) -> bool {
     let kept = |s: &State| {
         let sleep = sleep(s);
         (
-            sleep.beds.clone(),
+            sleep.of_cluster.clone(),
             sleep.pairs.clone(),
             sleep.touches.clone(),
             sleep.particle_steps,
@@ -108,9 +108,12 @@ fn an_interruption_changes_nothing() {
     let (mut awake, mut next) = (0, 0);
     while state.time_s < END_S {
         go(&mut state);
-        let woke = sleep(&state).news.iter().any(|news| news.kind == "awake");
+        let woke = sleep(&state).events.iter().any(|news| news.kind == "awake");
         awake += usize::from(woke);
-        let fell = sleep(&state).news.iter().any(|news| news.kind == "asleep");
+        let fell = sleep(&state)
+            .events
+            .iter()
+            .any(|news| news.kind == "asleep");
         if state.steps >= next || woke || fell {
             next = state.steps + 1 + state.steps % 37 + (END_S / state.time_step_s / 20.0) as u64;
             let shot = Snapshot::taken(

@@ -137,7 +137,11 @@ pub(crate) fn slab_kg() -> f64 {
 
 /// Contacts, bonds and wall touches that a step works on.
 pub(crate) fn work(state: &State) -> [usize; 4] {
-    let bonds = state.shares.iter().map(|share| share.own_bonds()).sum();
+    let bonds = state
+        .partitions
+        .iter()
+        .map(|partition| partition.own_bonds())
+        .sum();
     [
         bonds,
         state.contacts.as_ref().unwrap().pairs.len(),

@@ -111,7 +111,7 @@ fn a_clump_that_is_replaced_wakes_and_its_island_with_it() {
     go(&mut state);
     // What the lower one remembered of the upper one is there.
     let contacts = state.contacts.as_ref().unwrap();
-    let pressed = contacts.memories.iter().filter(|m| m.overlap_m() > 0.0);
+    let pressed = contacts.histories.iter().filter(|m| m.overlap_m() > 0.0);
     assert_eq!(pressed.count(), 4);
     go_until_asleep(&mut state, 2);
     assert_eq!(sleep(&state).bonds, 4);
@@ -131,7 +131,7 @@ fn sleepers_leave_and_keep_their_place_against_those_who_come() {
     go_until(&mut state, 0.05);
     // No place is free within the slab.
     assert_eq!((state.clumps.all.len(), sleep(&state).bodies), (1, 1));
-    assert_eq!(state.rules.inlets[0].come.bodies, 0);
+    assert_eq!(state.rules.inlets[0].progress.bodies, 0);
 }
 
 #[test]

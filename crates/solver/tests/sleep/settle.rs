@@ -28,12 +28,12 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
     assert_eq!(sleep(&state).touches.len(), 9);
     let poses = state.particles.poses.clone();
     let clumps = state.clumps.all.clone();
-    let room_m = state.contacts.as_ref().unwrap().room_m;
+    let skin_left_m = state.contacts.as_ref().unwrap().skin_left_m;
     let until_s = state.time_s + 0.02;
     go_until(&mut state, until_s);
     assert_eq!(state.particles.poses, poses);
     assert_eq!(state.clumps.all, clumps);
-    assert_eq!(state.contacts.as_ref().unwrap().room_m, room_m);
+    assert_eq!(state.contacts.as_ref().unwrap().skin_left_m, skin_left_m);
     go_until(&mut awake, until_s);
     assert!(awake.sleep.is_none());
     for state in [&mut state, &mut awake] {
@@ -79,7 +79,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
     let mut seen = Vec::new();
     while state.time_s < 0.3 {
         go(&mut state);
-        for news in &sleep(&state).news {
+        for news in &sleep(&state).events {
             seen.push((news.kind, news.bodies));
         }
     }

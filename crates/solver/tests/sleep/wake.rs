@@ -32,7 +32,7 @@ fn a_ball_that_comes_down_wakes_what_it_hits() {
         assert!((0.055..0.06).contains(&woke_s), "{woke_s}");
         // Not by a touch: there was room left.
         let contacts = state.contacts.as_ref().unwrap();
-        assert!(contacts.memories.iter().all(|m| m.overlap_m() == 0.0));
+        assert!(contacts.histories.iter().all(|m| m.overlap_m() == 0.0));
         let mut largest_m = 0.0_f64;
         go_until(&mut awake, state.time_s);
         assert_eq!(awake.steps, state.steps);
@@ -86,14 +86,17 @@ fn on_a_slope_friction_holds_as_before() {
     for (touch, kept) in state.walls[0].touching.iter().zip(&springs) {
         assert_eq!(touch.particle, kept.touch.particle);
         for k in 0..4 {
-            let (now, then) = (touch.memory.slid[k], kept.touch.memory.slid[k]);
+            let (now, then) = (
+                touch.history.tangential[k],
+                kept.touch.history.tangential[k],
+            );
             assert!(
                 (now - then).abs() <= 1e-12 * depth_m(slab_kg()),
                 "{now:e} {then:e}"
             );
         }
     }
-    let slid = springs[0].touch.memory.slid;
+    let slid = springs[0].touch.history.tangential;
     let spring_m = slid[0].hypot(slid[1]);
     move_on(&mut state);
     let mut moved_m = 0.0_f64;
@@ -127,7 +130,7 @@ fn a_pile_wakes_as_one() {
     while sleep(&state).bodies == 4 {
         go(&mut state);
     }
-    let news = &sleep(&state).news;
+    let news = &sleep(&state).events;
     assert_eq!((news.len(), news[0].kind, news[0].bodies), (1, "awake", 3));
     let asleep: Vec<bool> = state.clumps.all.iter().map(|clump| clump.asleep).collect();
     assert_eq!(asleep, [true, false, false, false]);

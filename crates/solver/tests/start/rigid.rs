@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::manner::{Behaviour, Elastic};
+use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::plan::Plan;
 use dem_run::state::contacts::Law;
 use dem_run::step::step;
@@ -81,7 +81,7 @@ fn a_material_that_keeps_its_volume_is_like_any_other() {
         young_modulus_pa: f64::INFINITY,
         poisson_ratio: 0.0,
     };
-    let law = HertzMindlin::new([soft, rigid], &Behaviour::new(0.5, 0.5));
+    let law = HertzMindlin::new([soft, rigid], &PairInput::new(0.5, 0.5));
     assert_near(law.young_modulus_pa, 4e6, 1e-14);
     assert_near(law.shear_modulus_pa, 1e6 / 1.5, 1e-14);
     for model in [

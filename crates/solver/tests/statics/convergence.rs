@@ -16,7 +16,7 @@ fn assert_quadratic(residuals: &[f64]) {
     assert!(seen >= 2, "too few to tell: {residuals:?}");
 }
 
-/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as it is long: in a slender one every other step stretches what the one before has bent.
+/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as it is long: in a slender one every other step rule_runs what the one before has bent.
 #[test]
 fn residuals_fall_quadratically_under_forces() {
     for (model, name) in MODELS {
@@ -66,7 +66,7 @@ fn bits_are_the_same_for_any_number_of_threads() {
         with_threads(threads, || {
             let mut state = random(BondModel::Timoshenko, threads);
             let found = rest(&mut state);
-            assert_eq!(state.shares.len(), threads);
+            assert_eq!(state.partitions.len(), threads);
             (found, state)
         })
     };

@@ -1,6 +1,6 @@
 //! Bodies that the tests run, and what they do with them.
 
-use dem_run::check::ledger::{Balance, Ledger, balance};
+use dem_run::check::ledger::{Balance, EnergyLedger, balance};
 use dem_run::physics::bond::damping::{
     DampingCoefficients, Reduced, chen, chen_by_mode, platzer, reduced,
 };
@@ -240,7 +240,7 @@ pub(crate) fn tumble(state: &mut State) {
 
 /// Opens the ledger anew.
 pub(crate) fn reopen(state: &mut State) {
-    state.ledger = Ledger::opened(state);
+    state.ledger = EnergyLedger::opened(state);
 }
 
 /// A step, with the ledger in its middle.

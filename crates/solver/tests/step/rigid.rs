@@ -34,7 +34,12 @@ fn a_body_moved_as_a_whole_feels_no_force() {
                 pose.turned = [q.i, q.j, q.k, q.w];
             }
             let p = &mut state.particles;
-            bond_wrenches(&state.bonds, &p.poses, &mut state.shares, &mut p.wrenches);
+            bond_wrenches(
+                &state.bonds,
+                &p.poses,
+                &mut state.partitions,
+                &mut p.wrenches,
+            );
             let of_all = |f: fn(&dem_run::state::particles::Wrench) -> [f64; 4]| {
                 p.wrenches
                     .iter()

@@ -66,7 +66,7 @@ fn curves_of_tests_are_compared() {
         let times = [0, run].map(|run| table["runs"][run]["time_s"].as_f64().unwrap());
         assert_same_number(times[0] / times[1], &judged["times_as_fast"]);
     }
-    // Both break at one force, so that the softer one goes on longer.
+    // Both break at one force, so that the stiffness_ratio one goes on longer.
     let soft = table["runs"][1]["results"][0]["error"].as_f64().unwrap();
     assert!((0.2..0.8).contains(&soft), "{soft}");
     assert!(table["runs"][0]["results"][0]["times_as_fast"].is_null());

@@ -3,7 +3,7 @@
 //! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
 
 use super::stiffness::Stiffness;
-use crate::physics::number::{Number, Triple};
+use crate::physics::number::{Number, Vec3};
 use nalgebra::Vector3;
 use std::ops::Add;
 
@@ -123,8 +123,8 @@ pub fn damping_forces(
     length_m: f64,
     ends: &[EndMotion; 2],
 ) -> DampingForces {
-    let triple = |v: &Vector3<f64>| Triple(v.x, v.y, v.z);
-    let vector = |t: Triple<f64>| Vector3::new(t.0, t.1, t.2);
+    let triple = |v: &Vector3<f64>| Vec3(v.x, v.y, v.z);
+    let vector = |t: Vec3<f64>| Vector3::new(t.0, t.1, t.2);
     let motions = ends.map(|end| [triple(&end.velocity_m_s), triple(&end.spin_rad_s)]);
     let (force_on_b, torques) = resistance(coefficients, *levers_m, triple(c), length_m, motions);
     DampingForces {
@@ -139,10 +139,10 @@ pub fn damping_forces(
 pub fn resistance<T: Number>(
     coefficients: &DampingCoefficients<T>,
     [lever_a, lever_b]: [T; 2],
-    c: Triple<T>,
+    c: Vec3<T>,
     length_m: T,
-    [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Triple<T>; 2]; 2],
-) -> (Triple<T>, [Triple<T>; 2]) {
+    [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Vec3<T>; 2]; 2],
+) -> (Vec3<T>, [Vec3<T>; 2]) {
     let scale = length_m / (lever_a + lever_b);
     let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
     let velocity = velocity_b - velocity_a - spin_a.cross(arm_a) - spin_b.cross(arm_b);
@@ -157,6 +157,6 @@ pub fn resistance<T: Number>(
 
 /// `along` times the part of a vector along `c` plus `across` times the rest.
 #[inline(always)]
-fn split<T: Number>(along: T, across: T, vector: Triple<T>, c: Triple<T>) -> Triple<T> {
+fn split<T: Number>(along: T, across: T, vector: Vec3<T>, c: Vec3<T>) -> Vec3<T> {
     vector * across + c * ((along - across) * vector.dot(c))
 }

@@ -256,20 +256,20 @@ impl Screen {
     /// times pi r^3 are F r + 4 M and S r + 2 T.
     #[inline(always)]
     pub fn used_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
-        let (bending, torsion) = (load.bending_n_m.times(4.0), load.torsion_n_m.times(2.0));
+        let (bending, torsion) = (load.bending_n_m.scale(4.0), load.torsion_n_m.scale(2.0));
         let axial = load.normal_n * radius_m;
-        let at_edges = bending.times(CANCELLATION);
+        let at_edges = bending.scale(CANCELLATION);
         let (tensile, pressed) = (at_edges + axial, at_edges - axial);
         let (tensile, pressed) = (tensile.if_positive(tensile), pressed.if_positive(pressed));
         let pulled = axial.if_positive(axial) + bending;
         let shear = load.shear_n * radius_m + torsion;
         let [by_tension, by_compression, by_shear, by_von_mises] = self.per_strength_squared;
         let used = (tensile * tensile)
-            .times(by_tension)
-            .larger((pressed * pressed).times(by_compression))
-            .larger((shear * shear).times(by_shear))
-            .larger((pulled * pulled + (shear * shear).times(3.0)).times(by_von_mises));
-        let volume = (radius_m * radius_m * radius_m).times(PI);
+            .scale(by_tension)
+            .maximum((pressed * pressed).scale(by_compression))
+            .maximum((shear * shear).scale(by_shear))
+            .maximum((pulled * pulled + (shear * shear).scale(3.0)).scale(by_von_mises));
+        let volume = (radius_m * radius_m * radius_m).scale(PI);
         [used, volume * volume]
     }
 }

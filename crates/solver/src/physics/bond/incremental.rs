@@ -63,14 +63,14 @@ pub fn advance(stiffness: &Stiffness, history: &History, step: &Step) -> History
     let half_moment = -0.5 * (stiffness.bending * turned + middle * (excess * turned.dot(&middle)));
 
     // To the middle of the axis' turn, about the axis there, and on to its end: the same turn twice, as the middle halves the angle.
-    let swing = before.cross(&middle);
-    let per_swing = 1.0 / (1.0 + before.dot(&middle));
+    let rotation = before.cross(&middle);
+    let per_rotation = 1.0 / (1.0 + before.dot(&middle));
     let spin = middle * (0.25 * (turn_a + turn_b).dot(&middle));
     let per_spin = 2.0 / (1.0 + spin.norm_squared());
     let carry = |remembered: &Vector3<f64>, half: &Vector3<f64>| {
-        let there = swung(remembered, &swing, per_swing) + half;
+        let there = rotated(remembered, &rotation, per_rotation) + half;
         let spun = there + per_spin * spin.cross(&(there + spin.cross(&there)));
-        swung(&(spun + half), &swing, per_swing)
+        rotated(&(spun + half), &rotation, per_rotation)
     };
     History {
         shear_force: carry(&history.shear_force, &half_force),
@@ -89,12 +89,12 @@ pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f
     let normal = stiffness.normal * stretch;
     let torsion = history.moment.dot(&c);
     let bending = history.moment - c * torsion;
-    let pry = apart_m.cross(&history.shear_force) / initial;
+    let shear_moment = apart_m.cross(&history.shear_force) / initial;
     BondForces {
         force_on_b: history.shear_force - c * normal,
         torques: [
-            -history.moment - lever_a * pry,
-            history.moment - lever_b * pry,
+            -history.moment - lever_a * shear_moment,
+            history.moment - lever_b * shear_moment,
         ],
         energy: BondEnergy {
             normal: 0.5 * normal * stretch,
@@ -111,9 +111,9 @@ pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f
     }
 }
 
-/// A vector turned as one unit vector is into another whose cross product is `swing`; `per_swing` is one over (1 + their product).
+/// A vector turned as one unit vector is into another whose cross product is `rotation`; `per_rotation` is one over (1 + their product).
 #[inline(always)]
-fn swung(vector: &Vector3<f64>, swing: &Vector3<f64>, per_swing: f64) -> Vector3<f64> {
-    let once = swing.cross(vector);
-    vector + once + per_swing * swing.cross(&once)
+fn rotated(vector: &Vector3<f64>, rotation: &Vector3<f64>, per_rotation: f64) -> Vector3<f64> {
+    let once = rotation.cross(vector);
+    vector + once + per_rotation * rotation.cross(&once)
 }

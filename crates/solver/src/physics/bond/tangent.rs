@@ -1,11 +1,11 @@
-//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the very formulas of the forces ([`answer`]), differentiated exactly.
+//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the very formulas of the forces ([`bond_response`]), differentiated exactly.
 
 use nalgebra::Vector3;
 
 use super::stiffness::Stiffness;
-use super::total::{End, answer};
+use super::total::{End, bond_response};
 use crate::physics::dual::Dual;
-use crate::physics::number::{Triple, Turn};
+use crate::physics::number::{Rotation, Vec3};
 
 /// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z of the first (3..6), then those of the second.
 pub const FREEDOMS: usize = 12;
@@ -34,20 +34,23 @@ pub fn bond_tangent(
         bending: constant(stiffness.bending),
         levers_m: stiffness.levers_m.map(constant),
     };
-    let direction = Triple(direction.x, direction.y, direction.z);
-    let Triple(dx, dy, dz) = direction;
-    let direction = Triple(constant(dx), constant(dy), constant(dz));
+    let direction = Vec3(direction.x, direction.y, direction.z);
+    let Vec3(dx, dy, dz) = direction;
+    let direction = Vec3(constant(dx), constant(dy), constant(dz));
     let apart = ends[1].position_m - ends[0].position_m;
-    let apart = Triple(
+    let apart = Vec3(
         Number::variable(apart.x, 0),
         Number::variable(apart.y, 1),
         Number::variable(apart.z, 2),
     );
     let turned = [turning(&ends[0], 3), turning(&ends[1], 6)];
-    let answer = answer(&stiffness, direction, apart, turned);
+    let bond_response = bond_response(&stiffness, direction, apart, turned);
 
-    let rows = |triple: Triple<Number>| [triple.0.slopes, triple.1.slopes, triple.2.slopes];
-    let (force_on_b, [torque_a, torque_b]) = (rows(answer.force_on_b), answer.torques.map(rows));
+    let rows = |triple: Vec3<Number>| [triple.0.slopes, triple.1.slopes, triple.2.slopes];
+    let (force_on_b, [torque_a, torque_b]) = (
+        rows(bond_response.force_on_b),
+        bond_response.torques.map(rows),
+    );
     let mut tangent = [[0.0; FREEDOMS]; FREEDOMS];
     for k in 0..3 {
         let on_b = spread(&force_on_b[k], -1.0);
@@ -60,7 +63,7 @@ pub fn bond_tangent(
 }
 
 /// How an end is turned, with the derivatives by a further turn: half of the turn times the present rotation. Variables from `first` on.
-fn turning(end: &End, first: usize) -> Turn<Number> {
+fn turning(end: &End, first: usize) -> Rotation<Number> {
     let (v, w) = (end.turned.imag(), end.turned.w);
     let mut parts = [v.x, v.y, v.z, w].map(Number::constant);
     for k in 0..3 {
@@ -73,7 +76,7 @@ fn turning(end: &End, first: usize) -> Turn<Number> {
         parts[3].slopes[first + k] = -half.dot(&v);
     }
     let [x, y, z, w] = parts;
-    Turn(Triple(x, y, z), w)
+    Rotation(Vec3(x, y, z), w)
 }
 
 /// A row of the tangent from derivatives by the nine variables, times a factor.

@@ -11,7 +11,7 @@
 
 use super::BondLoad;
 use super::stiffness::Stiffness;
-use crate::physics::number::{Number, Triple, Turn};
+use crate::physics::number::{Number, Rotation, Vec3};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// An end of a bond: where its particle is and how it is turned.
@@ -58,33 +58,33 @@ pub struct BondForces {
 
 /// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in [`bond_forces`], so that a bond at rest gives no force to the last bit.
 pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {
-    let apart = Triple(apart.x, apart.y, apart.z);
-    let Triple(x, y, z) = apart * apart.square().root().inverse();
+    let apart = Vec3(apart.x, apart.y, apart.z);
+    let Vec3(x, y, z) = apart * apart.square().sqrt().inverse();
     Vector3::new(x, y, z)
 }
 
 /// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
 pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
-    let triple = |v: &Vector3<f64>| Triple(v.x, v.y, v.z);
-    let vector = |t: Triple<f64>| Vector3::new(t.0, t.1, t.2);
+    let triple = |v: &Vector3<f64>| Vec3(v.x, v.y, v.z);
+    let vector = |t: Vec3<f64>| Vector3::new(t.0, t.1, t.2);
     let apart = ends[1].position_m - ends[0].position_m;
-    let turned = ends.map(|end| Turn(triple(&end.turned.imag()), end.turned.w));
-    let answer = answer(stiffness, triple(direction), triple(&apart), turned);
+    let turned = ends.map(|end| Rotation(triple(&end.turned.imag()), end.turned.w));
+    let bond_response = bond_response(stiffness, triple(direction), triple(&apart), turned);
     BondForces {
-        force_on_b: vector(answer.force_on_b),
-        torques: answer.torques.map(vector),
-        energy: answer.energy,
-        load: answer.load,
+        force_on_b: vector(bond_response.force_on_b),
+        torques: bond_response.torques.map(vector),
+        energy: bond_response.energy,
+        load: bond_response.load,
     }
 }
 
 /// What one bond or several at once do to their ends: as [`BondForces`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer<T> {
+pub struct BondResponse<T> {
     /// Force on the second end, N.
-    pub force_on_b: Triple<T>,
+    pub force_on_b: Vec3<T>,
     /// Torques on the two ends, N m.
-    pub torques: [Triple<T>; 2],
+    pub torques: [Vec3<T>; 2],
     /// Energy stored, J.
     pub energy: BondEnergy<T>,
     /// What it carries.
@@ -96,29 +96,29 @@ pub struct Answer<T> {
 ///
 /// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and load the caller does not read is not computed.
 #[inline(always)]
-pub fn answer<T: Number>(
+pub fn bond_response<T: Number>(
     stiffness: &Stiffness<T>,
-    direction: Triple<T>,
-    apart: Triple<T>,
-    turned: [Turn<T>; 2],
-) -> Answer<T> {
+    direction: Vec3<T>,
+    apart: Vec3<T>,
+    turned: [Rotation<T>; 2],
+) -> BondResponse<T> {
     let [lever_a, lever_b] = stiffness.levers_m;
-    let length = apart.square().root();
+    let length = apart.square().sqrt();
     let per_length = length.inverse();
     let c = apart * per_length;
     let initial = lever_a + lever_b;
-    let stretch = length - initial;
+    let elongation = length - initial;
 
-    // s = L0 c + lean: nothing cancels in a lean that is small, and at rest it is 0 to the last bit.
+    // s = L0 c + offset: nothing cancels in an offset that is small, and at rest it is 0 to the last bit.
     let [turned_a, turned_b] = turned;
     let (direction_a, direction_b) = (turned_a.of(direction), turned_b.of(direction));
-    let lean = (direction_a - c) * lever_a + (direction_b - c) * lever_b;
-    let lean_along = c.dot(lean);
-    let along = initial + lean_along;
-    let across = lean - c * lean_along;
+    let offset = (direction_a - c) * lever_a + (direction_b - c) * lever_b;
+    let offset_along = c.dot(offset);
+    let along = initial + offset_along;
+    let shear_displacement = offset - c * offset_along;
 
     // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.
-    let Turn(half_phi, cosine) = turned_b.since(turned_a);
+    let Rotation(half_phi, cosine) = turned_b.relative_to(turned_a);
     let sign = cosine.sign();
     let (half_phi, cosine) = (half_phi * sign, cosine * sign);
     let phi = half_phi + half_phi;
@@ -132,28 +132,28 @@ pub fn answer<T: Number>(
     // Gradients of the energy with respect to phi and e; a change of e is a change of the sum, across it.
     let by_phi = phi * stiffness.bending + twist * excess;
     let by_sum = bend * (excess * twist_per_sum);
-    let turn = by_phi * cosine;
-    let swing = half_phi.cross(by_phi);
+    let relative_torque = by_phi * cosine;
+    let shared_torque = half_phi.cross(by_phi);
 
-    let shear_force = across * stiffness.shear;
-    let normal_force = stiffness.normal * stretch;
-    Answer {
+    let shear_force = shear_displacement * stiffness.shear;
+    let normal_force = stiffness.normal * elongation;
+    BondResponse {
         force_on_b: shear_force * (along * per_length) - c * normal_force,
         torques: [
-            turn - swing - direction_a.cross(shear_force * lever_a + by_sum),
-            -turn - swing - direction_b.cross(shear_force * lever_b + by_sum),
+            relative_torque - shared_torque - direction_a.cross(shear_force * lever_a + by_sum),
+            -relative_torque - shared_torque - direction_b.cross(shear_force * lever_b + by_sum),
         ],
         energy: BondEnergy {
-            normal: (normal_force * stretch).times(0.5),
-            shear: (stiffness.shear * across.square()).times(0.5),
-            torsion: (stiffness.torsion * twist.square()).times(0.5),
-            bending: (stiffness.bending * bend.square()).times(0.5),
+            normal: (normal_force * elongation).scale(0.5),
+            shear: (stiffness.shear * shear_displacement.square()).scale(0.5),
+            torsion: (stiffness.torsion * twist.square()).scale(0.5),
+            bending: (stiffness.bending * bend.square()).scale(0.5),
         },
         load: BondLoad {
             normal_n: normal_force,
-            shear_n: stiffness.shear * across.square().root(),
-            torsion_n_m: stiffness.torsion * twist.square().root(),
-            bending_n_m: stiffness.bending * bend.square().root(),
+            shear_n: stiffness.shear * shear_displacement.square().sqrt(),
+            torsion_n_m: stiffness.torsion * twist.square().sqrt(),
+            bending_n_m: stiffness.bending * bend.square().sqrt(),
         },
     }
 }

@@ -7,9 +7,9 @@
 //! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al. 1992), and the [ratio zeta](super::restitution)
 //!   that gives the wanted restitution.
 
-use super::manner::{Behaviour, Elastic, Manner};
-use super::touch::Touch;
-use super::{Grip, NormalLaw};
+use super::kinematics::ContactKinematics;
+use super::pair_parameters::{Elastic, PairInput, PairParameters};
+use super::{NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 
 /// The law for a pair of materials.
@@ -20,12 +20,12 @@ pub struct HertzMindlin<T = f64> {
     /// G*, Pa.
     pub shear_modulus_pa: T,
     /// How it damps and rubs.
-    pub manner: Manner<T>,
+    pub parameters: PairParameters<T>,
 }
 
 impl HertzMindlin {
     /// Of two materials, one of them at most rigid.
-    pub fn new(materials: [Elastic; 2], behaviour: &Behaviour) -> Self {
+    pub fn new(materials: [Elastic; 2], pair_input: &PairInput) -> Self {
         let [a, b] = materials;
         let softness = |m: Elastic| (1.0 - m.poisson_ratio.powi(2)) / m.young_modulus_pa;
         let shear_softness = |m: Elastic| {
@@ -34,7 +34,7 @@ impl HertzMindlin {
         Self {
             young_modulus_pa: 1.0 / (softness(a) + softness(b)),
             shear_modulus_pa: 1.0 / (shear_softness(a) + shear_softness(b)),
-            manner: Manner::new(behaviour),
+            parameters: PairParameters::new(pair_input),
         }
     }
 
@@ -49,7 +49,7 @@ impl<T: Number> HertzMindlin<T> {
     /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the root of R* times the overlap.
     #[inline(always)]
     pub fn normal_n_m(&self, contact_radius_m: T) -> T {
-        self.young_modulus_pa.times(2.0) * contact_radius_m
+        self.young_modulus_pa.scale(2.0) * contact_radius_m
     }
 }
 
@@ -58,31 +58,36 @@ const TSUJI: f64 = 1.825_741_858_350_553_8;
 
 impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
     #[inline(always)]
-    fn grip(&self, touch: &Touch<T>, overlap_before_m: T, _dt: f64) -> Grip<T> {
+    fn evaluate(
+        &self,
+        touch: &ContactKinematics<T>,
+        overlap_before_m: T,
+        _dt: f64,
+    ) -> NormalResponse<T> {
         let overlap = touch.overlap_m.if_positive(touch.overlap_m);
-        let contact_radius = (touch.radius_m * overlap).root();
-        let contact_radius_before = (touch.radius_m * overlap_before_m).root();
-        let g = self.shear_modulus_pa.times(8.0);
+        let contact_radius = (touch.effective_radius_m * overlap).sqrt();
+        let contact_radius_before = (touch.effective_radius_m * overlap_before_m).sqrt();
+        let g = self.shear_modulus_pa.scale(8.0);
         let (normal, tangential) = (self.normal_n_m(contact_radius), g * contact_radius);
-        let elastic = (normal * overlap).times(2.0 / 3.0);
-        let ratio = self.manner.damping_ratio.times(TSUJI);
-        let tangential_ratio = self.manner.tangential_damping_ratio.times(TSUJI);
-        let critical = (normal * touch.mass_kg).root();
-        Grip {
+        let elastic = (normal * overlap).scale(2.0 / 3.0);
+        let ratio = self.parameters.damping_ratio.scale(TSUJI);
+        let tangential_ratio = self.parameters.tangential_damping_ratio.scale(TSUJI);
+        let critical = (normal * touch.effective_mass_kg).sqrt();
+        NormalResponse {
             elastic_n: elastic,
-            energy_j: (elastic * overlap).times(0.4),
+            energy_j: (elastic * overlap).scale(0.4),
             normal_n_m: [self.normal_n_m(contact_radius_before), normal],
             tangential_n_m: [g * contact_radius_before, tangential],
-            softer: overlap.if_positive(contact_radius_before / contact_radius),
+            stiffness_ratio: overlap.if_positive(contact_radius_before / contact_radius),
             normal_damping_n_s_m: ratio * critical,
             tangential_damping_n_s_m: tangential_ratio
-                * (g / self.young_modulus_pa.times(2.0)).root()
+                * (g / self.young_modulus_pa.scale(2.0)).sqrt()
                 * critical,
         }
     }
 
     #[inline(always)]
-    fn manner(&self) -> &Manner<T> {
-        &self.manner
+    fn parameters(&self) -> &PairParameters<T> {
+        &self.parameters
     }
 }

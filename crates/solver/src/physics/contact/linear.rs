@@ -6,9 +6,9 @@
 //! The dashpot pulls from the first moment on with all it has, while a step is one kick around its end. So that the loss does not hang on the moment
 //! within a step at which the ends meet, the first kick has the share of the dashpot that is due since then.
 
-use super::manner::{Behaviour, Manner};
-use super::touch::Touch;
-use super::{Grip, NormalLaw};
+use super::kinematics::ContactKinematics;
+use super::pair_parameters::{PairInput, PairParameters};
+use super::{NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 
 /// The law for a pair of materials.
@@ -19,60 +19,66 @@ pub struct Linear<T = f64> {
     /// k_t, N/m.
     pub tangential_n_m: T,
     /// How it damps and rubs.
-    pub manner: Manner<T>,
+    pub parameters: PairParameters<T>,
 }
 
 impl Linear {
     /// Of this stiffness, N/m, and this ratio k_t / k_n.
-    pub fn new(normal_n_m: f64, tangential_ratio: f64, behaviour: &Behaviour) -> Self {
+    pub fn new(normal_n_m: f64, tangential_ratio: f64, pair_input: &PairInput) -> Self {
         Self {
             normal_n_m,
             tangential_n_m: tangential_ratio * normal_n_m,
-            manner: Manner::new(behaviour),
+            parameters: PairParameters::new(pair_input),
         }
     }
 }
 
 impl<T: Number> NormalLaw<T> for Linear<T> {
     #[inline(always)]
-    fn grip(&self, touch: &Touch<T>, overlap_before_m: T, dt: f64) -> Grip<T> {
+    fn evaluate(
+        &self,
+        touch: &ContactKinematics<T>,
+        overlap_before_m: T,
+        dt: f64,
+    ) -> NormalResponse<T> {
         let overlap = touch.overlap_m.if_positive(touch.overlap_m);
         let due = due_of_kick(touch, overlap_before_m, dt);
         let normal = overlap.if_positive(self.normal_n_m);
         let tangential = overlap.if_positive(self.tangential_n_m);
         let normal_before = overlap_before_m.if_positive(self.normal_n_m);
         let elastic = normal * overlap;
-        Grip {
+        NormalResponse {
             elastic_n: elastic,
-            energy_j: (elastic * overlap).times(0.5),
+            energy_j: (elastic * overlap).scale(0.5),
             normal_n_m: [normal_before, normal],
             tangential_n_m: [
                 overlap_before_m.if_positive(self.tangential_n_m),
                 tangential,
             ],
-            softer: overlap.if_positive(normal_before / normal),
-            normal_damping_n_s_m: (self.manner.damping_ratio * (normal * touch.mass_kg).root())
-                .times(2.0)
+            stiffness_ratio: overlap.if_positive(normal_before / normal),
+            normal_damping_n_s_m: (self.parameters.damping_ratio
+                * (normal * touch.effective_mass_kg).sqrt())
+            .scale(2.0)
                 * due,
-            tangential_damping_n_s_m: (self.manner.tangential_damping_ratio
-                * (tangential * touch.mass_kg).root())
-            .times(2.0),
+            tangential_damping_n_s_m: (self.parameters.tangential_damping_ratio
+                * (tangential * touch.effective_mass_kg).sqrt())
+            .scale(2.0),
         }
     }
 
     #[inline(always)]
-    fn manner(&self) -> &Manner<T> {
-        &self.manner
+    fn parameters(&self) -> &PairParameters<T> {
+        &self.parameters
     }
 }
 
-/// Share of a kick that is due if the ends met in the step of `dt`, s, before its middle: since then, and half a step after it. 1 where they touched a step
+/// Fraction of a kick that is due if the ends met in the step of `dt`, s, before its middle: since then, and half a step after it. 1 where they touched a step
 /// before, or part.
 #[inline(always)]
-fn due_of_kick<T: Number>(touch: &Touch<T>, overlap_before_m: T, dt: f64) -> T {
+fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt: f64) -> T {
     let one = overlap_before_m.zero().plus(1.0);
-    let approached_m = touch.velocity_m_s.dot(touch.middle).times(-dt);
-    let since_met = (touch.overlap_m / approached_m).smaller(one);
+    let approached_m = touch.velocity_m_s.dot(touch.middle).scale(-dt);
+    let since_met = (touch.overlap_m / approached_m).minimum(one);
     let more = approached_m.if_positive(since_met.plus(-0.5));
     one + more - overlap_before_m.if_positive(more)
 }

@@ -21,7 +21,7 @@ pub struct Relaxed<T = f64> {
 /// Overlap for the contact law of a pair that overlaps by `overlap_m`, whose origin was `origin_m` and which is ordinary below `least_m` (the setting times R*), m.
 #[inline(always)]
 pub fn relaxed<T: Number>(overlap_m: T, origin_m: T, least_m: T) -> Relaxed<T> {
-    let lower = overlap_m.smaller(origin_m);
+    let lower = overlap_m.minimum(origin_m);
     let origin = (lower - least_m).if_positive(lower);
     Relaxed {
         overlap_m: overlap_m - origin,

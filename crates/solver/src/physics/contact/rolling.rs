@@ -9,10 +9,10 @@
 //!   limit; c_r = 2 eta sqrt(J k_r) with J the reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts in the limit,
 //!   so that it fades out instead of jumping to 0 when the spring begins to slip; and the spring is treated as the tangential one when the load changes.
 
-use super::Grip;
-use super::slider::{Slid, slide};
-use super::touch::{Carry, Touch};
-use crate::physics::number::{Number, Triple};
+use super::NormalResponse;
+use super::kinematics::{ContactKinematics, FrameRotation};
+use super::slider::{TangentialStep, coulomb_return_map};
+use crate::physics::number::{Number, Vec3};
 
 /// What becomes of rolling.
 pub trait RollingFriction<T: Number> {
@@ -22,16 +22,20 @@ pub trait RollingFriction<T: Number> {
     /// The spring after a step that began with the elongation `before`, in the axes of that moment, pressed by the normal force `pressed`, N.
     fn roll(
         &self,
-        grip: &Grip<T>,
-        touch: &Touch<T>,
-        carry: &Carry<T>,
-        before: Triple<T>,
+        normal_response: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+        carry: &FrameRotation<T>,
+        before: Vec3<T>,
         pressed: T,
         dt: f64,
-    ) -> Slid<T>;
+    ) -> TangentialStep<T>;
 
     /// Stiffness, N m/rad, and damping, N m s/rad, of small rolling.
-    fn linearised(&self, grip: &Grip<T>, touch: &Touch<T>) -> [T; 2];
+    fn linearised(
+        &self,
+        normal_response: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+    ) -> [T; 2];
 }
 
 /// No rolling friction.
@@ -66,20 +70,20 @@ impl<T: Number> RollingFriction<T> for NoRolling {
     #[inline(always)]
     fn roll(
         &self,
-        _: &Grip<T>,
-        touch: &Touch<T>,
-        _: &Carry<T>,
-        _: Triple<T>,
+        _: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+        _: &FrameRotation<T>,
+        _: Vec3<T>,
         _: T,
         _: f64,
-    ) -> Slid<T> {
-        let none = touch.radius_m.zero();
-        damped(Triple(none, none, none))
+    ) -> TangentialStep<T> {
+        let none = touch.effective_radius_m.zero();
+        damped(Vec3(none, none, none))
     }
 
     #[inline(always)]
-    fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
-        let none = touch.radius_m.zero();
+    fn linearised(&self, _: &NormalResponse<T>, touch: &ContactKinematics<T>) -> [T; 2] {
+        let none = touch.effective_radius_m.zero();
         [none, none]
     }
 }
@@ -90,25 +94,25 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
     #[inline(always)]
     fn roll(
         &self,
-        _: &Grip<T>,
-        touch: &Touch<T>,
-        carry: &Carry<T>,
-        _: Triple<T>,
+        _: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+        carry: &FrameRotation<T>,
+        _: Vec3<T>,
         pressed: T,
         dt: f64,
-    ) -> Slid<T> {
-        let limit = self.friction * touch.radius_m * pressed;
+    ) -> TangentialStep<T> {
+        let limit = self.friction * touch.effective_radius_m * pressed;
         let rolling = rolling(touch);
-        let speed = rolling.square().root();
-        let slow = limit.times(dt / ConstantMoment::SHARE) / touch.rolling_inertia_kg_m2;
-        let coefficient = speed.if_positive(limit.if_positive(limit / speed.larger(slow)));
+        let speed = rolling.square().sqrt();
+        let slow = limit.scale(dt / ConstantMoment::SHARE) / touch.effective_rolling_inertia_kg_m2;
+        let coefficient = speed.if_positive(limit.if_positive(limit / speed.maximum(slow)));
         damped(carry.to_end(rolling * coefficient))
     }
 
     /// Nothing: its viscous part follows the time step and is stable at any.
     #[inline(always)]
-    fn linearised(&self, _: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
-        let none = touch.radius_m.zero();
+    fn linearised(&self, _: &NormalResponse<T>, touch: &ContactKinematics<T>) -> [T; 2] {
+        let none = touch.effective_radius_m.zero();
         [none, none]
     }
 }
@@ -119,34 +123,40 @@ impl<T: Number> RollingFriction<T> for ElasticPlastic<T> {
     #[inline(always)]
     fn roll(
         &self,
-        grip: &Grip<T>,
-        touch: &Touch<T>,
-        carry: &Carry<T>,
-        before: Triple<T>,
+        normal_response: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+        carry: &FrameRotation<T>,
+        before: Vec3<T>,
         pressed: T,
         dt: f64,
-    ) -> Slid<T> {
+    ) -> TangentialStep<T> {
         let rolling = rolling(touch);
-        let [stiffness, damping] = self.linearised(grip, touch);
-        let arm = self.friction * touch.radius_m;
-        let stiffness_before = (grip.normal_n_m[0] * arm * arm).times(STIFFNESS);
-        let one = touch.radius_m.zero().plus(1.0);
-        slide(
+        let [stiffness, damping] = self.linearised(normal_response, touch);
+        let arm = self.friction * touch.effective_radius_m;
+        let stiffness_before = (normal_response.normal_n_m[0] * arm * arm).scale(STIFFNESS);
+        let one = touch.effective_radius_m.zero().plus(1.0);
+        coulomb_return_map(
             carry,
             before,
-            rolling.times(dt),
+            rolling.scale(dt),
             [stiffness_before, stiffness],
-            grip.softer.smaller(one),
+            normal_response.stiffness_ratio.minimum(one),
             arm * pressed,
             rolling * damping,
         )
     }
 
     #[inline(always)]
-    fn linearised(&self, grip: &Grip<T>, touch: &Touch<T>) -> [T; 2] {
-        let arm = self.friction * touch.radius_m;
-        let stiffness = (grip.normal_n_m[1] * arm * arm).times(STIFFNESS);
-        let critical = (stiffness * touch.rolling_inertia_kg_m2).root().times(2.0);
+    fn linearised(
+        &self,
+        normal_response: &NormalResponse<T>,
+        touch: &ContactKinematics<T>,
+    ) -> [T; 2] {
+        let arm = self.friction * touch.effective_radius_m;
+        let stiffness = (normal_response.normal_n_m[1] * arm * arm).scale(STIFFNESS);
+        let critical = (stiffness * touch.effective_rolling_inertia_kg_m2)
+            .sqrt()
+            .scale(2.0);
         [stiffness, self.damping_ratio * critical]
     }
 }
@@ -156,17 +166,17 @@ const STIFFNESS: f64 = 2.25;
 
 /// Relative spin across the normal, in the middle of the step, rad/s.
 #[inline(always)]
-fn rolling<T: Number>(touch: &Touch<T>) -> Triple<T> {
+fn rolling<T: Number>(touch: &ContactKinematics<T>) -> Vec3<T> {
     touch.spin_rad_s - touch.middle * touch.spin_rad_s.dot(touch.middle)
 }
 
 /// A damper without a spring.
 #[inline(always)]
-fn damped<T: Number>(damping: Triple<T>) -> Slid<T> {
+fn damped<T: Number>(damping: Vec3<T>) -> TangentialStep<T> {
     let none = damping.0.zero();
-    Slid {
-        spring: Triple(none, none, none),
-        force: Triple(none, none, none),
+    TangentialStep {
+        spring: Vec3(none, none, none),
+        force: Vec3(none, none, none),
         damping,
         stored_j: none,
         lost_j: none,

@@ -1,17 +1,17 @@
 //! A spring that slides: tangential friction and elastic-plastic rolling friction are the same thing with other units.
 
-use super::touch::Carry;
-use crate::physics::number::{Number, Triple};
+use super::kinematics::FrameRotation;
+use crate::physics::number::{Number, Vec3};
 
 /// A spring after a step, in the axes of the end of the step. Forces are those that the spring and its damper hold against the motion.
 #[derive(Debug, Clone, Copy)]
-pub struct Slid<T> {
+pub struct TangentialStep<T> {
     /// Elongation.
-    pub spring: Triple<T>,
+    pub spring: Vec3<T>,
     /// Of the spring.
-    pub force: Triple<T>,
+    pub force: Vec3<T>,
     /// Of the damper.
-    pub damping: Triple<T>,
+    pub damping: Vec3<T>,
     /// Energy stored, J.
     pub stored_j: T,
     /// Energy lost in the step, J.
@@ -25,19 +25,19 @@ pub struct Slid<T> {
 /// The motion adds its part halfway through that change. The spring is cut back where its force is above `limit`, and of the damper only so much
 /// acts that both together stay below it: a sliding contact is not damped, and there is no jump when it begins to slide.
 #[inline(always)]
-pub fn slide<T: Number>(
-    carry: &Carry<T>,
-    before: Triple<T>,
-    moved: Triple<T>,
+pub fn coulomb_return_map<T: Number>(
+    carry: &FrameRotation<T>,
+    before: Vec3<T>,
+    moved: Vec3<T>,
     [stiffness_before, stiffness]: [T; 2],
     kept: T,
     limit: T,
-    damping: Triple<T>,
-) -> Slid<T> {
+    damping: Vec3<T>,
+) -> TangentialStep<T> {
     let before = carry.to_middle(before);
-    let stuck = before * kept + moved * kept.plus(1.0).times(0.5);
-    let needed = stiffness * stuck.square().root();
-    let held = limit.if_positive(limit / limit.larger(needed));
+    let stuck = before * kept + moved * kept.plus(1.0).scale(0.5);
+    let needed = stiffness * stuck.square().sqrt();
+    let held = limit.if_positive(limit / limit.maximum(needed));
     let spring = stuck * held;
     let force = spring * stiffness;
 
@@ -50,15 +50,15 @@ pub fn slide<T: Number>(
     let square = damping.square();
     let slack = limit * limit - force.square();
     let room = slack.if_positive(slack);
-    let q = (along * along + square * room).root() - along;
-    let share = q.if_positive(q / q.larger(square));
+    let q = (along * along + square * room).sqrt() - along;
+    let share = q.if_positive(q / q.maximum(square));
 
     let at_end = carry.to_end(spring);
-    Slid {
+    TangentialStep {
         spring: at_end,
         force: at_end * stiffness,
         damping: carry.to_end(damping * share),
-        stored_j: force.dot(spring).times(0.5),
-        lost_j: (given - taken).times(0.5),
+        stored_j: force.dot(spring).scale(0.5),
+        lost_j: (given - taken).scale(0.5),
     }
 }

@@ -1,17 +1,17 @@
 //! Which of the near pairs are close: only those are computed, until others may have come close.
 
-use super::Scene;
-use crate::physics::number::Triple;
+use super::StepInput;
+use crate::physics::number::Vec3;
 use crate::stages::blocks::fetch_soon;
 use crate::stages::lanes::{Lanes, MOST};
-use crate::state::contacts::{ContactShare, Contacts};
+use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::Pose;
 
 /// Contacts between those that are looked at and those whose second particles are fetched into the cache.
 const AHEAD: usize = 32;
 /// Steps at the present speed until all pairs are looked at again, at most; and at least, else they are looked at in each step.
 const STEPS: [f64; 2] = [32.0, 4.0];
-/// Pairs that are further apart than this share of the skin are not computed.
+/// Pairs that are further apart than this fraction of the skin are not computed.
 const CLOSE: f64 = 1.0 / 16.0;
 
 /// Pairs closer than this, m, are computed until a particle may have moved almost half of it: then none of the others can have met, however places are rounded.
@@ -22,43 +22,47 @@ pub(super) fn close_m(contacts: &Contacts) -> f64 {
     if close_m < least_m { 0.0 } else { close_m }
 }
 
-/// Lists the contacts of a share that are close.
+/// Lists the contacts of a partition that are close.
 #[inline(always)]
-pub(super) fn look<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
-    for [of_border, own] in &mut share.close {
+pub(super) fn look<T: Lanes>(
+    proof: T::Proof,
+    partition: &mut ContactPartition,
+    scene: &StepInput<'_>,
+) {
+    for [of_border, own] in &mut partition.close {
         of_border.clear();
         own.clear();
     }
-    find_border(share, scene);
-    find_own::<T>(proof, share, scene);
+    find_border(partition, scene);
+    find_own::<T>(proof, partition, scene);
 }
 
 /// Lists the contacts of the border that are close.
-fn find_border(share: &mut ContactShare, scene: &Scene<'_>) {
+fn find_border(partition: &mut ContactPartition, scene: &StepInput<'_>) {
     let (contacts, poses) = (scene.contacts, scene.poses);
-    for (n, &at) in (0..).zip(&share.border) {
+    for (n, &at) in (0..).zip(&partition.border) {
         let pair = contacts.pairs[at as usize];
         let [a, b] = pair.map(|i| &poses[i as usize]);
         let reach = a.radius_m() + b.radius_m() + contacts.close_m;
         if (b.place() - a.place()).norm_squared() < reach * reach {
-            share.close[contacts.kind(pair)][0].push(n);
+            partition.close[contacts.kind(pair)][0].push(n);
         }
     }
 }
 
 /// Lists those of its own contacts that are close, or were at the look before: they may have an end to book.
 #[inline(always)]
-fn find_own<T: Lanes>(proof: T::Proof, share: &mut ContactShare, scene: &Scene<'_>) {
+fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: &StepInput<'_>) {
     let poses = scene.poses;
-    let own = share.own.clone();
+    let own = partition.own.clone();
     let pairs = &scene.contacts.pairs[..own.end];
     let close_m = T::all(proof, scene.contacts.close_m);
-    let (of_first_kind, of_others) = share.close.split_at_mut(1);
+    let (of_first_kind, of_others) = partition.close.split_at_mut(1);
     let list = &mut of_first_kind[0][1];
     list.resize(own.len() + MOST, 0);
     let close = &mut list[..];
     let mut count = 0;
-    for (first, was_close) in own.clone().step_by(MOST).zip(&mut share.was_close) {
+    for (first, was_close) in own.clone().step_by(MOST).zip(&mut partition.was_close) {
         for &[_, soon] in pairs
             .get(first + AHEAD..first + AHEAD + MOST)
             .unwrap_or_default()
@@ -99,7 +103,7 @@ fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: 
         let [ax, ay, az, radius_a] = T::columns(proof, |lane| row(lane, 0));
         let [bx, by, bz, radius_b] = T::columns(proof, |lane| row(lane, 1));
         let reach = radius_a + radius_b + close_m;
-        let apart = Triple(bx - ax, by - ay, bz - az);
+        let apart = Vec3(bx - ax, by - ay, bz - az);
         bits |= (reach * reach).above(apart.square()) << first;
     }
     bits & (0xff >> (MOST - pairs.len()))

@@ -1,10 +1,10 @@
 //! What contacts store and what they have lost.
 
 use crate::physics::contact::NormalLaw;
+use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics};
 use crate::physics::contact::rolling::RollingFriction;
-use crate::physics::contact::touch::{Touch, touch};
 use crate::stages::motion::{ordered_sum, ordered_sums};
-use crate::state::contacts::{Contacts, Law, Memory, Rolling};
+use crate::state::contacts::{ContactHistory, Contacts, Law, Rolling};
 use crate::state::particles::{Particles, Pose};
 use nalgebra::Vector3;
 
@@ -29,7 +29,7 @@ pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
 
 /// Elastic energy of contact `at`, J.
 pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -> f64 {
-    if contacts.memories[at] == Memory::default() {
+    if contacts.histories[at] == ContactHistory::default() {
         return 0.0;
     }
     let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
@@ -48,12 +48,12 @@ fn stored_j(
     rolling: &Rolling,
 ) -> f64 {
     let ends = contacts.pairs[at].map(|end| end as usize);
-    let memory = &contacts.memories[at];
+    let history = &contacts.histories[at];
     let [a, b] = ends.map(|i| particles.poses[i].place());
-    let balls = ends.map(|i| particles.ball_at_rest(i));
-    let mut touch = touch((b - a).into(), balls, 0.0);
-    touch.overlap_m = memory.overlap_m();
-    stored_energy_j(law, rolling, &touch, memory)
+    let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
+    let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
+    touch.overlap_m = history.overlap_m();
+    stored_energy_j(law, rolling, &touch, history)
 }
 
 /// Force of a contact on the second of a pair, N, from what it remembers.
@@ -61,16 +61,16 @@ pub fn pair_force_n(
     contacts: &Contacts,
     particles: &Particles,
     pair: [u32; 2],
-    memory: &Memory,
+    history: &ContactHistory,
 ) -> Vector3<f64> {
     let ends = pair.map(|end| end as usize);
     let [a, b] = ends.map(|i| particles.poses[i].place());
-    let balls = ends.map(|i| particles.ball_at_rest(i));
-    let mut touch = touch((b - a).into(), balls, 0.0);
-    touch.overlap_m = memory.overlap_m();
+    let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
+    let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
+    touch.overlap_m = history.overlap_m();
     match &contacts.kinds[contacts.kind(pair)].law {
-        Law::HertzMindlin(law) => stored_force_n(law, &touch, memory),
-        Law::Linear(law) => stored_force_n(law, &touch, memory),
+        Law::HertzMindlin(law) => stored_force_n(law, &touch, history),
+        Law::Linear(law) => stored_force_n(law, &touch, history),
     }
 }
 
@@ -78,32 +78,33 @@ pub fn pair_force_n(
 /// what it remembers, N.
 pub(in crate::stages) fn stored_force_n(
     law: &impl NormalLaw<f64>,
-    touch: &Touch,
-    memory: &Memory,
+    touch: &ContactKinematics,
+    history: &ContactHistory,
 ) -> Vector3<f64> {
-    let grip = law.grip(touch, touch.overlap_m, 0.0);
+    let normal_response = law.evaluate(touch, touch.overlap_m, 0.0);
     let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
-    let normal = Vector3::from(touch.normal) * grip.elastic_n;
-    normal - vector(memory.slid) * grip.tangential_n_m[1] + vector(memory.damped)
+    let normal = Vector3::from(touch.normal) * normal_response.elastic_n;
+    normal - vector(history.tangential) * normal_response.tangential_n_m[1]
+        + vector(history.damping)
 }
 
 /// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.
 pub(in crate::stages) fn stored_energy_j(
     law: &impl NormalLaw<f64>,
     rolling: &Rolling,
-    touch: &Touch,
-    memory: &Memory,
+    touch: &ContactKinematics,
+    history: &ContactHistory,
 ) -> f64 {
-    let grip = law.grip(touch, touch.overlap_m, 0.0);
+    let normal_response = law.evaluate(touch, touch.overlap_m, 0.0);
     let stiffness = match rolling {
         Rolling::Free => 0.0,
-        Rolling::Constant(rolling) => rolling.linearised(&grip, touch)[0],
-        Rolling::Spring(rolling) => rolling.linearised(&grip, touch)[0],
+        Rolling::Constant(rolling) => rolling.linearised(&normal_response, touch)[0],
+        Rolling::Spring(rolling) => rolling.linearised(&normal_response, touch)[0],
     };
     let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
-    grip.energy_j
-        + 0.5 * grip.tangential_n_m[1] * square(memory.slid)
-        + 0.5 * stiffness * square(memory.rolled)
+    normal_response.energy_j
+        + 0.5 * normal_response.tangential_n_m[1] * square(history.tangential)
+        + 0.5 * stiffness * square(history.rolling)
 }
 
 /// Energy that friction and that damping took so far, J.

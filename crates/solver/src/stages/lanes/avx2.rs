@@ -81,7 +81,7 @@ impl Number for Lanes4 {
     }
 
     #[inline(always)]
-    fn times(self, factor: f64) -> Self {
+    fn scale(self, factor: f64) -> Self {
         self.with(self.simd.avx._mm256_mul_pd(self.v, self.constant(factor)))
     }
 
@@ -96,17 +96,17 @@ impl Number for Lanes4 {
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         self.with(self.simd.avx._mm256_sqrt_pd(self.v))
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn maximum(self, other: Self) -> Self {
         self.with(self.simd.avx._mm256_max_pd(self.v, other.v))
     }
 
     #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
+    fn minimum(self, other: Self) -> Self {
         self.with(self.simd.avx._mm256_min_pd(self.v, other.v))
     }
 

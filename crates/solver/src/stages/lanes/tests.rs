@@ -4,15 +4,17 @@ use super::avx2::Lanes4;
 use super::avx512::Lanes8;
 use super::{Lanes, MOST};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::kinematics::{
+    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, wall_contact_kinematics,
+};
 use crate::physics::contact::linear::Linear;
-use crate::physics::contact::manner::Manner;
+use crate::physics::contact::pair_parameters::PairParameters;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::contact::rolling::{
     ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
 };
-use crate::physics::contact::touch::{Ball, Foot, Touch, touch, touch_at_wall};
-use crate::physics::contact::{History, Response, response};
-use crate::physics::number::Triple;
+use crate::physics::contact::{ContactSprings, Response, response};
+use crate::physics::number::Vec3;
 use proptest::prelude::*;
 
 /// Columns that a contact is made of.
@@ -31,15 +33,15 @@ impl<T: Lanes> Taken<'_, T> {
     fn number(&mut self, scale: f64) -> T {
         let number = T::load(self.proof, &self.columns[self.next], self.first);
         self.next += 1;
-        number.times(scale)
+        number.scale(scale)
     }
 
-    fn triple(&mut self, scale: f64) -> Triple<T> {
-        Triple(self.number(scale), self.number(scale), self.number(scale))
+    fn triple(&mut self, scale: f64) -> Vec3<T> {
+        Vec3(self.number(scale), self.number(scale), self.number(scale))
     }
 
-    fn ball(&mut self) -> Ball<T> {
-        Ball {
+    fn contact_sphere(&mut self) -> ContactSphere<T> {
+        ContactSphere {
             velocity_m_s: self.triple(1.0),
             spin_rad_s: self.triple(50.0),
             radius_m: self.number(0.001).plus(0.01),
@@ -51,9 +53,9 @@ impl<T: Lanes> Taken<'_, T> {
 
 fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; MOST]>) {
     let damping = &response.damping;
-    for Triple(x, y, z) in [
-        response.history.tangential_m,
-        response.history.rolling_rad,
+    for Vec3(x, y, z) in [
+        response.springs.tangential_m,
+        response.springs.rolling_rad,
         response.force_on_b,
         response.moment_on_b,
         damping.normal_n,
@@ -64,7 +66,7 @@ fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; MOST]>) {
     }
     let (energy, lost) = (&response.energy, &response.lost);
     for number in [
-        response.history.overlap_m,
+        response.springs.overlap_m,
         energy.normal,
         energy.tangential,
         energy.rolling,
@@ -78,8 +80,8 @@ fn written<T: Lanes>(response: &Response<T>, to: &mut Vec<[f64; MOST]>) {
 fn add<T: Lanes>(
     (hertz, linear): (&HertzMindlin<T>, &Linear<T>),
     rolling: &impl RollingFriction<T>,
-    touch: &Touch<T>,
-    history: &History<T>,
+    touch: &ContactKinematics<T>,
+    history: &ContactSprings<T>,
     to: &mut Vec<[f64; MOST]>,
 ) {
     written(&response(hertz, rolling, touch, history, DT), to);
@@ -94,19 +96,19 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> 
         first,
         next: 0,
     };
-    let (a, b) = (taken.ball(), taken.ball());
-    let Triple(x, y, z) = taken.triple(0.2);
-    let normal = Triple(x, y, z.plus(1.0));
-    let normal = normal * normal.square().root().inverse();
+    let (a, b) = (taken.contact_sphere(), taken.contact_sphere());
+    let Vec3(x, y, z) = taken.triple(0.2);
+    let normal = Vec3(x, y, z.plus(1.0));
+    let normal = normal * normal.square().sqrt().inverse();
     let overlap = taken.number(1e-5);
-    let history = History {
+    let history = ContactSprings {
         tangential_m: taken.triple(1e-6),
         rolling_rad: taken.triple(1e-4),
-        overlap_m: taken.number(1e-5).larger(overlap.times(0.0)),
+        overlap_m: taken.number(1e-5).maximum(overlap.scale(0.0)),
     };
     let friction = taken.number(0.2).plus(0.3);
-    let zero = friction.times(0.0);
-    let manner = Manner {
+    let zero = friction.scale(0.0);
+    let parameters = PairParameters {
         damping_ratio: friction,
         tangential_damping_ratio: friction,
         friction,
@@ -114,17 +116,17 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> 
         kept: [zero, zero.plus(1.0)],
     };
     let hertz = HertzMindlin {
-        young_modulus_pa: friction.times(1e9),
-        shear_modulus_pa: friction.times(5e8),
-        manner,
+        young_modulus_pa: friction.scale(1e9),
+        shear_modulus_pa: friction.scale(5e8),
+        parameters,
     };
     let linear = Linear {
-        normal_n_m: friction.times(1e6),
-        tangential_n_m: friction.times(8e5),
-        manner,
+        normal_n_m: friction.scale(1e6),
+        tangential_n_m: friction.scale(8e5),
+        parameters,
     };
     let apart = normal * (a.radius_m + b.radius_m - overlap);
-    let foot = Foot {
+    let foot = WallPoint {
         normal,
         normal_before: normal,
         distance_m: b.radius_m - overlap,
@@ -132,7 +134,10 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> 
         spin_rad_s: a.spin_rad_s,
     };
     let mut found = Vec::new();
-    for touch in [touch(apart, [a, b], DT), touch_at_wall(&foot, b, DT)] {
+    for touch in [
+        contact_kinematics(apart, [a, b], DT),
+        wall_contact_kinematics(&foot, b, DT),
+    ] {
         let spring = ElasticPlastic {
             friction,
             damping_ratio: friction,
@@ -148,7 +153,7 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> 
         );
         add(laws, &spring, &touch, &history, &mut found);
     }
-    let relaxed = relaxed(overlap, history.overlap_m, friction.times(1e-6));
+    let relaxed = relaxed(overlap, history.overlap_m, friction.scale(1e-6));
     found.extend([relaxed.overlap_m, relaxed.origin_m].map(T::values));
     found
 }

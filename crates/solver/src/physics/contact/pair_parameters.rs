@@ -13,7 +13,7 @@ pub struct Elastic {
 
 /// What becomes of the normal force when damping would make it pull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pull {
+pub enum AttractiveDamping {
     /// It is cut off at 0.
     None,
     /// It pulls until the overlap is 0, as in Tsuji et al. 1992: for comparison with programs that do so.
@@ -24,7 +24,7 @@ pub enum Pull {
 ///
 /// Mindlin and Deresiewicz 1953 is a whole theory of partial slip; these are the simple laws that programs use instead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kept {
+pub enum TangentialUnloading {
     /// Its force while the load rises and its elongation while the load falls (Thornton et al. 2013): no cycle of load and displacement creates energy.
     LesserForce,
     /// Its force: for comparison. A cycle may create energy.
@@ -35,7 +35,7 @@ pub enum Kept {
 
 /// How a pair behaves, as it is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Behaviour {
+pub struct PairInput {
     /// Coefficient of restitution of a central impact, above 0, at most 1.
     pub restitution: f64,
     /// Coefficient of friction.
@@ -43,28 +43,28 @@ pub struct Behaviour {
     /// Tangential damping over that of Tsuji et al. 1992, who use the ratio of the normal direction: 1 as there, 0 for none.
     pub tangential_damping: f64,
     /// Whether damping may pull.
-    pub pull: Pull,
+    pub pull: AttractiveDamping,
     /// What the tangential spring keeps.
-    pub kept: Kept,
+    pub kept: TangentialUnloading,
 }
 
-impl Behaviour {
+impl PairInput {
     /// A pair of this restitution and friction with everything else as recommended.
     pub fn new(restitution: f64, friction: f64) -> Self {
         Self {
             restitution,
             friction,
             tangential_damping: 1.0,
-            pull: Pull::None,
-            kept: Kept::LesserForce,
+            pull: AttractiveDamping::None,
+            kept: TangentialUnloading::LesserForce,
         }
     }
 }
 
 /// How a pair damps and rubs, as the laws need it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Manner<T = f64> {
-    /// Share of critical damping along the normal.
+pub struct PairParameters<T = f64> {
+    /// Fraction of critical damping along the normal.
     pub damping_ratio: T,
     /// The same across it.
     pub tangential_damping_ratio: T,
@@ -76,25 +76,25 @@ pub struct Manner<T = f64> {
     pub kept: [T; 2],
 }
 
-impl Manner {
+impl PairParameters {
     /// Of a pair that behaves so.
-    pub fn new(behaviour: &Behaviour) -> Self {
-        let (ratio, least_n) = match behaviour.pull {
-            Pull::None => (damping_ratio(behaviour.restitution), 0.0),
-            Pull::AsDamped => (
-                damping_ratio_with_attraction(behaviour.restitution),
+    pub fn new(pair: &PairInput) -> Self {
+        let (ratio, least_n) = match pair.pull {
+            AttractiveDamping::None => (damping_ratio(pair.restitution), 0.0),
+            AttractiveDamping::AsDamped => (
+                damping_ratio_with_attraction(pair.restitution),
                 f64::NEG_INFINITY,
             ),
         };
         Self {
             damping_ratio: ratio,
-            tangential_damping_ratio: behaviour.tangential_damping * ratio,
-            friction: behaviour.friction,
+            tangential_damping_ratio: pair.tangential_damping * ratio,
+            friction: pair.friction,
             least_n,
-            kept: match behaviour.kept {
-                Kept::LesserForce => [0.0, 1.0],
-                Kept::Force => [0.0, f64::INFINITY],
-                Kept::Elongation => [1.0, 1.0],
+            kept: match pair.kept {
+                TangentialUnloading::LesserForce => [0.0, 1.0],
+                TangentialUnloading::Force => [0.0, f64::INFINITY],
+                TangentialUnloading::Elongation => [1.0, 1.0],
             },
         }
     }

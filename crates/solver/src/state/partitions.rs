@@ -1,13 +1,13 @@
 //! Which particles and bonds each thread works on.
 //!
-//! A share is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
-//! of two shares are computed by both. Bonds that are broken or of bodies that sleep belong to none. So no two threads write to the same place, and every sum keeps its order for any number of shares.
+//! A partition is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
+//! of two partitions are computed by both. Bonds that are broken or of bodies that sleep belong to none. So no two threads write to the same place, and every sum keeps its order for any number of partitions.
 
 use std::ops::Range;
 
 use super::bonds::Bonds;
 
-/// Bonds of one rule that a share computes.
+/// Bonds of one rule that a partition computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
     /// Which of [`Bonds::rules`] they follow.
@@ -19,20 +19,20 @@ pub struct Batch {
 /// Which bonds a batch holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Which {
-    /// One after another, none of them broken; their first ends are in the share.
+    /// One after another, none of them broken; their first ends are in the partition.
     Run(Range<usize>),
-    /// These; their first ends are in the share.
+    /// These; their first ends are in the partition.
     Own(Vec<u32>),
-    /// These; only their second ends are in the share.
+    /// These; only their second ends are in the partition.
     Border(Vec<u32>),
 }
 
 /// What one thread works on at a time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Share {
+pub struct Partition {
     /// Its particles.
     pub particles: Range<usize>,
-    /// Those of them that do not sleep: as numbers within the share.
+    /// Those of them that do not sleep: as numbers within the partition.
     pub awake: Vec<Range<usize>>,
     /// Its bonds: those of the border first, so that each particle meets its bonds in their order.
     pub batches: Vec<Batch>,
@@ -42,7 +42,7 @@ pub struct Share {
     pub computed: Computed,
 }
 
-/// How many bonds a share has computed.
+/// How many bonds a partition has computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Computed {
     /// Forces, by the total formulation.
@@ -64,7 +64,7 @@ impl Which {
         }
     }
 
-    /// Number of bonds; those of a border are counted by the share whose own they are.
+    /// Number of bonds; those of a border are counted by the partition whose own they are.
     pub fn count(&self) -> usize {
         match self {
             Self::Run(range) => range.len(),
@@ -74,20 +74,25 @@ impl Which {
     }
 }
 
-impl Share {
-    /// Number of bonds whose first end is in the share, as computed.
+impl Partition {
+    /// Number of bonds whose first end is in the partition, as computed.
     pub fn own_bonds(&self) -> usize {
         self.batches.iter().map(|batch| batch.which.count()).sum()
     }
 }
 
-/// Divides particles and bonds into `count` shares with about the same number of bonds each; fewer where there are not enough particles.
-pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Share> {
+/// Divides particles and bonds into `count` partitions with about the same number of bonds each; fewer where there are not enough particles.
+pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
     divide_awake(bonds, particles, count, &[])
 }
 
 /// Divides those particles and bonds that are not `asleep` (one for each particle; empty: none is).
-pub fn divide_awake(bonds: &Bonds, particles: usize, count: usize, asleep: &[bool]) -> Vec<Share> {
+pub fn divide_awake(
+    bonds: &Bonds,
+    particles: usize,
+    count: usize,
+    asleep: &[bool],
+) -> Vec<Partition> {
     let first_bond = first_bonds(bonds, particles);
     // A particle costs about a third of a bond.
     let mut done = 0;
@@ -104,9 +109,9 @@ pub fn divide_awake(bonds: &Bonds, particles: usize, count: usize, asleep: &[boo
     });
     let mut starts: Vec<usize> = [0].into_iter().chain(between).chain([particles]).collect();
     starts.dedup();
-    let mut shares: Vec<Share> = starts
+    let mut partitions: Vec<Partition> = starts
         .windows(2)
-        .map(|w| Share {
+        .map(|w| Partition {
             particles: w[0]..w[1],
             awake: awake_ranges(w[0]..w[1], asleep),
             batches: Vec::new(),
@@ -114,15 +119,15 @@ pub fn divide_awake(bonds: &Bonds, particles: usize, count: usize, asleep: &[boo
             computed: Computed::default(),
         })
         .collect();
-    add_batches(bonds, &mut shares, &first_bond, asleep);
-    shares
+    add_batches(bonds, &mut partitions, &first_bond, asleep);
+    partitions
 }
 
 fn sleeps(asleep: &[bool], i: usize) -> bool {
     asleep.get(i).is_some_and(|asleep| *asleep)
 }
 
-/// The particles of a share that do not sleep, as numbers within it.
+/// The particles of a partition that do not sleep, as numbers within it.
 fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for i in particles.clone().filter(|&i| !sleeps(asleep, i)) {
@@ -135,14 +140,16 @@ fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Gives the shares their bonds once more, without those that have broken since and those of bodies that sleep.
-pub fn divide_anew(bonds: &Bonds, shares: &mut [Share], asleep: &[bool]) {
-    let particles = shares.last().map_or(0, |share| share.particles.end);
+/// Gives the partitions their bonds once more, without those that have broken since and those of bodies that sleep.
+pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
+    let particles = partitions
+        .last()
+        .map_or(0, |partition| partition.particles.end);
     let first_bond = first_bonds(bonds, particles);
-    for share in shares.iter_mut() {
-        share.batches.clear();
+    for partition in partitions.iter_mut() {
+        partition.batches.clear();
     }
-    add_batches(bonds, shares, &first_bond, asleep);
+    add_batches(bonds, partitions, &first_bond, asleep);
 }
 
 /// For each particle the first of the bonds that it is the first end of; and at the end the number of bonds. Length particles + 1.
@@ -157,10 +164,10 @@ pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     first_bond
 }
 
-fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize], asleep: &[bool]) {
-    add_borders(bonds, shares, asleep);
-    for share in shares {
-        let own = first_bond[share.particles.start]..first_bond[share.particles.end];
+fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize], asleep: &[bool]) {
+    add_borders(bonds, partitions, asleep);
+    for partition in partitions {
+        let own = first_bond[partition.particles.start]..first_bond[partition.particles.end];
         for (rule, range) in bonds.runs(own) {
             let whole: Vec<u32> = range
                 .clone()
@@ -175,7 +182,7 @@ fn add_batches(bonds: &Bonds, shares: &mut [Share], first_bond: &[usize], asleep
             } else {
                 Which::Own(whole)
             };
-            share.batches.push(Batch { rule, which });
+            partition.batches.push(Batch { rule, which });
         }
     }
 }
@@ -185,19 +192,19 @@ fn is_left_out(bonds: &Bonds, at: usize, asleep: &[bool]) -> bool {
     bonds.is_broken(at) || sleeps(asleep, bonds.ends[at][0] as usize)
 }
 
-/// Gives each bond whose ends lie in two shares to the share of its second end as well.
-fn add_borders(bonds: &Bonds, shares: &mut [Share], asleep: &[bool]) {
+/// Gives each bond whose ends lie in two partitions to the partition of its second end as well.
+fn add_borders(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
     let mut of_first = 0;
     for (at, &[a, b]) in bonds.ends.iter().enumerate() {
-        while shares[of_first].particles.end <= a as usize {
+        while partitions[of_first].particles.end <= a as usize {
             of_first += 1;
         }
-        if (b as usize) < shares[of_first].particles.end || is_left_out(bonds, at, asleep) {
+        if (b as usize) < partitions[of_first].particles.end || is_left_out(bonds, at, asleep) {
             continue;
         }
-        let of_second = shares.partition_point(|s| s.particles.end <= b as usize);
+        let of_second = partitions.partition_point(|s| s.particles.end <= b as usize);
         let rule = bonds.rule_of(at);
-        let batches = &mut shares[of_second].batches;
+        let batches = &mut partitions[of_second].batches;
         match batches.last_mut() {
             Some(Batch {
                 rule: last,

@@ -1,14 +1,14 @@
 //! Where and how two ends touch: the only geometry that contact laws know.
 
-use crate::physics::number::{Number, Triple};
+use crate::physics::number::{Number, Vec3};
 
 /// A sphere that may touch: one of its own, or one of a clump, which then has the clump's mass and moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball<T = f64> {
+pub struct ContactSphere<T = f64> {
     /// Velocity of the centre halfway through the step, m/s: what it moved in the step over the time step.
-    pub velocity_m_s: Triple<T>,
+    pub velocity_m_s: Vec3<T>,
     /// Spin halfway through the step, rad/s.
-    pub spin_rad_s: Triple<T>,
+    pub spin_rad_s: Vec3<T>,
     /// Radius, m.
     pub radius_m: T,
     /// One over the mass, 1/kg: 0 if it is held.
@@ -19,94 +19,102 @@ pub struct Ball<T = f64> {
 
 /// A wall where it touches a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Foot<T = f64> {
+pub struct WallPoint<T = f64> {
     /// Unit normal from the wall to the centre of the sphere.
-    pub normal: Triple<T>,
+    pub normal: Vec3<T>,
     /// The same a step before.
-    pub normal_before: Triple<T>,
+    pub normal_before: Vec3<T>,
     /// Distance of the centre from the wall, m.
     pub distance_m: T,
     /// Velocity of the wall's surface there, halfway through the step, m/s.
-    pub velocity_m_s: Triple<T>,
+    pub velocity_m_s: Vec3<T>,
     /// Spin of the wall halfway through the step, rad/s.
-    pub spin_rad_s: Triple<T>,
+    pub spin_rad_s: Vec3<T>,
 }
 
 /// How b touches a, at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch<T = f64> {
+pub struct ContactKinematics<T = f64> {
     /// Unit normal from a to b.
-    pub normal: Triple<T>,
+    pub normal: Vec3<T>,
     /// The unit vector halfway between the normal a step before and now.
-    pub middle: Triple<T>,
+    pub middle: Vec3<T>,
     /// Overlap, m; where it is not above 0 the ends are apart.
     pub overlap_m: T,
     /// From each centre to the contact point, m: radius less half the overlap, 0 for a wall. Together they are the distance of the centres, so torques balance.
     pub levers_m: [T; 2],
     /// Velocity of b's surface against a's at the contact point, halfway through the step, m/s.
-    pub velocity_m_s: Triple<T>,
+    pub velocity_m_s: Vec3<T>,
     /// Spin of b against a halfway through the step, rad/s.
-    pub spin_rad_s: Triple<T>,
+    pub spin_rad_s: Vec3<T>,
     /// Mean spin of the two about the normal, rad/s.
     pub mean_spin_rad_s: T,
     /// R_a R_b / (R_a + R_b), m; at a wall the sphere's radius.
-    pub radius_m: T,
+    pub effective_radius_m: T,
     /// m_a m_b / (m_a + m_b), kg; at a wall the sphere's mass. 0 between two held ends.
-    pub mass_kg: T,
+    pub effective_mass_kg: T,
     /// J_a J_b / (J_a + J_b) with J = I + m R^2, kg m^2: inertia against rolling (Ai et al. 2011). 0 between two held ends.
-    pub rolling_inertia_kg_m2: T,
+    pub effective_rolling_inertia_kg_m2: T,
 }
 
 /// How two spheres touch whose centres are `apart_m` (from a to b) after a step of `dt`, s. The centres must not coincide.
 #[inline(always)]
-pub fn touch<T: Number>(apart_m: Triple<T>, [a, b]: [Ball<T>; 2], dt: f64) -> Touch<T> {
+pub fn contact_kinematics<T: Number>(
+    apart_m: Vec3<T>,
+    [a, b]: [ContactSphere<T>; 2],
+    dt: f64,
+) -> ContactKinematics<T> {
     let moving = b.velocity_m_s - a.velocity_m_s;
     let (normal, length) = unit(apart_m);
-    let (normal_before, length_before) = unit(apart_m - moving.times(dt));
+    let (normal_before, length_before) = unit(apart_m - moving.scale(dt));
     let (middle, _) = unit(normal_before + normal);
 
     let reach = a.radius_m + b.radius_m;
     let overlap = reach - length;
-    let halfway = (overlap + reach - length_before).times(0.25);
+    let halfway = (overlap + reach - length_before).scale(0.25);
     let (arm_a, arm_b) = (a.radius_m - halfway, b.radius_m - halfway);
     let levers_m = [
-        a.radius_m - overlap.times(0.5),
-        b.radius_m - overlap.times(0.5),
+        a.radius_m - overlap.scale(0.5),
+        b.radius_m - overlap.scale(0.5),
     ];
     let per_inertia = per_rolling_inertia(&a) + per_rolling_inertia(&b);
-    Touch {
+    ContactKinematics {
         normal,
         middle,
         overlap_m: overlap,
         levers_m,
         velocity_m_s: moving - (a.spin_rad_s * arm_a + b.spin_rad_s * arm_b).cross(middle),
         spin_rad_s: b.spin_rad_s - a.spin_rad_s,
-        mean_spin_rad_s: (a.spin_rad_s + b.spin_rad_s).dot(middle).times(0.5),
-        radius_m: a.radius_m * b.radius_m / reach,
-        mass_kg: reduced(a.inverse_mass_per_kg + b.inverse_mass_per_kg),
-        rolling_inertia_kg_m2: reduced(per_inertia),
+        mean_spin_rad_s: (a.spin_rad_s + b.spin_rad_s).dot(middle).scale(0.5),
+        effective_radius_m: a.radius_m * b.radius_m / reach,
+        effective_mass_kg: reduced(a.inverse_mass_per_kg + b.inverse_mass_per_kg),
+        effective_rolling_inertia_kg_m2: reduced(per_inertia),
     }
 }
 
 /// How a sphere (b) touches a wall (a), which has endless mass and radius, after a step of `dt`, s.
 #[inline(always)]
-pub fn touch_at_wall<T: Number>(foot: &Foot<T>, b: Ball<T>, dt: f64) -> Touch<T> {
+pub fn wall_contact_kinematics<T: Number>(
+    foot: &WallPoint<T>,
+    b: ContactSphere<T>,
+    dt: f64,
+) -> ContactKinematics<T> {
     let moving = b.velocity_m_s - foot.velocity_m_s;
     let (middle, _) = unit(foot.normal_before + foot.normal);
     let overlap = b.radius_m - foot.distance_m;
-    let lever = b.radius_m - overlap.times(0.5);
-    let arm = lever - moving.dot(middle).times(0.25 * dt);
-    Touch {
+    let lever = b.radius_m - overlap.scale(0.5);
+    let arm = lever - moving.dot(middle).scale(0.25 * dt);
+    ContactKinematics {
         normal: foot.normal,
         middle,
         overlap_m: overlap,
         levers_m: [lever.zero(), lever],
         velocity_m_s: moving - (b.spin_rad_s * arm).cross(middle),
         spin_rad_s: b.spin_rad_s - foot.spin_rad_s,
-        mean_spin_rad_s: (foot.spin_rad_s + b.spin_rad_s).dot(middle).times(0.5),
-        radius_m: b.radius_m,
-        mass_kg: reduced(b.inverse_mass_per_kg),
-        rolling_inertia_kg_m2: reduced(per_rolling_inertia(&b)),
+        mean_spin_rad_s: (foot.spin_rad_s + b.spin_rad_s).dot(middle).scale(0.5),
+        effective_radius_m: b.radius_m,
+        effective_mass_kg: reduced(b.inverse_mass_per_kg),
+        effective_rolling_inertia_kg_m2: reduced(per_rolling_inertia(&b)),
     }
 }
 
@@ -115,10 +123,10 @@ pub fn touch_at_wall<T: Number>(foot: &Foot<T>, b: Ball<T>, dt: f64) -> Touch<T>
 /// For a wall: the velocity of its surface there.
 #[inline(always)]
 pub fn relative_velocity<T: Number>(
-    touch: &Touch<T>,
-    [velocity_a, velocity_b]: [Triple<T>; 2],
-    [spin_a, spin_b]: [Triple<T>; 2],
-) -> Triple<T> {
+    touch: &ContactKinematics<T>,
+    [velocity_a, velocity_b]: [Vec3<T>; 2],
+    [spin_a, spin_b]: [Vec3<T>; 2],
+) -> Vec3<T> {
     let [lever_a, lever_b] = touch.levers_m;
     velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
 }
@@ -128,10 +136,10 @@ pub fn relative_velocity<T: Number>(
 /// For a wall: about the contact point.
 #[inline(always)]
 pub fn torques<T: Number>(
-    touch: &Touch<T>,
-    force_on_b: Triple<T>,
-    moment_on_b: Triple<T>,
-) -> [Triple<T>; 2] {
+    touch: &ContactKinematics<T>,
+    force_on_b: Vec3<T>,
+    moment_on_b: Vec3<T>,
+) -> [Vec3<T>; 2] {
     let [lever_a, lever_b] = touch.levers_m;
     let turn = force_on_b.cross(touch.normal);
     [turn * lever_a - moment_on_b, turn * lever_b + moment_on_b]
@@ -139,49 +147,49 @@ pub fn torques<T: Number>(
 
 /// How vectors across the normal turn along with it in a step: as its two halves.
 #[derive(Debug, Clone, Copy)]
-pub struct Carry<T> {
+pub struct FrameRotation<T> {
     /// The normals at the beginning, in the middle and at the end of the step.
-    normals: [Triple<T>; 3],
+    normals: [Vec3<T>; 3],
     /// 1 / (1 + cosine) of half the turn of the normal.
-    per_swing: T,
+    per_rotation: T,
     /// Cosine and sine of half the mean turn about the normal.
     spin: [T; 2],
 }
 
-impl<T: Number> Carry<T> {
+impl<T: Number> FrameRotation<T> {
     /// Of a step of `dt`, s.
     #[inline(always)]
-    pub fn new(touch: &Touch<T>, dt: f64) -> Self {
+    pub fn new(touch: &ContactKinematics<T>, dt: f64) -> Self {
         let (middle, normal) = (touch.middle, touch.normal);
         let cosine = middle.dot(normal);
         // The tangent of half the angle: of a quarter of the turn in the step.
-        let t = touch.mean_spin_rad_s.times(0.25 * dt);
-        let per = (t * t).plus(1.0).inverse().times(2.0);
+        let t = touch.mean_spin_rad_s.scale(0.25 * dt);
+        let per = (t * t).plus(1.0).inverse().scale(2.0);
         Self {
-            normals: [middle * cosine.times(2.0) - normal, middle, normal],
-            per_swing: cosine.plus(1.0).inverse(),
+            normals: [middle * cosine.scale(2.0) - normal, middle, normal],
+            per_rotation: cosine.plus(1.0).inverse(),
             spin: [per.plus(-1.0), t * per],
         }
     }
 
     /// A vector across the normal, from the beginning of the step to its middle.
     #[inline(always)]
-    pub fn to_middle(&self, vector: Triple<T>) -> Triple<T> {
+    pub fn to_middle(&self, vector: Vec3<T>) -> Vec3<T> {
         let [before, middle, _] = self.normals;
-        self.spun(vector - (before + middle) * (middle.dot(vector) * self.per_swing))
+        self.spun(vector - (before + middle) * (middle.dot(vector) * self.per_rotation))
     }
 
     /// A vector across the normal, from the middle of the step to its end.
     #[inline(always)]
-    pub fn to_end(&self, vector: Triple<T>) -> Triple<T> {
+    pub fn to_end(&self, vector: Vec3<T>) -> Vec3<T> {
         let [_, middle, normal] = self.normals;
         let spun = self.spun(vector);
-        spun - (middle + normal) * (normal.dot(spun) * self.per_swing)
+        spun - (middle + normal) * (normal.dot(spun) * self.per_rotation)
     }
 
     /// Turned about the normal in the middle of the step.
     #[inline(always)]
-    fn spun(&self, vector: Triple<T>) -> Triple<T> {
+    fn spun(&self, vector: Vec3<T>) -> Vec3<T> {
         let [cosine, sine] = self.spin;
         vector * cosine + self.normals[1].cross(vector) * sine
     }
@@ -189,8 +197,8 @@ impl<T: Number> Carry<T> {
 
 /// A vector's direction and length.
 #[inline(always)]
-fn unit<T: Number>(vector: Triple<T>) -> (Triple<T>, T) {
-    let length = vector.square().root();
+fn unit<T: Number>(vector: Vec3<T>) -> (Vec3<T>, T) {
+    let length = vector.square().sqrt();
     (vector * length.inverse(), length)
 }
 
@@ -202,7 +210,7 @@ fn reduced<T: Number>(sum: T) -> T {
 
 /// One over I + m R^2; 0 for an end that is held.
 #[inline(always)]
-fn per_rolling_inertia<T: Number>(ball: &Ball<T>) -> T {
+fn per_rolling_inertia<T: Number>(ball: &ContactSphere<T>) -> T {
     let (per_mass, per_inertia) = (ball.inverse_mass_per_kg, ball.inverse_inertia_per_kg_m2);
     let sum = per_mass + per_inertia * ball.radius_m * ball.radius_m;
     sum.if_positive(per_mass * per_inertia / sum)
