@@ -14,12 +14,19 @@ use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::make::{MakeSettings, make_body};
 use dem_pack::pack::PackSettings;
 use dem_pack::sizes::{By, Sizes};
-use dem_run::clock::Stage;
 use dem_run::plan::plan;
-use dem_run::stages::replacement::replace;
+use dem_run::stages::bonds::BONDS;
+use dem_run::stages::breakage::{FAILURE, RATES, SCATTER};
+use dem_run::stages::contacts::CONTACTS;
+use dem_run::stages::damping::BOND_DAMPING;
+use dem_run::stages::incremental::HISTORIES;
+use dem_run::stages::loads::LOADS;
+use dem_run::stages::motion::{GRAVITY, PARTICLE_DAMPING};
+use dem_run::stages::stage::Stage;
+use dem_run::stages::supports::SUPPORTS;
+use dem_run::stages::walls::WALLS;
 use dem_run::state::State;
-use dem_run::state::memory::bytes;
-use dem_run::step::{act, move_on};
+use dem_run::step::{number_of, step};
 
 const SHAPE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -46,7 +53,7 @@ struct Case {
 const CASE: Case = Case {
     name: PLAIN,
     beside: PLAIN,
-    stage: Stage::Bonds,
+    stage: BONDS,
     run: "",
     bonds: "",
     tables: "",
@@ -58,70 +65,70 @@ const CASES: [Case; 12] = [
     CASE,
     Case {
         name: "bond history",
-        stage: Stage::Histories,
+        stage: HISTORIES,
         bonds: "formulation = \"incremental\"",
         ..CASE
     },
     Case {
         name: "bond damping",
-        stage: Stage::BondDamping,
+        stage: BOND_DAMPING,
         bonds: "damping = { viscous = 0.1 }",
         ..CASE
     },
     Case {
         name: "failure",
-        stage: Stage::Failure,
+        stage: FAILURE,
         bonds: "failure = { von_mises = 1e12 }",
         ..CASE
     },
     Case {
         name: "scattered strength",
         beside: "failure",
-        stage: Stage::Scatter,
+        stage: SCATTER,
         bonds: "failure = { von_mises = 1e12, weibull_modulus = 5 }",
         ..CASE
     },
     Case {
         name: "strength by rate",
         beside: "failure",
-        stage: Stage::Rates,
+        stage: RATES,
         bonds: "failure = { von_mises = 1e12, rate_strengthening = true }",
         ..CASE
     },
     Case {
         name: "particle damping",
-        stage: Stage::ParticleDamping,
+        stage: PARTICLE_DAMPING,
         run: ", particle_damping = 0.1",
         ..CASE
     },
     Case {
         name: "gravity",
-        stage: Stage::Gravity,
+        stage: GRAVITY,
         run: ", gravity = [0, 0, -9.81]",
         ..CASE
     },
     Case {
         name: "loads",
-        stage: Stage::Loads,
+        stage: LOADS,
         tables: "[loads.push]\nof = \"cake\"\nforce = [0, 0, 1e-3]\n",
         ..CASE
     },
     Case {
         name: "supports",
-        stage: Stage::Supports,
+        stage: SUPPORTS,
         tables: "[supports.hold]\nof = \"cake\"\nfixed = [\"x\"]\n",
         ..CASE
     },
     Case {
         name: "walls",
-        stage: Stage::Walls,
+        stage: WALLS,
         tables: FLOOR,
         ..CASE
     },
     Case {
         name: "contacts of particles",
         beside: "failure",
-        stage: Stage::Contacts,
+        stage: CONTACTS,
         bonds: "failure = { von_mises = 1e12 }",
         tables: MEETS,
         ..CASE
@@ -159,13 +166,11 @@ angular_velocity = [1, 0, 0]
     }
 }
 
-/// Steps as a run does; ns for each.
+/// ns for each of some steps.
 fn time_ns(state: &mut State) -> f64 {
     let clock = Instant::now();
     for _ in 0..STEPS {
-        act(state);
-        replace(state);
-        move_on(state);
+        step(state);
     }
     1e9 * clock.elapsed().as_secs_f64() / f64::from(STEPS)
 }
@@ -212,10 +217,10 @@ fn main() {
         );
         let ratio = median(pairs.map(|(with, without)| with / without).collect());
         let steps = states[at].steps as f64;
-        let items = states[at].clock.done(case.stage) as f64 / steps;
+        let items = states[at].clock.done(number_of(&case.stage)) as f64 / steps;
         let absent = [
-            states[base].clock.done(case.stage),
-            bytes(&states[base], case.stage) as u64,
+            states[base].clock.done(number_of(&case.stage)),
+            (case.stage.bytes)(&states[base]) as u64,
         ];
         println!(
             "| {} | {} | {}, {} | {items:.0} | {} | {} | {ratio:.2} |",
@@ -224,7 +229,7 @@ fn main() {
             absent[0],
             absent[1],
             if items > 0.0 {
-                format!("{:.0}", bytes(&states[at], case.stage) as f64 / items)
+                format!("{:.0}", (case.stage.bytes)(&states[at]) as f64 / items)
             } else {
                 "-".to_owned()
             },

@@ -117,11 +117,19 @@ fn steps(criterion: &mut Criterion) {
                 });
             });
             group.bench_function("step", |b| {
-                b.iter_custom(|rounds| timed(rounds, &mut || step(&mut free)));
+                b.iter_custom(|rounds| {
+                    timed(rounds, &mut || {
+                        step(&mut free);
+                    })
+                });
             });
             let mut damped = state(&body, "damping = { viscous = 0.1 }", threads);
             group.bench_function("damped", |b| {
-                b.iter_custom(|rounds| timed(rounds, &mut || step(&mut damped)));
+                b.iter_custom(|rounds| {
+                    timed(rounds, &mut || {
+                        step(&mut damped);
+                    })
+                });
             });
             group.finish();
         }

@@ -2,9 +2,7 @@
 
 pub mod flight;
 pub mod laws;
-pub mod ledger;
 pub mod limit;
 pub mod linear;
 pub mod lowest_frequency;
-pub mod totals;
 pub mod watchdog;

@@ -3,7 +3,6 @@
 pub mod check;
 pub mod cli;
 pub mod clock;
-pub mod clusters;
 mod disjoint;
 pub mod geometry;
 pub mod interpolation;

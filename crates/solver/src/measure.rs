@@ -11,16 +11,16 @@ use dem_io::scene::{At, Measure, Quantity};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
-use crate::check::ledger::Balance;
-use crate::check::totals::synchronous_motions;
-use crate::clusters::fragments;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::plan::Plan;
 use crate::plan::bodies::PlacedBody;
 use crate::stages::clumps::synchronous;
-use crate::stages::population::Renumbering;
+use crate::stages::ledger::Balance;
+use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::clusters::fragments;
+use crate::state::events::Renumbering;
 use crate::state::watches::{Seen, Watch, Watched};
 
 use self::members::{Members, wall_number};

@@ -2,8 +2,6 @@
 
 pub mod fragments;
 pub mod frames;
-pub mod inputs;
-pub mod masses;
 pub mod pictures;
 pub mod plots;
 pub mod series;

@@ -5,10 +5,11 @@ mod clumps;
 mod contacts;
 mod forecast;
 mod initial;
+pub mod inputs;
+pub mod masses;
 mod measures;
 mod outputs;
 mod rules;
-pub mod savings;
 pub mod sets;
 mod stages;
 pub mod time_step;
@@ -21,17 +22,16 @@ use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
-use crate::check::ledger::EnergyLedger;
-use crate::clusters::{Clusters, Triggers};
 use crate::laboratory::setup::{Setup, setup};
-use crate::output::inputs::Inputs;
-use crate::output::masses;
-use crate::stages::loads::SetLoad;
+use crate::stages::ledger::opened;
 use crate::stages::population::{TopologyChange, apply_topology_change};
-use crate::stages::supports::{Held, SetSupport};
 use crate::state::State;
+use crate::state::clusters::{Clusters, Triggers};
+use crate::state::loads::SetLoad;
 use crate::state::particles::Wrench;
 use crate::state::sleep::Sleep;
+use crate::state::supports::Held;
+use crate::state::supports::SetSupport;
 use crate::statics::held::refuse_loose;
 
 use self::bodies::{PlacedBody, place_bodies};
@@ -42,11 +42,13 @@ use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::forecast::forecast;
 pub use self::forecast::{Forecast, ToCome};
 use self::initial::start;
+use self::inputs::Inputs;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
 use self::sets::resolve_sets;
 pub use self::stages::PlannedStage;
+use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
 
 /// Particles and bonds that are worth a thread of their own.
@@ -137,7 +139,7 @@ pub fn plan(
     refuse_valueless(scene, &sets, &state)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(doubts(scene, &state));
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     let mut step = match scene.run.integrator {
         Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
         Integrator::Static => {
@@ -160,7 +162,8 @@ pub fn plan(
         step.impact_speed_m_s,
         arriving.as_ref(),
     );
-    let stages = stages::stages(&state, scene);
+    let stages = planned_stages(&state, scene);
+    leave_out(&stages, &mut state);
     let test = scene.test.as_ref().map(|test| {
         let particles = particles_of(&sets, &test.body);
         setup(scene, test, &state, particles, tested_m3)

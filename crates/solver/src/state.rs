@@ -2,32 +2,36 @@
 
 pub mod bonds;
 pub mod clumps;
+pub mod clusters;
 pub mod contacts;
-pub mod memory;
+pub mod events;
+pub mod ledger;
+pub mod loads;
 pub mod order;
 pub mod particles;
 pub mod partitions;
 pub mod regions;
 pub mod rules;
 pub mod sleep;
+pub mod supports;
 pub mod walls;
 pub mod watches;
 
-use crate::check::ledger::EnergyLedger;
 use crate::clock::StageClock;
-use crate::clusters::{Clusters, Split, Triggers};
 use crate::physics::bond::failure::CauseCounts;
-use crate::stages::breakage::Break;
-use crate::stages::loads::SetLoad;
-use crate::stages::supports::SetSupport;
 
 use self::bonds::Bonds;
 use self::clumps::Clumps;
+use self::clusters::{Clusters, Triggers};
 use self::contacts::Contacts;
+use self::events::Events;
+use self::ledger::EnergyLedger;
+use self::loads::SetLoad;
 use self::particles::{Particles, Wrench};
 use self::partitions::{Partition, divide};
 use self::rules::Rules;
 use self::sleep::Sleep;
+use self::supports::SetSupport;
 use self::walls::Wall;
 use self::watches::Watch;
 
@@ -50,8 +54,6 @@ pub struct State {
     pub triggers: Triggers,
     /// Bonds that broke since pieces were looked for last.
     pub unsearched: Vec<u32>,
-    /// Clusters that were found in pieces in this step.
-    pub splits: Vec<Split>,
     /// When bodies come, go, and become others.
     pub rules: Rules,
     /// Contacts between particles of different clusters. None: nothing can touch.
@@ -84,8 +86,8 @@ pub struct State {
     pub previous_time_step_s: f64,
     /// Largest speed of a particle in the step before, and where there are contacts that of a wall on top, m/s.
     pub fastest_m_s: f64,
-    /// Bonds that broke in the last kick.
-    pub broken: Vec<Break>,
+    /// What happened in the last step.
+    pub events: Events,
     /// Bonds broken so far.
     pub broken_count: u64,
     /// The same by what they failed by.
@@ -103,7 +105,7 @@ impl State {
     pub fn new(particles: Particles, bonds: Bonds, time_step_s: f64, threads: usize) -> Self {
         let damped = bonds.rules.iter().any(|rule| rule.damped);
         let partitions = divide(&bonds, particles.len(), threads);
-        let mut state = Self {
+        Self {
             bond_resistance: if damped {
                 vec![Wrench::default(); particles.len()]
             } else {
@@ -118,7 +120,6 @@ impl State {
             clusters: None,
             triggers: Triggers::default(),
             unsearched: Vec::new(),
-            splits: Vec::new(),
             rules: Rules::default(),
             contacts: None,
             sleep: None,
@@ -134,14 +135,12 @@ impl State {
             time_step_s,
             previous_time_step_s: 0.0,
             fastest_m_s: 0.0,
-            broken: Vec::new(),
+            events: Events::default(),
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
             broken_gone: 0,
             clock: StageClock::default(),
-        };
-        state.ledger = EnergyLedger::opened(&state);
-        state
+        }
     }
 
     /// The lists of damping forces that are booked apart: of bonds and on particles; each with one for each particle, or empty.

@@ -26,14 +26,14 @@ use dem_io::scene::Scene;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 
-use crate::check::ledger::Balance;
-use crate::check::totals::elastic_energy;
 use crate::machine::processor_time_s;
 use crate::measure::{bond_utilisation, probes, read_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::run::RunSettings;
+use crate::stages::ledger::Balance;
+use crate::stages::totals::elastic_energy;
 use crate::state::State;
 use crate::state::particles::Motion;
 

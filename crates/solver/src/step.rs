@@ -1,252 +1,182 @@
-//! The time step, in the order in which it happens.
+//! The time step: all that happens in it, in order.
 
-use crate::clock::Stage;
-use crate::stages::bonds::bond_wrenches;
-use crate::stages::breakage::break_bonds;
-use crate::stages::clumps;
-use crate::stages::contacts::contact_wrenches;
-use crate::stages::damping::damping_wrenches;
-use crate::stages::incremental::{add_incremental_wrenches, advance_histories};
-use crate::stages::listing::renew_lists;
-use crate::stages::loads::add_loads;
-use crate::stages::motion::{add_particle_damping, drift, kick};
-use crate::stages::sleep;
-use crate::stages::supports::{hold, remember};
-use crate::stages::walls::{move_walls, plan_motions, wall_wrenches};
-use crate::stages::watching::watch;
+use std::sync::LazyLock;
+
+use crate::stages::bonds::{BONDS, clear_wrenches, compute_bonds};
+use crate::stages::breakage::{
+    FAILURE, RATES, SCATTER, break_failed_bonds, count_rates, count_scattered,
+};
+use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
+use crate::stages::contacts::{
+    CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
+};
+use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
+use crate::stages::flow::{FLOW, count_bond_steps, let_bodies_come_and_go};
+use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
+use crate::stages::ledger::{
+    CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
+};
+use crate::stages::listing::{SEARCH, renew_lists};
+use crate::stages::loads::{LOADS, apply_loads};
+use crate::stages::motion::{
+    GRAVITY, MOTION, PARTICLE_DAMPING, compute_particle_damping, count_falling, drift_particles,
+    kick_particles,
+};
+use crate::stages::pieces::{CLUSTERS, find_pieces};
+use crate::stages::replacement::{REPLACEMENT, replace_clumps};
+use crate::stages::restoring::restore_clumps;
+use crate::stages::sleep::{SLEEP, update_sleep};
+use crate::stages::stage::Stage;
+use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
+use crate::stages::walls::{WALLS, advance_walls, compute_wall_contacts, plan_wall_motions};
+use crate::stages::watching::{OUTPUT, watch};
 use crate::state::State;
-use crate::state::particles::Wrench;
-use crate::state::partitions::{Partition, divide_anew};
+use crate::state::events::Events;
 
-/// The work is divided anew when one in so many of the bonds that are computed is broken.
-const STALE: u64 = 64;
+/// A part of the step: what is done, for which stage. Returns how many bonds, contacts, particles or
+/// bodies the stage has worked on with it.
+type Part = (&'static Stage, fn(&mut State) -> usize);
 
-/// First half of a step: what acts on the particles where they are, and how that changes their velocities.
-///
-/// Afterwards poses stand at `time_s` and velocities half a step later: the moment at which everything can be measured.
-pub fn act(state: &mut State) {
-    let before_s = state.previous_time_step_s;
+/// First half of a step: what acts on the particles where they are, and how that changes their
+/// velocities.
+const INTERACT: [Part; 27] = [
+    (&SEARCH, renew_lists),
+    (&MOTION, clear_wrenches),
+    (&BONDS, compute_bonds),
+    (&HISTORIES, compute_incremental_bonds),
+    (&CONTACTS, compute_contacts),
+    (&RELAXATION, count_relaxing),
+    (&ROLLING, count_rolling),
+    (&WALLS, compute_wall_contacts),
+    (&CLUMPS, gather_clumps),
+    (&SUPPORTS, remember_held),
+    (&FAILURE, break_failed_bonds),
+    (&RATES, count_rates),
+    (&SCATTER, count_scattered),
+    (&CLUSTERS, find_pieces),
+    (&LOADS, apply_loads),
+    (&BOND_DAMPING, compute_bond_damping),
+    (&PARTICLE_DAMPING, compute_particle_damping),
+    (&LEDGER, book_before_kick),
+    (&MOTION, kick_particles),
+    (&GRAVITY, count_falling),
+    (&CLUMPS, kick_clumps),
+    (&SUPPORTS, hold_supports),
+    (&WALLS, plan_wall_motions),
+    (&LEDGER, book_after_kick),
+    (&OUTPUT, watch),
+    (&CHECKS, nothing),
+    (&OUTPUT, nothing),
+];
+
+/// Second half, where velocities stand half a step later: bodies come, go and become others.
+const EXCHANGE: [Part; 4] = [
+    (&REPLACEMENT, count_bond_steps),
+    (&FLOW, let_bodies_come_and_go),
+    (&REPLACEMENT, restore_clumps),
+    (&REPLACEMENT, replace_clumps),
+];
+
+/// And all move on.
+const DRIFT: [Part; 5] = [
+    (&SLEEP, update_sleep),
+    (&MOTION, drift_particles),
+    (&CLUMPS, drift_clumps),
+    (&WALLS, advance_walls),
+    (&LEDGER, advance_time),
+];
+
+/// A whole step. Returns what happened in it.
+pub fn step(state: &mut State) -> &Events {
+    interact(state);
+    advance(state);
+    &state.events
+}
+
+/// First half of a step. Afterwards poses stand at `time_s` and velocities half a step later: the
+/// moment at which everything can be measured.
+pub fn interact(state: &mut State) {
+    state.events.begin(state.steps, state.time_s);
+    if !state.ledger.is_open {
+        state.ledger = opened(state);
+    }
+    run(&INTERACT, &TABLE.interact, state);
+}
+
+/// Second half of a step. Afterwards poses and time stand at the end of the step.
+pub fn advance(state: &mut State) {
+    exchange(state);
+    drift(state);
+}
+
+/// Bodies come, go and become others, where poses stand at `time_s` and velocities half a step
+/// later.
+pub fn exchange(state: &mut State) {
+    run(&EXCHANGE, &TABLE.exchange, state);
+}
+
+/// All move on to the end of the step.
+pub fn drift(state: &mut State) {
+    run(&DRIFT, &TABLE.drift, state);
+}
+
+fn run(parts: &[Part], stages: &[usize], state: &mut State) {
     state.clock.start(state.steps);
-    renew_lists(state);
-    state.clock.book(Stage::Search);
-
-    let p = &mut state.particles;
-    bond_wrenches(
-        &state.bonds,
-        &p.poses,
-        &mut state.partitions,
-        &mut p.wrenches,
-    );
-    state.clock.book(Stage::Bonds);
-    if !state.bonds.histories.is_empty() {
-        if before_s > 0.0 {
-            advance_histories(&mut state.bonds, p, before_s);
+    for ((_, part), &stage) in parts.iter().zip(stages) {
+        if !state.clock.is_left_out(stage) {
+            let items = part(state);
+            state.clock.did(stage, items);
+            state.clock.book(stage);
         }
-        add_incremental_wrenches(
-            &state.bonds,
-            &p.poses,
-            &mut state.partitions,
-            &mut p.wrenches,
-        );
-        state.clock.book(Stage::Histories);
     }
-    if let Some(contacts) = &mut state.contacts {
-        if !contacts.alone {
-            contact_wrenches(contacts, p, before_s);
-            state.clock.book(Stage::Contacts);
-        }
-        wall_wrenches(&mut state.walls, contacts, p, before_s);
-        state.clock.book(Stage::Walls);
-        clumps::gather(&mut state.clumps, p, before_s);
-        state.clock.book(Stage::Clumps);
-    }
-
-    // Before bonds break: a break gives its ends their half of the kick at once.
-    remember(&mut state.supports, &p.motions);
-    state.clock.book(Stage::Supports);
-    state.broken.clear();
-    let rates = break_bonds(
-        &mut state.bonds,
-        p,
-        &state.partitions,
-        0.5 * before_s,
-        &mut state.broken,
-    );
-    state.clock.did(Stage::Rates, rates);
-    state.broken_count += state.broken.len() as u64;
-    for broken in &state.broken {
-        state.broken_by_cause.count(broken.cause);
-    }
-    if !state.broken.is_empty() {
-        leave_out_broken(state);
-    }
-    state.clock.book(Stage::Failure);
-    find_pieces(state);
-    state.clock.book(Stage::Clusters);
-    let p = &mut state.particles;
-    let steps_s = [before_s, state.time_step_s];
-    add_loads(&state.loads, state.time_s, steps_s, &mut p.wrenches);
-    state.clock.book(Stage::Loads);
-
-    if !state.bond_resistance.is_empty() {
-        damping_wrenches(
-            &state.bonds,
-            &p.poses,
-            &p.motions,
-            &mut state.partitions,
-            &mut state.bond_resistance,
-        );
-        state.clock.book(Stage::BondDamping);
-    }
-    if !state.particle_resistance.is_empty() {
-        state.particle_resistance.fill(Wrench::default());
-        add_particle_damping(
-            p,
-            state.gravity_m_s2,
-            state.particle_damping,
-            &mut state.particle_resistance,
-        );
-        state.clock.did(Stage::ParticleDamping, p.free);
-        state.clock.book(Stage::ParticleDamping);
-    }
-
-    let kick_s = state.kick_s();
-    crate::check::ledger::before_kick(state);
-    state.clock.book(Stage::EnergyLedger);
-    let p = &mut state.particles;
-    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
-    kick(p, resistance, state.gravity_m_s2, kick_s);
-    state.clock.book(Stage::Motion);
-    clumps::kick(&mut state.clumps, state.gravity_m_s2, kick_s);
-    state.clock.book(Stage::Clumps);
-    hold(
-        &mut state.supports,
-        p,
-        &state.broken,
-        state.time_s,
-        [before_s, state.time_step_s],
-    );
-    state.clock.book(Stage::Supports);
-    plan_motions(&mut state.walls, state.time_s, state.time_step_s);
-    state.clock.book(Stage::Walls);
-    crate::check::ledger::after_kick(state);
-    count_done(state);
-    state.clock.book(Stage::EnergyLedger);
-    watch(state);
 }
 
-/// Second half of a step: the particles move on.
-pub fn move_on(state: &mut State) {
-    state.clock.start(state.steps);
-    sleep::update_sleep(state);
-    state.clock.book(Stage::Sleep);
-    let of_clumps_m_s = clumps::drift(&mut state.clumps, &mut state.particles, state.time_step_s);
-    state.clock.book(Stage::Clumps);
-    state.fastest_m_s = drift(&mut state.particles, state.time_step_s).max(of_clumps_m_s);
-    state.clock.book(Stage::Motion);
-    if let Some(contacts) = &mut state.contacts {
-        let of_walls_m_s = move_walls(&mut state.walls, &state.particles, state.time_step_s);
-        state.fastest_m_s += of_walls_m_s;
-        let moved_m = state.fastest_m_s * state.time_step_s;
-        contacts.moved_m = moved_m;
-        contacts.close_skin_left_m -= moved_m;
-        contacts.skin_left_m -= moved_m;
-        if contacts.skin_left_m < moved_m {
-            // After one more such step, who is not listed could overlap.
-            contacts.skin_left_m = -1.0;
-        }
-        state.clock.book(Stage::Walls);
-    }
-    state.ledger.drift(state.time_step_s);
-    state.time_s += state.time_step_s;
-    state.previous_time_step_s = state.time_step_s;
-    state.steps += 1;
-    state.clock.book(Stage::EnergyLedger);
+/// Checks and files have their place in the table and are done between steps.
+fn nothing(_: &mut State) -> usize {
+    0
 }
 
-/// Looks for the pieces of clusters in which bonds have broken, if it is time to. Particles that are no more of one cluster may touch from the next step on.
-fn find_pieces(state: &mut State) {
-    state.splits.clear();
-    if state.clusters.is_none() {
-        return;
-    }
-    let broken = state.broken.iter().map(|broken| broken.bond);
-    state.unsearched.extend(broken);
-    if !state
-        .triggers
-        .due(state.steps, state.unsearched.len() as u64)
-    {
-        return;
-    }
-    find_pieces_now(state);
+/// The stages in the order in which they first stand in the step; and for each part the number of
+/// its stage.
+struct Table {
+    stages: Vec<&'static Stage>,
+    interact: Vec<usize>,
+    exchange: Vec<usize>,
+    drift: Vec<usize>,
 }
 
-/// The same, whether it is time to or not.
-pub fn find_pieces_now(state: &mut State) {
-    let Some(clusters) = &mut state.clusters else {
-        return;
+static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    let mut stages: Vec<&'static Stage> = Vec::new();
+    let mut number = |(stage, _): &Part| {
+        let known = stages.iter().position(|other| *other == *stage);
+        known.unwrap_or_else(|| {
+            stages.push(stage);
+            stages.len() - 1
+        })
     };
-    let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
-    state.clock.did(Stage::Clusters, damaged.len());
-    state.splits = clusters.update(state.time_s, &damaged, &state.bonds);
-    state.unsearched.clear();
-    if let (Some(contacts), false) = (&mut state.contacts, state.splits.is_empty()) {
-        contacts.skin_left_m = -1.0;
+    let interact = INTERACT.iter().map(&mut number).collect();
+    let exchange = EXCHANGE.iter().map(&mut number).collect();
+    let drift = DRIFT.iter().map(&mut number).collect();
+    Table {
+        stages,
+        interact,
+        exchange,
+        drift,
     }
+});
+
+/// All stages, in the order of the step.
+pub fn stages() -> &'static [&'static Stage] {
+    &TABLE.stages
 }
 
-/// Takes down how much each stage has done in this step.
-fn count_done(state: &mut State) {
-    let clock = &mut state.clock;
-    for partition in &state.partitions {
-        let computed = partition.computed;
-        clock.did(Stage::Bonds, computed.total);
-        clock.did(Stage::Histories, computed.incremental);
-        clock.did(Stage::Failure, computed.compared);
-        if !state.bonds.strength_factors.is_empty() {
-            clock.did(Stage::Scatter, computed.compared);
-        }
-        clock.did(Stage::BondDamping, computed.damped);
-    }
-    for partition in state
-        .contacts
-        .iter()
-        .flat_map(|contacts| &contacts.partitions)
-    {
-        clock.did(Stage::Contacts, partition.computed);
-        clock.did(Stage::Rolling, partition.rolled);
-    }
-    for wall in &state.walls {
-        clock.did(Stage::Walls, wall.near.len());
-    }
-    for load in &state.loads {
-        clock.did(Stage::Loads, load.particles.len());
-    }
-    for support in &state.supports {
-        clock.did(Stage::Supports, support.held.len());
-    }
-    let awake = state.clumps.all.iter().filter(|clump| !clump.asleep);
-    let clumps = awake.count();
-    clock.did(Stage::Clumps, clumps);
-    clock.did(Stage::Motion, state.particles.free);
-    if state.gravity_m_s2 != [0.0; 3] {
-        clock.did(Stage::Gravity, state.particles.free + clumps);
-    }
+/// Number of a stage in [`stages`], by which the clock of a state knows it.
+pub fn number_of(stage: &Stage) -> usize {
+    let number = TABLE.stages.iter().position(|other| *other == stage);
+    number.unwrap_or(TABLE.stages.len())
 }
 
-/// Divides the work anew once enough bonds have broken since it was divided last.
-fn leave_out_broken(state: &mut State) {
-    let computed: usize = state.partitions.iter().map(Partition::own_bonds).sum();
-    let broken = state.broken_count - state.broken_gone;
-    let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
-    let whole = state.bonds.len() as u64 - broken - asleep;
-    if (computed as u64 - whole) * STALE >= computed as u64 {
-        divide_anew(&state.bonds, &mut state.partitions, &state.particles.asleep);
-    }
-}
-
-/// A whole step.
-pub fn step(state: &mut State) {
-    act(state);
-    move_on(state);
+/// Bytes of all arrays of a state.
+pub fn all_bytes(state: &State) -> usize {
+    stages().iter().map(|stage| (stage.bytes)(state)).sum()
 }

@@ -1,12 +1,12 @@
 //! A bed of spheres that touch as those of a heap do.
 
-use dem_run::check::ledger::EnergyLedger;
-use dem_run::clusters::Clusters;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_run::stages::ledger::opened;
 use dem_run::stages::neighbours::near_pairs;
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
+use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
@@ -44,7 +44,7 @@ pub(crate) fn bed(threads: usize) -> State {
     let mut state = State::new(particles, Bonds::default(), 1e-10, threads);
     state.clusters = Some(Clusters::new(count, &state.bonds));
     state.contacts = Some(contacts(&state, threads));
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     state
 }
 

@@ -48,7 +48,9 @@ fn heaps(criterion: &mut Criterion) {
             let contacts = state.contacts.as_mut().expect("has contacts");
             contact_wrenches(contacts, &mut state.particles, state.time_step_s);
         });
-        bench("step", &step);
+        bench("step", &|state| {
+            step(state);
+        });
         bench("relist", &|state| {
             let contacts = state.contacts.as_mut().expect("has contacts");
             let clusters = state.clusters.as_ref().expect("can touch");

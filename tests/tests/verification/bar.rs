@@ -6,12 +6,13 @@ use dem_io::scene::{Factor, Hold};
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::rigid::rotation_vector;
-use dem_run::stages::loads::SetLoad;
-use dem_run::stages::supports::{Held, SetSupport};
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::{Particles, Wrench};
-use dem_run::step::{act, move_on};
+use dem_run::state::supports::Held;
+use dem_run::state::supports::SetSupport;
+use dem_run::step::{advance, interact};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Young's modulus, Pa.
@@ -163,11 +164,11 @@ impl Bar {
         while quiet < 3 {
             let mut fastest = 0.0_f64;
             for _ in 0..per_period {
-                act(&mut state);
+                interact(&mut state);
                 for motion in &state.particles.motions {
                     fastest = fastest.max(Vector3::from(motion.velocity_m_s).norm());
                 }
-                move_on(&mut state);
+                advance(&mut state);
             }
             let moves = fastest * state.time_step_s > 1e-15 * self.length_m;
             quiet = if moves { 0 } else { quiet + 1 };

@@ -12,9 +12,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::geometry::Shape;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::clumps::Clump;
+use crate::state::events::REMOVED;
 use crate::state::walls::Wall;
 
 /// A gap that is smaller than this share of the body's extent is closed.

@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use crate::check::linear::overlap_at_impact;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::bonds::Bonds;
+use crate::state::events::REMOVED;
 
 /// Strain at the edge of a bond above which linear elasticity is doubtful: an error of the same
 /// order.

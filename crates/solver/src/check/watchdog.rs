@@ -2,12 +2,12 @@
 
 use dem_io::{Diagnostic, Result};
 
-use super::ledger::Balance;
-use super::totals::{elastic_energy, kinetic_energy};
 use crate::physics::bond::pair::frequencies;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::stages::contacts::contact_energy_j;
+use crate::stages::ledger::Balance;
 use crate::stages::loads::loads_power_w;
+use crate::stages::totals::{elastic_energy, kinetic_energy};
 use crate::state::State;
 
 /// Energy that may appear above the limit, over what was put in: there it is a local mode that grows until it saturates, small against a large body.

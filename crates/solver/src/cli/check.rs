@@ -8,13 +8,12 @@ use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
 use serde_json::{Value, json};
 
-use crate::clock::{Stage, StageClock};
-use crate::output::masses;
-use crate::plan::savings::saving;
+use crate::clock::StageClock;
+use crate::plan::masses;
 use crate::plan::{Plan, PlannedStage};
+use crate::stages::ledger::CHECKS;
 use crate::state::State;
-use crate::state::memory::all_bytes;
-use crate::step::step;
+use crate::step::{all_bytes, number_of, step};
 
 /// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
 const TRIAL: (u32, f64) = (2000, 0.5);
@@ -32,9 +31,9 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     let of_stages = |needed: bool| -> Vec<Value> {
         let of_stage = |stage: &PlannedStage| {
             let cost_ns = trial.as_ref().and_then(|trial| trial.cost_ns(stage));
-            let would = saving(stage, &plan.state);
+            let would = (stage.stage.saving)(&plan.state);
             json!({
-                "name": stage.stage.name(),
+                "name": stage.stage.name,
                 "why": stage.why,
                 "bytes": if needed { Some(stage.bytes) } else { would.map(|saved| saved.bytes) },
                 "ns_per_step": if needed { cost_ns } else { would.map(|saved| saved.ns) },
@@ -233,17 +232,15 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
 
 /// A stage: why it is there or not, what it takes, or what leaving it out saves.
 fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> String {
-    let mut text = format!("{}: {}", stage.stage.name(), stage.why);
+    let mut text = format!("{}: {}", stage.stage.name, stage.why);
     let mut costs = Vec::new();
     if stage.needed {
         if stage.bytes > 0 {
             costs.push(size_text(stage.bytes));
         }
         costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(time_text));
-        costs.extend(
-            (stage.stage.within()).map(|other| format!("its time is in that of {}", other.name())),
-        );
-    } else if let Some(saved) = saving(stage, state) {
+        costs.extend((stage.stage.within).map(|other| format!("its time is in that of {other}")));
+    } else if let Some(saved) = (stage.stage.saving)(state) {
         if saved.bytes > 0 {
             costs.push(size_text(saved.bytes));
         }
@@ -311,7 +308,7 @@ impl Trial {
 
     /// Of a stage that has a time of its own and takes part in steps, ns per step.
     fn cost_ns(&self, stage: &PlannedStage) -> Option<f64> {
-        let has_own = stage.stage.within().is_none() && stage.stage != Stage::Checks;
-        has_own.then(|| 1e9 * self.per_step_s * self.clock.share(stage.stage))
+        let has_own = stage.stage.within.is_none() && *stage.stage != CHECKS;
+        has_own.then(|| 1e9 * self.per_step_s * self.clock.fraction(number_of(stage.stage)))
     }
 }

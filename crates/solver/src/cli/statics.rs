@@ -6,8 +6,8 @@ use dem_io::scene::Scene;
 use serde_json::json;
 
 use super::check::size_text;
-use crate::output::masses;
 use crate::plan::Plan;
+use crate::plan::masses;
 use crate::statics::Outlook;
 
 /// Keys and tables that mean nothing to such a scene.

@@ -155,7 +155,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 impl Record {
     /// Notes a step between a kick and the drift after it. Whether the body is broken: bonds have, and the force has fallen below half of its largest.
     pub fn note(&mut self, setup: &Setup, loading: &Loading, state: &State) -> bool {
-        for broken in &state.broken {
+        for broken in &state.events.broken {
             self.broken.push(BrokenBond {
                 time_s: state.time_s,
                 bond: broken.bond,

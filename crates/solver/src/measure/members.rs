@@ -3,9 +3,10 @@
 use dem_io::scene::Scene;
 
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::{REMOVED, Renumbering};
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
+use crate::state::events::REMOVED;
+use crate::state::events::Renumbering;
 
 /// The particles of a set, a body or `all`, those that clumps carry among them.
 #[derive(Debug, Clone, Default, PartialEq)]

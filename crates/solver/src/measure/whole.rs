@@ -12,9 +12,9 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::members::Members;
 use crate::physics::rigid::rotation_vector;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::REMOVED;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::events::REMOVED;
 use crate::state::particles::Motion;
 
 /// Where bodies stood at the start, by their names.

@@ -4,8 +4,8 @@ use dem_io::Result;
 use dem_io::results::{Axis, FragmentRow, Line, Plot, ResultsFolder, TreeRow, write_fragment_tree};
 use serde::Serialize;
 
-use crate::clusters::fragments::{mass_fraction_of_largest, size_distribution};
-use crate::clusters::{Cluster, Clusters, Fragment, Split};
+use crate::state::clusters::fragments::{mass_fraction_of_largest, size_distribution};
+use crate::state::clusters::{Cluster, Clusters, Fragment, Split};
 
 /// Names of the plots of fragments.
 pub(super) const COUNT: &str = "fragments";

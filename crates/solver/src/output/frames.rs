@@ -6,13 +6,13 @@ use dem_io::Result;
 use dem_io::results::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS};
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 
-use crate::check::totals::synchronous_motions;
 use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::plan::bodies::PlacedBody;
-use crate::stages::population::REMOVED;
+use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::events::REMOVED;
 
 /// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after them the spheres of clumps.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! Columns of the time series: energies, errors, broken bonds, every measure.
 
-use crate::check::ledger::Balance;
 use crate::measure::Probe;
+use crate::stages::ledger::Balance;
 use crate::state::State;
 
 /// Names of the first columns after the time: energies and works, J.

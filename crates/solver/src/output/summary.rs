@@ -10,12 +10,12 @@ use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
 use super::fragments::FragmentSummary;
-use super::inputs::Inputs;
-use super::masses;
-use crate::check::ledger::{Balance, over};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::physics::bond::failure::CauseCounts;
+use crate::plan::inputs::Inputs;
+use crate::plan::masses;
+use crate::stages::ledger::{Balance, over};
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;

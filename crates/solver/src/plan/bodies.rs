@@ -22,9 +22,11 @@ use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
 use crate::shape::inertia::of_union;
-use crate::stages::population::{NewCluster, REMOVED, Renumbering};
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::clumps::Clumps;
+use crate::state::events::NewCluster;
+use crate::state::events::REMOVED;
+use crate::state::events::Renumbering;
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
 

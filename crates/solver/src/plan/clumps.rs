@@ -11,7 +11,7 @@ use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
 use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{HIDDEN, SHARE_OF_SMALLEST, outer_layer};
-use crate::stages::replacement::angular_momentum;
+use crate::stages::inlets::angular_momentum;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, Template, numbers, reach_m, rotation, sub_spheres};
 use crate::state::particles::Particles;

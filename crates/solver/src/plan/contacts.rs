@@ -4,13 +4,13 @@ use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scen
 use dem_io::{Diagnostic, Result};
 
 use super::bodies::{PlacedBody, called};
-use crate::clusters::Clusters;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
+use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.

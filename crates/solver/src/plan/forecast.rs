@@ -10,7 +10,7 @@ use super::bodies::PlacedBody;
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
 use crate::check::laws::foreseen;
 use crate::state::State;
-use crate::state::memory::all_bytes;
+use crate::step::all_bytes;
 
 /// Bodies of which it is said what they meet first; of others it is not looked at.
 const MOST_BODIES: usize = 8;

@@ -3,12 +3,13 @@
 use dem_io::Result;
 use dem_io::results::Event;
 
-use super::Files;
+use super::files::Files;
 use crate::output::fragments::split_text;
 use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
-use crate::stages::replacement::{PopulationEvent, STARTS_BONDED};
 use crate::state::State;
+use crate::state::events::PopulationEvent;
+use crate::state::events::STARTS_BONDED;
 
 /// The bonds that broke in this step, by the numbers of the body's file.
 pub(super) fn write_breaks(
@@ -16,7 +17,7 @@ pub(super) fn write_breaks(
     bodies: &[PlacedBody],
     files: &mut Files<'_>,
 ) -> Result<()> {
-    for broken in &state.broken {
+    for broken in &state.events.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
         let mut ends = ends.map(|end| {
@@ -48,6 +49,7 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
         return Ok(());
     };
     let details: Vec<String> = state
+        .events
         .splits
         .iter()
         .map(|split| split_text(split, &clusters.history))
@@ -60,12 +62,9 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
 }
 
 /// What has happened to bodies in this step.
-pub(super) fn write_happened(
-    state: &State,
-    happened: &[PopulationEvent],
-    files: &mut Files<'_>,
-) -> Result<()> {
-    for one in happened {
+pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<()> {
+    let (step, time_s) = (state.events.step, state.events.time_s);
+    for one in &state.events.population {
         let (kind, cause, place_m, energy_j, detail) = match one {
             PopulationEvent::Replaced {
                 cluster,
@@ -127,6 +126,8 @@ pub(super) fn write_happened(
             ),
         };
         files.events.append(&[Event {
+            step,
+            time_s,
             position_m: Some(*place_m),
             energy_j,
             ..of_all(state, kind, cause, &detail)
@@ -137,7 +138,7 @@ pub(super) fn write_happened(
 
 /// The bodies that fell asleep or woke in this step.
 pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
-    for news in state.sleep.iter().flat_map(|sleep| &sleep.events) {
+    for news in &state.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
         files.events.append(&[Event {
             step: news.step,

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::RunSettings;
 use super::pictures::{Order, Pictures};
 use super::progress::OutputSchedule;
-use crate::clusters::fragments as fragments_of;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
 use crate::output::fragments::{write_fragment_plots, write_tree};
@@ -18,6 +17,7 @@ use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::state::State;
+use crate::state::clusters::fragments as fragments_of;
 
 /// What a run that has come to its end leaves beside its last checkpoint, before it writes plots,
 /// film and summary.

@@ -2,12 +2,13 @@
 
 use dem_io::Result;
 
-use super::{Files, Progress};
-use crate::check::totals::synchronous_motions;
-use crate::clusters::fragments;
+use super::files::Files;
+use super::progress::Progress;
 use crate::output::fragments::rows;
 use crate::stages::clumps::synchronous;
+use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::clusters::fragments;
 
 /// Besides the frames, fragments are written when there are more by one in so many: of few every one shows, and the rows written for all
 /// splits together are at most one more than this times the fragments at the end.

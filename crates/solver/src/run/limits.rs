@@ -3,15 +3,15 @@
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 
-use super::Files;
 use super::events::{change, look_anew_for_near, new_step};
+use super::files::Files;
 use super::progress::Progress;
 use crate::check::limit::{Bound, bound_near, limit};
 use crate::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
-use crate::check::totals::kinetic_energy;
 use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
+use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::state::particles::Pose;
 

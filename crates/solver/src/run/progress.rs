@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;
 use super::seen::Seen;
-use crate::check::ledger::{Balance, over};
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
 use crate::plan::time_step::{Outlook, StepChoice};
+use crate::stages::ledger::{Balance, over};
 use crate::state::State;
 
 /// Rows of the time series unless asked otherwise.

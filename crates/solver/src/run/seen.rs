@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
-use crate::clusters::fragments::Fragment;
 use crate::plan::bodies::{PlacedBody, called};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
-use crate::stages::population::REMOVED;
-use crate::stages::replacement::{PopulationEvent, STARTS_BONDED};
 use crate::state::State;
+use crate::state::clusters::fragments::Fragment;
+use crate::state::events::PopulationEvent;
+use crate::state::events::REMOVED;
+use crate::state::events::STARTS_BONDED;
 
 /// Fraction of the run at its end in which a breaking bond says that breakage is not over.
 const LATE: f64 = 0.05;
@@ -58,7 +59,7 @@ pub(super) struct Seen {
 impl Seen {
     /// Takes down that bonds have broken in this step, and how they were strained.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
-        for broken in &state.broken {
+        for broken in &state.events.broken {
             self.last_break_s = Some(state.time_s);
             let at = broken.bond as usize;
             self.note_strain(
@@ -71,7 +72,7 @@ impl Seen {
     }
 
     /// Takes down which clumps have been replaced.
-    pub(super) fn note_happened(&mut self, happened: &[PopulationEvent]) {
+    pub(super) fn note_population(&mut self, happened: &[PopulationEvent]) {
         for one in happened {
             if let PopulationEvent::Replaced { body, cause, .. } = one
                 && *cause != STARTS_BONDED

@@ -3,10 +3,10 @@
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use crate::clusters::{Cluster, Clusters};
 use crate::geometry::Frame;
 use crate::stages::sleep::count_sleepers;
 use crate::state::State;
+use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
 use crate::state::sleep::{ClusterSleep, Sleep};
 use crate::state::walls::{Push, Wall, WallContact};

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::bond_response;
@@ -13,9 +14,97 @@ use crate::stages::blocks::{
 };
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
 use crate::stages::motion::CHUNK;
-use crate::state::bonds::{BLOCK, BondBlock, Bonds, bending_stiffness};
+use crate::state::State;
+use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, Computed, Partition, Which};
+
+/// Forces of bonds.
+pub const BONDS: Stage = Stage {
+    name: "bond forces",
+    within: None,
+    need: |state, _| {
+        let now = state.bonds.len();
+        let of_clumps = bonds_of_clumps(state);
+        if bonds_to_come(state) == 0 && of_clumps > 0 {
+            return Need::of(now > 0, || bonds_text(now), "clumps are never replaced");
+        }
+        let why = || match of_clumps {
+            0 => bonds_text(now),
+            _ => format!("{now} bonds at the start; those of a clump, once it is replaced"),
+        };
+        Need::of(now + bonds_to_come(state) > 0, why, "no body has bonds")
+    },
+    bytes: |state| {
+        let batches = state
+            .partitions
+            .iter()
+            .flat_map(|partition| &partition.batches);
+        size_of_val(&state.bonds.ends[..])
+            + size_of_val(&state.bonds.blocks[..])
+            + batches.map(|batch| 4 * batch.which.listed()).sum::<usize>()
+    },
+    saving: NO_SAVING,
+};
+
+fn bonds_text(count: usize) -> String {
+    format!("{count} bonds")
+}
+
+/// Bonds of all templates of clumps, each counted once.
+fn bonds_of_clumps(state: &State) -> usize {
+    state
+        .clumps
+        .templates
+        .iter()
+        .map(|template| template.bonds.len())
+        .sum()
+}
+
+/// Bonds of all templates if clumps can become clusters, 0 if not.
+pub(super) fn bonds_to_come(state: &State) -> usize {
+    let can_bond = !state.rules.triggers.iter().all(Option::is_none)
+        || state.rules.starts.iter().any(|start| start.bonded);
+    if can_bond { bonds_of_clumps(state) } else { 0 }
+}
+
+/// Whether there are bonds, or will be, and a kind of bond is so.
+pub(super) fn any_bond(state: &State, is_so: impl Fn(&BondRule) -> bool) -> bool {
+    state.bonds.len() + bonds_to_come(state) > 0 && state.bonds.rules.iter().any(is_so)
+}
+
+/// Sets the wrenches to 0 where there are no bonds, whose forces are set before all others.
+pub fn clear_wrenches(state: &mut State) -> usize {
+    if state.bonds.is_empty() {
+        let p = &mut state.particles;
+        bond_wrenches(
+            &state.bonds,
+            &p.poses,
+            &mut state.partitions,
+            &mut p.wrenches,
+        );
+    }
+    0
+}
+
+/// Sets the wrenches to the forces of the bonds. Returns how many were computed.
+pub fn compute_bonds(state: &mut State) -> usize {
+    if state.bonds.is_empty() {
+        return 0;
+    }
+    let p = &mut state.particles;
+    bond_wrenches(
+        &state.bonds,
+        &p.poses,
+        &mut state.partitions,
+        &mut p.wrenches,
+    );
+    state
+        .partitions
+        .iter()
+        .map(|partition| partition.computed.total)
+        .sum()
+}
 
 /// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;

@@ -3,26 +3,123 @@
 use dem_io::scene::RateOf;
 use nalgebra::Vector3;
 
+use super::bonds::bonds_to_come;
+use super::stage::{NO_SAVING, Need, Saving, Stage};
 use crate::physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::total::BondForces;
+use crate::state::State;
 use crate::state::bonds::Bonds;
+use crate::state::events::Break;
 use crate::state::particles::Particles;
 use crate::state::partitions::Partition;
+use crate::state::partitions::divide_anew;
 
-/// A bond that has broken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Break {
-    /// Which bond.
-    pub bond: u32,
-    /// Halfway between its ends, m. Length 3.
-    pub place_m: [f64; 3],
-    /// What it failed by.
-    pub cause: Cause,
-    /// Elastic energy that it held, J.
-    pub released_j: f64,
-    /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted until the break.
-    pub ends: [(u32, [f64; 6]); 2],
+/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+const FAILURE_NS: f64 = 2.1;
+const SCATTER_NS: f64 = 1.2;
+/// The work is divided anew when one in so many of the bonds that are computed is broken.
+const STALE: u64 = 64;
+
+/// Bonds that have reached their strength.
+pub const FAILURE: Stage = Stage {
+    name: "failure",
+    within: None,
+    need: |state, _| {
+        Need::of(
+            state.bonds.rules.iter().any(|rule| rule.criteria.is_some()),
+            || "bonds have strengths".to_owned(),
+            "no bond has a strength",
+        )
+    },
+    bytes: |_| 0,
+    saving: |state| Saving::of(state.bonds.len(), 0, FAILURE_NS),
+};
+
+/// Their strength by the rate of strain.
+pub const RATES: Stage = Stage {
+    name: "strength by rate",
+    within: Some(FAILURE.name),
+    need: |state, _| {
+        let mut rules = state.bonds.rules.iter();
+        Need::of(
+            rules.any(|rule| rule.strengthening_from_1_s.is_some()),
+            || "only for bonds that would break without it".to_owned(),
+            "no rate strengthening asked for",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Strengths that vary from bond to bond.
+pub const SCATTER: Stage = Stage {
+    name: "scattered strength",
+    within: Some(FAILURE.name),
+    need: |state, _| {
+        let mut templates = state.clumps.templates.iter();
+        let will_be = bonds_to_come(state) > 0 && templates.any(|t| t.scatter.is_some());
+        Need::of(
+            !state.bonds.strength_factors.is_empty() || will_be,
+            || "a factor for each bond".to_owned(),
+            "no Weibull modulus given",
+        )
+    },
+    bytes: |state| size_of_val(&state.bonds.strength_factors[..]),
+    saving: |state| Saving::of(state.bonds.len(), size_of::<f64>(), SCATTER_NS),
+};
+
+/// Breaks the bonds that have reached their strength. Returns how many were compared with it.
+pub fn break_failed_bonds(state: &mut State) -> usize {
+    let compared = state
+        .partitions
+        .iter()
+        .map(|partition| partition.computed.compared)
+        .sum();
+    let broken = &mut state.events.broken;
+    state.events.work.rates = break_bonds(
+        &mut state.bonds,
+        &mut state.particles,
+        &state.partitions,
+        0.5 * state.previous_time_step_s,
+        broken,
+    );
+    state.broken_count += broken.len() as u64;
+    for broken in broken.iter() {
+        state.broken_by_cause.count(broken.cause);
+    }
+    if !broken.is_empty() {
+        leave_out_broken(state);
+    }
+    compared
+}
+
+/// How many bonds were looked at whose strength depends on the rate of strain.
+pub fn count_rates(state: &mut State) -> usize {
+    state.events.work.rates
+}
+
+/// How many bonds with a strength of their own were compared with it.
+pub fn count_scattered(state: &mut State) -> usize {
+    if state.bonds.strength_factors.is_empty() {
+        return 0;
+    }
+    state
+        .partitions
+        .iter()
+        .map(|partition| partition.computed.compared)
+        .sum()
+}
+
+/// Divides the work anew once enough bonds have broken since it was divided last.
+fn leave_out_broken(state: &mut State) {
+    let computed: usize = state.partitions.iter().map(Partition::own_bonds).sum();
+    let broken = state.broken_count - state.broken_gone;
+    let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
+    let whole = state.bonds.len() as u64 - broken - asleep;
+    if (computed as u64 - whole) * STALE >= computed as u64 {
+        divide_anew(&state.bonds, &mut state.partitions, &state.particles.asleep);
+    }
 }
 
 /// Breaks the bonds that the partitions list, if they fail, and adds them to `broken`, in the order of the bonds.

@@ -2,10 +2,79 @@
 
 use nalgebra::Vector3;
 
+use super::pieces::clusters_bytes;
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::rigid::rotation_vector;
 use crate::physics::rotation;
+use crate::state::State;
+use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps, numbers, rotation as rotation_of};
 use crate::state::particles::{Particles, Wrench};
+
+/// Rigid clumps.
+pub const CLUMPS: Stage = Stage {
+    name: "rigid clumps",
+    within: None,
+    need: |state, _| {
+        let templates = &state.clumps.templates;
+        let sum = |count: fn(&Template) -> usize| templates.iter().map(|t| count(t)).sum::<usize>();
+        let (spheres, outer) = (sum(|t| t.spheres.len()), sum(|t| t.outer.len()));
+        let shapes = match templates.len() {
+            1 => "one shape".to_owned(),
+            shapes => format!("{shapes} shapes"),
+        };
+        let clumps = state.clumps.all.len();
+        Need::of(
+            !templates.is_empty(),
+            || {
+                format!(
+                    "{clumps} at the start; of the {spheres} spheres of {shapes} the {outer} outer ones"
+                )
+            },
+            "no body starts as a clump",
+        )
+    },
+    bytes: |state| {
+        let templates = state.clumps.templates.iter();
+        clusters_bytes(state, CLUMPS.name)
+            + size_of::<Clump>() * state.clumps.all.len()
+            + size_of_val(&state.clumps.near[..])
+            + templates.map(|template| template.bytes()).sum::<usize>()
+    },
+    saving: NO_SAVING,
+};
+
+/// Gathers what contacts do to the spheres of clumps.
+pub fn gather_clumps(state: &mut State) -> usize {
+    if state.contacts.is_some() {
+        gather(
+            &mut state.clumps,
+            &mut state.particles,
+            state.previous_time_step_s,
+        );
+    }
+    0
+}
+
+/// Changes the velocities of clumps. Returns how many there are that do not sleep.
+pub fn kick_clumps(state: &mut State) -> usize {
+    let kick_s = state.kick_s();
+    kick(&mut state.clumps, state.gravity_m_s2, kick_s);
+    awake(&state.clumps)
+}
+
+/// Moves clumps on, and those of their spheres that are near something.
+pub fn drift_clumps(state: &mut State) -> usize {
+    let (clumps, particles) = (&mut state.clumps, &mut state.particles);
+    let fastest_m_s = drift(clumps, particles, state.time_step_s);
+    state.fastest_m_s = state.fastest_m_s.max(fastest_m_s);
+    0
+}
+
+/// Number of clumps that do not sleep.
+pub(super) fn awake(clumps: &Clumps) -> usize {
+    clumps.all.iter().filter(|clump| !clump.asleep).count()
+}
 
 /// Takes down which spheres of clumps are near something, after pairs and walls have been looked through. `near`: particles that are, in any order, some twice.
 pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iterator<Item = u32>) {

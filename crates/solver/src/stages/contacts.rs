@@ -8,6 +8,8 @@ pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pa
 pub(in crate::stages) use self::stored::{stored_energy_j, stored_force_n};
 
 use self::close::{close_m, look};
+use super::bonds::any_bond;
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::kinematics::{ContactSphere, contact_kinematics, torques};
 use crate::physics::contact::linear::Linear;
@@ -21,8 +23,123 @@ use crate::physics::number::Vec3;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
+use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+
+/// Contacts of particles.
+pub const CONTACTS: Stage = Stage {
+    name: "contacts of particles",
+    within: None,
+    need: |state, scene| {
+        let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
+        let why_not = if state.contacts.is_some() {
+            "there is one body, and no bond can break"
+        } else if can_break(state) || pieces > 1 || scene.bodies.len() > 1 {
+            "the scene has no [contacts]: bodies and pieces pass through each other"
+        } else {
+            "nothing can touch"
+        };
+        Need::of(
+            can_meet(state),
+            || format!("{pieces} pieces at the start"),
+            why_not,
+        )
+    },
+    bytes: |state| {
+        state.contacts.as_ref().map_or(0, |c| {
+            let of_partitions = c.partitions.iter().map(|partition| {
+                size_of_val(&partition.border[..])
+                    + size_of_val(&partition.border_histories[..])
+                    + partition.was_close.len()
+            });
+            size_of_val(&c.histories[..]) + of_partitions.sum::<usize>()
+        })
+    },
+    saving: NO_SAVING,
+};
+
+/// Overlaps of pieces that part.
+pub const RELAXATION: Stage = Stage {
+    name: "relaxation",
+    within: Some(CONTACTS.name),
+    need: |state, scene| {
+        let relaxes = state
+            .contacts
+            .as_ref()
+            .is_some_and(|contacts| contacts.relaxes);
+        let why_not = if scene.relaxation.enabled {
+            "no pieces part"
+        } else {
+            "switched off: pieces that part overlapping fly apart"
+        };
+        Need::of(
+            can_meet(state) && relaxes && can_break(state),
+            || "overlaps of pieces that part are where their contact begins".to_owned(),
+            why_not,
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Rolling friction of contacts.
+pub const ROLLING: Stage = Stage {
+    name: "rolling friction",
+    within: Some(CONTACTS.name),
+    need: |state, scene| {
+        let mut contacts = scene.contacts.iter();
+        let rolls = contacts.any(|c| c.rolling != dem_io::scene::Rolling::None);
+        Need::of(
+            state.contacts.is_some() && rolls,
+            || "materials have it".to_owned(),
+            "no materials have it",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Whether particles of different pieces can touch each other.
+fn can_meet(state: &State) -> bool {
+    state
+        .contacts
+        .as_ref()
+        .is_some_and(|contacts| !contacts.alone)
+}
+
+fn can_break(state: &State) -> bool {
+    any_bond(state, |rule| rule.criteria.is_some())
+}
+
+/// Adds the forces of contacts between particles to the wrenches. Returns how many touch.
+pub fn compute_contacts(state: &mut State) -> usize {
+    match &mut state.contacts {
+        Some(contacts) if !contacts.alone => {
+            contact_wrenches(contacts, &mut state.particles, state.previous_time_step_s);
+            contacts
+                .partitions
+                .iter()
+                .map(|partition| partition.computed)
+                .sum()
+        }
+        _ => 0,
+    }
+}
+
+/// How many pairs that were listed in this step begin their law at an overlap.
+pub fn count_relaxing(state: &mut State) -> usize {
+    state.events.work.relaxing
+}
+
+/// How many contacts with rolling friction touch.
+pub fn count_rolling(state: &mut State) -> usize {
+    let partitions = state
+        .contacts
+        .iter()
+        .flat_map(|contacts| &contacts.partitions);
+    partitions.map(|partition| partition.rolled).sum()
+}
 
 /// Contacts between those that are computed and those whose second particles are fetched into the cache.
 const SOON: usize = 16;

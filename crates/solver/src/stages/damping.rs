@@ -1,14 +1,61 @@
 //! Viscous forces of damped bonds on the particles, from the velocities half a step ago.
 
+use super::bonds::any_bond;
+use super::stage::{Need, Saving, Stage};
 use crate::physics::bond::damping::{DampingCoefficients, resistance};
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{
     BondGroup, blocks_of, fetch_second_ends, for_each_partition, separations, vectors,
 };
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::State;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::partitions::{Batch, Partition, Which};
+
+/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+const BOND_DAMPING_NS: f64 = 19.3;
+
+/// Damping of bonds.
+pub const BOND_DAMPING: Stage = Stage {
+    name: "bond damping",
+    within: None,
+    need: |state, _| {
+        Need::of(
+            any_bond(state, |rule| rule.damped),
+            || "bonds are damped".to_owned(),
+            "no bond is damped: no relative velocities",
+        )
+    },
+    bytes: |state| size_of_val(&state.bonds.damping[..]) + size_of_val(&state.bond_resistance[..]),
+    saving: |state| {
+        let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
+        Some(Saving {
+            bytes: of_bonds.bytes + state.particles.free * size_of::<Wrench>(),
+            ..of_bonds
+        })
+    },
+};
+
+/// Sets the damping forces of bonds. Returns how many were computed.
+pub fn compute_bond_damping(state: &mut State) -> usize {
+    if !state.bond_resistance.is_empty() {
+        let p = &state.particles;
+        let resisting = &mut state.bond_resistance;
+        damping_wrenches(
+            &state.bonds,
+            &p.poses,
+            &p.motions,
+            &mut state.partitions,
+            resisting,
+        );
+    }
+    state
+        .partitions
+        .iter()
+        .map(|partition| partition.computed.damped)
+        .sum()
+}
 
 /// Sets `resisting` (one for each particle) to the damping forces of the bonds.
 pub fn damping_wrenches(

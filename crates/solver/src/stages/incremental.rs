@@ -3,12 +3,61 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::bonds::any_bond;
+use super::stage::{Need, Saving, Stage};
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::physics::bond::incremental::{Step, advance, bond_forces};
 use crate::stages::blocks::for_each_partition;
+use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Particles, Pose, Wrench};
 use crate::state::partitions::{Batch, Partition, Which};
+
+/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+const HISTORY_NS: f64 = 37.6;
+
+/// Histories of bonds of the incremental formulation, and their forces.
+pub const HISTORIES: Stage = Stage {
+    name: "bond history",
+    within: None,
+    need: |state, _| {
+        Need::of(
+            any_bond(state, |rule| rule.incremental),
+            || "bonds of the incremental formulation".to_owned(),
+            "every bond has the total formulation",
+        )
+    },
+    bytes: |state| size_of_val(&state.bonds.histories[..]),
+    saving: |state| {
+        Saving::of(
+            state.bonds.len(),
+            size_of::<crate::physics::bond::incremental::History>(),
+            HISTORY_NS,
+        )
+    },
+};
+
+/// Brings the histories up to date and adds their forces to the wrenches. Returns how many bonds
+/// were computed.
+pub fn compute_incremental_bonds(state: &mut State) -> usize {
+    let (before_s, p) = (state.previous_time_step_s, &mut state.particles);
+    if !state.bonds.histories.is_empty() {
+        if before_s > 0.0 {
+            advance_histories(&mut state.bonds, p, before_s);
+        }
+        add_incremental_wrenches(
+            &state.bonds,
+            &p.poses,
+            &mut state.partitions,
+            &mut p.wrenches,
+        );
+    }
+    state
+        .partitions
+        .iter()
+        .map(|partition| partition.computed.incremental)
+        .sum()
+}
 
 /// Brings the histories up to the present places, after a drift of `time_step_s` with these motions.
 pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {

@@ -4,19 +4,40 @@
 
 use super::clumps;
 use super::contacts::list_contacts;
+use super::pieces::clusters_bytes;
 use super::sleep::{begins_to_move, disturbed, keep_touches, wake};
+use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::list_near;
-use crate::clock::Stage;
 use crate::state::State;
 
-/// Makes the lists anew if something may have come near since they were made.
-pub fn renew_lists(state: &mut State) {
-    let resumed = state.sleep.as_mut().is_some_and(|sleep| {
-        sleep.events.clear();
-        std::mem::take(&mut sleep.is_resumed)
-    });
+/// The search for what is near.
+pub const SEARCH: Stage = Stage {
+    name: "neighbour search",
+    within: None,
+    need: |state, _| {
+        Need::of(
+            state.contacts.is_some(),
+            || "when something may have come near".to_owned(),
+            "nothing can touch",
+        )
+    },
+    bytes: |state| {
+        let contacts = state.contacts.as_ref();
+        let of_contacts = contacts.map_or(0, |c| {
+            size_of_val(&c.pairs[..]) + size_of_val(&c.lost_j[..]) + c.materials.len()
+        });
+        of_contacts + clusters_bytes(state, SEARCH.name)
+    },
+    saving: NO_SAVING,
+};
+
+/// Makes the lists anew if something may have come near since they were made. Returns how many
+/// particles were gone through.
+pub fn renew_lists(state: &mut State) -> usize {
+    let sleep = state.sleep.as_mut();
+    let resumed = sleep.is_some_and(|sleep| std::mem::take(&mut sleep.is_resumed));
     let Some(contacts) = &mut state.contacts else {
-        return;
+        return 0;
     };
     if begins_to_move(
         state.sleep.as_ref(),
@@ -27,12 +48,14 @@ pub fn renew_lists(state: &mut State) {
     }
     let skin_left_m = contacts.skin_left_m;
     if skin_left_m >= 0.0 && !resumed {
-        return;
+        return 0;
     }
+    let mut listed = 0;
     clumps::place_all(&state.clumps, &mut state.particles);
     keep_touches(state);
     loop {
         list_awake(state);
+        listed += state.particles.len();
         if skin_left_m >= 0.0 {
             // The run from which this one goes on woke nobody here, and makes its next lists when this room is used up.
             leave_out_sleepers(state);
@@ -53,6 +76,7 @@ pub fn renew_lists(state: &mut State) {
         let near = contacts.pairs.iter().flatten().chain(at_walls).copied();
         clumps::list_near(&mut state.clumps, p, near);
     }
+    listed
 }
 
 /// Lists walls and pairs. Of two that sleep no pair is made.
@@ -63,7 +87,6 @@ fn list_awake(state: &mut State) {
     };
     // Room for two steps at least: who is first seen when it overlaps already would be taken for the piece of a body, and relax.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
-    state.clock.did(Stage::Search, p.len());
     list_near(&mut state.walls, p, skin_m);
     if contacts.alone {
         contacts.skin_left_m = 0.5 * skin_m;
@@ -81,7 +104,7 @@ fn list_awake(state: &mut State) {
         list_contacts(contacts, &numbers, p, skin_m);
     }
     if contacts.relaxes {
-        state.clock.did(Stage::Relaxation, contacts.relaxing());
+        state.events.work.relaxing += contacts.relaxing();
     }
 }
 

@@ -1,46 +1,43 @@
 //! Loads on sets of particles, and the course of loads and motions over time.
 
-use dem_io::scene::Factor;
-
-use crate::interpolation::interpolated;
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::state::State;
+use crate::state::loads::SetLoad;
 use crate::state::particles::{Motion, Pose, Wrench};
 
-/// A load on some particles, the same on each.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SetLoad {
-    /// The particles.
-    pub particles: Vec<u32>,
-    /// On each, N. Length 3.
-    pub force_n: [f64; 3],
-    /// On each, N m. Length 3.
-    pub torque_n_m: [f64; 3],
-    /// Over time.
-    pub factor: Factor,
-    /// From this time on it is zero, s; infinite: never.
-    pub end_s: f64,
+/// Loads.
+pub const LOADS: Stage = Stage {
+    name: "loads",
+    within: None,
+    need: |state, _| {
+        let particles = state.loads.iter().map(|load| load.particles.len());
+        Need::of(
+            !state.loads.is_empty(),
+            || on_particles(particles.sum()),
+            "no loads",
+        )
+    },
+    bytes: |state| {
+        let loads = state.loads.iter();
+        loads.map(|load| size_of_val(&load.particles[..])).sum()
+    },
+    saving: NO_SAVING,
+};
+
+pub(super) fn on_particles(count: usize) -> String {
+    format!("on {count} particle{}", if count == 1 { "" } else { "s" })
 }
 
-impl SetLoad {
-    /// What the load is multiplied by in the kick at `time_s`, which makes up for half of the step
-    /// before and half of the one to come, `steps_s`. Where the load ends in between, its share of
-    /// that time: so its impulse is the same whatever the steps.
-    fn factor_in_kick(&self, time_s: f64, steps_s: [f64; 2]) -> f64 {
-        let factor = factor_at(&self.factor, time_s);
-        if self.end_s.is_infinite() {
-            return factor;
-        }
-        let [from_s, until_s] = [time_s - 0.5 * steps_s[0], time_s + 0.5 * steps_s[1]];
-        factor * ((self.end_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0)
-    }
-}
-
-/// Value of a factor at a time.
-pub fn factor_at(factor: &Factor, time_s: f64) -> f64 {
-    match factor {
-        Factor::One => 1.0,
-        Factor::Ramp { until_s } => (time_s / until_s).clamp(0.0, 1.0),
-        Factor::Table(points) => interpolated(points, time_s).unwrap_or(1.0),
-    }
+/// Adds the loads to the wrenches. Returns on how many particles they act.
+pub fn apply_loads(state: &mut State) -> usize {
+    let steps_s = state.steps_s();
+    add_loads(
+        &state.loads,
+        state.time_s,
+        steps_s,
+        &mut state.particles.wrenches,
+    );
+    state.loads.iter().map(|load| load.particles.len()).sum()
 }
 
 /// Adds the loads of the kick at this time to the wrenches. `steps_s`: the step before and the one

@@ -4,9 +4,98 @@
 
 use rayon::prelude::*;
 
+use super::clumps::awake;
+use super::stage::{NO_SAVING, Need, Saving, Stage};
 use crate::physics::rigid::{room_to_small, turn, turn_a_little};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+
+/// ns per particle of a body of 25,547 particles: see doc/leave-out.md.
+const PARTICLE_DAMPING_NS: f64 = 37.6;
+
+/// Damping of particles.
+pub const PARTICLE_DAMPING: Stage = Stage {
+    name: "particle damping",
+    within: None,
+    need: |state, _| {
+        let gamma = state.particle_damping;
+        Need::of(gamma > 0.0, || format!("gamma {gamma}"), "not asked for")
+    },
+    bytes: |state| size_of_val(&state.particle_resistance[..]),
+    saving: |state| {
+        Saving::of(
+            state.particles.free,
+            size_of::<Wrench>(),
+            PARTICLE_DAMPING_NS,
+        )
+    },
+};
+
+/// Kick and drift of particles.
+pub const MOTION: Stage = Stage {
+    name: "motion",
+    within: None,
+    need: |state, _| Need::Needed(format!("{} particles at the start", state.particles.free)),
+    bytes: |state| {
+        let p = &state.particles;
+        size_of_val(&p.poses[..]) + size_of_val(&p.motions[..]) + size_of_val(&p.wrenches[..])
+    },
+    saving: NO_SAVING,
+};
+
+/// Gravity.
+pub const GRAVITY: Stage = Stage {
+    name: "gravity",
+    within: Some(MOTION.name),
+    need: |state, _| {
+        let [x, y, z] = state.gravity_m_s2;
+        Need::of(
+            state.gravity_m_s2 != [0.0; 3],
+            || format!("[{x}, {y}, {z}] m/s2"),
+            "no gravity",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Sets the damping forces on particles. Returns on how many they act.
+pub fn compute_particle_damping(state: &mut State) -> usize {
+    if state.particle_resistance.is_empty() {
+        return 0;
+    }
+    state.particle_resistance.fill(Wrench::default());
+    add_particle_damping(
+        &state.particles,
+        state.gravity_m_s2,
+        state.particle_damping,
+        &mut state.particle_resistance,
+    );
+    state.particles.free
+}
+
+/// Changes the velocities of particles. Returns of how many.
+pub fn kick_particles(state: &mut State) -> usize {
+    let kick_s = state.kick_s();
+    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
+    kick(&mut state.particles, resistance, state.gravity_m_s2, kick_s);
+    state.particles.free
+}
+
+/// On how many particles and clumps gravity acts.
+pub fn count_falling(state: &mut State) -> usize {
+    if state.gravity_m_s2 == [0.0; 3] {
+        return 0;
+    }
+    state.particles.free + awake(&state.clumps)
+}
+
+/// Moves particles on.
+pub fn drift_particles(state: &mut State) -> usize {
+    state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
+    0
+}
 
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;

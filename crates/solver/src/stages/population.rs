@@ -4,7 +4,6 @@
 
 use std::sync::Arc;
 
-use crate::clusters::{Cluster, Clusters};
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
@@ -12,13 +11,12 @@ use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
+use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
+use crate::state::events::{NewCluster, REMOVED, Renumbering};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::partitions::divide;
 use crate::state::walls::Wall;
-
-/// What is no more.
-pub const REMOVED: u32 = u32::MAX;
 
 /// What is to happen.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,32 +29,6 @@ pub struct TopologyChange {
     pub coming: Vec<Clump>,
     /// Clusters that leave, be they clumps or not: their numbers, rising.
     pub leaving: Vec<u32>,
-}
-
-/// A clump that has become a bonded cluster.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewCluster {
-    /// As it was.
-    pub clump: Clump,
-    /// What it is made of.
-    pub template: Arc<Template>,
-    /// First of its particles.
-    pub first_particle: usize,
-    /// First of its bonds.
-    pub first_bond: usize,
-}
-
-/// How particles and bonds are counted now.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Renumbering {
-    /// For each particle before, its number now, or [`REMOVED`].
-    pub particles: Vec<u32>,
-    /// For each bond before, its number now, or [`REMOVED`].
-    pub bonds: Vec<u32>,
-    /// Particles from this number on are carried by clumps.
-    pub free: u32,
-    /// Clusters that clumps have become.
-    pub born: Vec<NewCluster>,
 }
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.

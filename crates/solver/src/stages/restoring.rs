@@ -7,29 +7,42 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::population::{Renumbering, TopologyChange, apply_topology_change};
-use super::replacement::PopulationEvent;
-use crate::check::totals::synchronous_motions;
-use crate::clock::Stage;
-use crate::clusters::fragments::{Fragment, fragment, mass_and_centre};
+use super::population::{TopologyChange, apply_topology_change};
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
+use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
+use crate::state::clusters::fragments::{Fragment, fragment, mass_and_centre};
+use crate::state::events::PopulationEvent;
+use crate::state::events::Renumbering;
 use crate::state::particles::Motion;
 
 /// Clusters are looked at once in so many steps.
 const EVERY: u64 = 200;
 
-/// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it. None: of none.
-pub fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
+/// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it.
+/// Returns 1 if it has looked for them.
+pub fn restore_clumps(state: &mut State) -> usize {
     let rules = &state.rules;
-    if rules.restores.iter().all(Option::is_none) || !state.steps.is_multiple_of(EVERY) {
-        return None;
+    if rules.are_none()
+        || rules.restores.iter().all(Option::is_none)
+        || !state.steps.is_multiple_of(EVERY)
+    {
+        return 0;
     }
-    state.clock.did(Stage::Replacement, 1);
+    if let Some((renumbering, restored)) = restore(state) {
+        state.rules.restored += restored.len() as u32;
+        state.events.renumberings.push(renumbering);
+        state.events.population.extend(restored);
+    }
+    1
+}
+
+/// What has become a clump again. None: nothing.
+fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let clusters = state.clusters.as_ref()?;
     let outside: Vec<(u32, usize, u32)> = (clusters.living())
         .filter_map(|id| outside(id, state).map(|(base, instance)| (id, base, instance)))

@@ -8,34 +8,59 @@ use super::clumps::{place_all, synchronous};
 use super::contacts::contact_energy_j;
 use super::neighbours::near_pairs;
 use super::population::TopologyChange;
+use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
-use crate::check::totals::synchronous_motions;
-use crate::clock::Stage;
 use crate::disjoint::{find, join};
+use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
+use crate::state::events::SleepEvent;
 use crate::state::particles::Wrench;
 use crate::state::partitions::divide_awake;
-use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep, SleepEvent};
+use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep};
 use crate::state::walls::{Push, Wall};
+use dem_io::units::significant;
+
+/// Which bodies sleep.
+pub const SLEEP: Stage = Stage {
+    name: "sleep",
+    within: None,
+    need: |state, scene| match (&state.sleep, &scene.sleep) {
+        (Some(sleep), _) => Need::Needed(format!(
+            "bodies slower than {} mm/s for {} ms are not stepped until something comes near",
+            significant(1e3 * sleep.speed_m_s, 4),
+            significant(1e3 * sleep.after_s, 4)
+        )),
+        (None, Some(_)) => Need::LeftOut("nothing can touch"),
+        (None, None) => Need::LeftOut("not asked for"),
+    },
+    bytes: |state| {
+        state.sleep.as_ref().map_or(0, |sleep| {
+            size_of_val(&sleep.of_cluster[..])
+                + size_of_val(&sleep.pairs[..])
+                + size_of_val(&sleep.touches[..])
+                + state.particles.asleep.len()
+        })
+    },
+    saving: NO_SAVING,
+};
 
 /// Steps between two looks at who is slow.
 const EVERY: u64 = 100;
 
 /// Lets those bodies fall asleep that have been slow for long enough and touch none that has not, between a kick and the drift after it.
-pub fn update_sleep(state: &mut State) {
+pub fn update_sleep(state: &mut State) -> usize {
     if let Some(sleep) = &mut state.sleep {
         let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
         sleep.particle_steps[0] += all - left_out;
         sleep.particle_steps[1] += left_out;
     }
     if state.sleep.is_none() || !state.steps.is_multiple_of(EVERY) {
-        return;
+        return 0;
     }
-    state.clock.did(Stage::Sleep, 1);
     let speeds_m_s = speeds_m_s(state);
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
-        return;
+        return 0;
     };
     sleep
         .of_cluster
@@ -53,6 +78,7 @@ pub fn update_sleep(state: &mut State) {
     if !falling.is_empty() {
         fall_asleep(state, &falling);
     }
+    1
 }
 
 /// For each cluster a speed that no point of it exceeds, m/s; none of one that has ended or sleeps.
@@ -213,7 +239,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
     for &id in falling {
         sleep.of_cluster[id as usize].asleep = true;
     }
-    sleep.events.push(SleepEvent {
+    state.events.sleep.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "asleep",
@@ -287,7 +313,7 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
             bodies += 1;
         }
     }
-    sleep.events.push(SleepEvent {
+    state.events.sleep.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "awake",

@@ -4,7 +4,7 @@ use dem_io::scene::WallMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::loads::factor_at;
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::Damped;
 use crate::physics::contact::kinematics::{
@@ -16,9 +16,47 @@ use crate::physics::contact::{ContactSprings, NormalLaw, Response, response};
 use crate::physics::number::Vec3;
 use crate::physics::rigid::turn;
 use crate::stages::contacts::{stored_energy_j, stored_force_n};
+use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
+use crate::state::loads::factor_at;
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Push, Wall, WallContact};
+
+/// Contacts with walls, and their motion.
+pub const WALLS: Stage = Stage {
+    name: "walls",
+    within: None,
+    need: |state, _| {
+        let walls = state.walls.len();
+        Need::of(walls > 0, || format!("{walls}"), "no walls")
+    },
+    bytes: |state| {
+        let of_wall = |wall: &Wall| {
+            size_of_val(wall) + size_of_val(&wall.near[..]) + size_of_val(&wall.touching[..])
+        };
+        state.walls.iter().map(of_wall).sum()
+    },
+    saving: NO_SAVING,
+};
+
+/// Adds what walls do to the wrenches. Returns how many particles are near them.
+pub fn compute_wall_contacts(state: &mut State) -> usize {
+    if let Some(contacts) = &mut state.contacts {
+        wall_wrenches(
+            &mut state.walls,
+            contacts,
+            &mut state.particles,
+            state.previous_time_step_s,
+        );
+    }
+    state.walls.iter().map(|wall| wall.near.len()).sum()
+}
+
+/// Decides how the walls move in the drift to come.
+pub fn plan_wall_motions(state: &mut State) -> usize {
+    plan_motions(&mut state.walls, state.time_s, state.time_step_s);
+    0
+}
 
 /// Particles handled by one task.
 const CHUNK: usize = 256;
@@ -539,4 +577,20 @@ pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
         wall.spins_rad_s[0] = spin;
     }
     fastest
+}
+
+/// Moves the walls on, and takes what has moved from what may move before lists are made anew.
+pub fn advance_walls(state: &mut State) -> usize {
+    if let Some(contacts) = &mut state.contacts {
+        state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);
+        let moved_m = state.fastest_m_s * state.time_step_s;
+        contacts.moved_m = moved_m;
+        contacts.close_skin_left_m -= moved_m;
+        contacts.skin_left_m -= moved_m;
+        if contacts.skin_left_m < moved_m {
+            // After one more such step, who is not listed could overlap.
+            contacts.skin_left_m = -1.0;
+        }
+    }
+    0
 }

@@ -4,13 +4,26 @@
 use nalgebra::Vector3;
 
 use super::contacts::{overlap_m, pair_force_n};
+use super::pieces::clusters_bytes;
+use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{gap_m, touch_force_n};
-use crate::clock::Stage;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::walls::{Wall, WallContact};
 use crate::state::watches::{Seen, Watch, Watched};
 use dem_io::scene::Quantity;
+
+/// Measures, files and pictures.
+pub const OUTPUT: Stage = Stage {
+    name: "output",
+    within: None,
+    need: |_, _| Need::Needed("measures, files and pictures".to_owned()),
+    bytes: |state| {
+        let watched = state.watches.iter().map(|watch| watch.of.bytes());
+        clusters_bytes(state, OUTPUT.name) + watched.sum::<usize>()
+    },
+    saving: NO_SAVING,
+};
 
 /// Contacts of what is watched, together.
 struct Met {
@@ -21,9 +34,9 @@ struct Met {
 }
 
 /// Reads what is watched, between the forces of a step and its end.
-pub fn watch(state: &mut State) {
+pub fn watch(state: &mut State) -> usize {
     if state.watches.is_empty() {
-        return;
+        return 0;
     }
     let mut watches = std::mem::take(&mut state.watches);
     for watch in &mut watches {
@@ -33,7 +46,7 @@ pub fn watch(state: &mut State) {
         }
     }
     state.watches = watches;
-    state.clock.book(Stage::Output);
+    0
 }
 
 fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {

@@ -258,3 +258,17 @@ impl Clumps {
         }
     }
 }
+
+impl Template {
+    /// Bytes of its arrays.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.spheres[..])
+            + size_of_val(&self.outer[..])
+            + size_of_val(&self.file_number[..])
+            + size_of_val(&self.bonds_of_file[..])
+            + size_of_val(&self.bonds.ends[..])
+            + size_of_val(&self.bonds.blocks[..])
+            + size_of_val(&self.bonds.damping[..])
+            + size_of_val(&self.bonds.histories[..])
+    }
+}

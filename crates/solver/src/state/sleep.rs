@@ -26,8 +26,6 @@ pub struct Sleep {
     pub bonds: u64,
     /// Particles times steps that were done, and that were left out.
     pub particle_steps: [u64; 2],
-    /// Bodies that fell asleep or woke in this step.
-    pub events: Vec<SleepEvent>,
     /// Lists are to be made from what a checkpoint holds: nobody wakes of it.
     pub is_resumed: bool,
 }
@@ -71,21 +69,6 @@ pub struct FrozenWallContact {
     pub push: Push,
     /// J.
     pub elastic_j: f64,
-}
-
-/// Bodies that fell asleep or woke together.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SleepEvent {
-    /// At this step.
-    pub step: u64,
-    /// s.
-    pub time_s: f64,
-    /// `asleep` or `awake`.
-    pub kind: &'static str,
-    /// Why: `rest`; `near` something that moves; `changed` into something else, or gone.
-    pub cause: &'static str,
-    /// How many.
-    pub bodies: usize,
 }
 
 impl Sleep {

@@ -2,8 +2,8 @@
 
 use dem_io::scene::{Factor, Hold};
 
-use crate::stages::loads::factor_at;
 use crate::state::State;
+use crate::state::loads::factor_at;
 
 /// Stands for a freedom that is held.
 pub const HELD: usize = usize::MAX;

@@ -61,7 +61,7 @@ pub struct Equilibrium {
 impl Equilibrium {
     /// Residual over the largest bond force; 0 where nothing acts.
     pub fn residual(&self) -> f64 {
-        crate::check::ledger::over(self.residual_n, self.bond_force_n)
+        crate::stages::ledger::over(self.residual_n, self.bond_force_n)
     }
 }
 

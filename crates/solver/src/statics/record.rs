@@ -12,19 +12,19 @@ use dem_io::units::significant;
 use serde::Serialize;
 
 use super::newton::Equilibrium;
-use crate::check::ledger::Balance;
-use crate::clusters::fragments as fragments_of;
 use crate::machine::machine;
 use crate::measure::Probe;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
-use crate::output::inputs::Inputs;
 use crate::output::series;
 use crate::output::summary::{Summary, Verdict, measure_lines};
 use crate::physics::bond::failure::CauseCounts;
+use crate::plan::inputs::Inputs;
 use crate::run::RunSettings;
 use crate::stages::bonds::most_strained_edge;
+use crate::stages::ledger::Balance;
 use crate::state::State;
+use crate::state::clusters::fragments as fragments_of;
 
 /// Residual over the largest bond force that is worth a word.
 const LARGE_RESIDUAL: f64 = 1e-6;

@@ -9,7 +9,7 @@ use dem_io::{Body, Diagnostic, Result};
 
 use super::prediction::{Member, Prediction, Quantity, Shown, Way};
 use super::trial::Trial;
-use crate::check::totals::{elastic_energy, kinetic_energy};
+use crate::stages::totals::{elastic_energy, kinetic_energy};
 use crate::state::State;
 use crate::step::step;
 

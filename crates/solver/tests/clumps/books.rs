@@ -1,10 +1,10 @@
 //! The books of scenes in which bodies come, become others and go.
 
-use dem_run::check::ledger::{Balance, balance};
 use dem_run::plan::Plan;
-use dem_run::stages::replacement::{PopulationEvent, replace};
+use dem_run::stages::ledger::{Balance, balance};
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::state::events::PopulationEvent;
+use dem_run::step::{advance, interact};
 
 use crate::{HEAD, lump, planned};
 
@@ -48,7 +48,7 @@ pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
         state: state.clone(),
     };
     while state.time_s < end_s {
-        act(&mut state);
+        interact(&mut state);
         if state.steps.is_multiple_of(20) {
             let balance = balance(&mut state);
             let errors = [
@@ -61,11 +61,8 @@ pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
             }
             books.last = balance;
         }
-        let happened = replace(&mut state);
-        books
-            .happened
-            .extend(happened.into_iter().flat_map(|(_, all)| all));
-        move_on(&mut state);
+        advance(&mut state);
+        books.happened.extend(state.events.population.clone());
     }
     books.state = state;
     books
@@ -203,11 +200,11 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
         mut bodies,
         ..
     } = planned(&text);
-    state.triggers = dem_run::clusters::Triggers::every_step();
+    state.triggers = dem_run::state::clusters::Triggers::every_step();
     let mut broken = 0;
     while state.time_s < 0.25 {
         crate::go(&mut state, &mut bodies);
-        broken += state.broken.len() as u64;
+        broken += state.events.broken.len() as u64;
     }
     assert_eq!(state.broken_count, broken);
     let left = state.bonds.len() as u64;

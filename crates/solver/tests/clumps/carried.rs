@@ -54,7 +54,7 @@ fn after_swap(top: &str, under: Option<&str>) {
     let mut before = None;
     loop {
         let clumps = state.clumps.all.clone();
-        if go(&mut state, &mut bodies).is_some() {
+        if !go(&mut state, &mut bodies).population.is_empty() {
             break;
         }
         let clump = clumps
@@ -87,7 +87,7 @@ fn after_swap(top: &str, under: Option<&str>) {
         .map(|i| state.particles.poses[*i as usize].place())
         .collect();
     // Bonds are there now and pull nothing yet: the first forces are those of the contacts alone.
-    dem_run::step::act(&mut state);
+    dem_run::step::interact(&mut state);
     let first_n = force_on(&state, &body.particles);
     let first = (first_n - Vector3::from(clump.force_n)).norm() / weight_n;
     let sliding = (first_n - Vector3::from(clump.force_n)).x.abs() / (wanted_n.x.abs());
@@ -104,7 +104,7 @@ fn after_swap(top: &str, under: Option<&str>) {
     let springs: Vec<f64> = touching.iter().map(|[x, y, ..]| x.hypot(*y)).collect();
     let spring_m = springs.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(springs.len(), if under.is_some() { 8 } else { 4 });
-    dem_run::step::move_on(&mut state);
+    dem_run::step::advance(&mut state);
     // The bonds were not there before and carry nothing yet: what the slope does unequally to front and back, at most its pull, comes upon them at once. The cluster
     // swings a little, by the compliance of the bonds, of which bending is the softest, at most four times that along them; and dashpots of the four contacts answer.
     let spring_n_m = 1.5 * 0.25 * weight_n / depth_m;
@@ -113,11 +113,11 @@ fn after_swap(top: &str, under: Option<&str>) {
     let (mut moved_m, mut worst, mut sum_n) = (0.0_f64, 0.0_f64, Vector3::zeros());
     let steps = (0.02 / state.time_step_s) as u32;
     for _ in 0..steps {
-        dem_run::step::act(&mut state);
+        dem_run::step::interact(&mut state);
         let force_n = force_on(&state, &body.particles);
         sum_n += force_n;
         worst = worst.max((force_n - wanted_n).norm() / weight_n);
-        dem_run::step::move_on(&mut state);
+        dem_run::step::advance(&mut state);
         for (i, start) in body.particles.iter().zip(&start) {
             moved_m = moved_m.max((state.particles.poses[*i as usize].place() - start).norm());
         }

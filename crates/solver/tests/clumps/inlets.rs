@@ -1,8 +1,8 @@
 //! Bodies come as often, in such shares and so turned as the scene says, and where there is place.
 
-use dem_run::stages::replacement::PopulationEvent;
 use dem_run::state::State;
 use dem_run::state::clumps::{Clump, rotation};
+use dem_run::state::events::PopulationEvent;
 use nalgebra::Vector3;
 
 use crate::{HEAD, MEETS, block, go, happens, lump, planned};
@@ -137,9 +137,9 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
     let mut axes: Vec<[Vector3<f64>; 3]> = Vec::new();
     let mut places: Vec<Vector3<f64>> = Vec::new();
     while axes.len() < 2000 {
-        dem_run::step::act(&mut fresh);
+        dem_run::step::interact(&mut fresh);
         let before = fresh.clumps.all.len();
-        dem_run::stages::replacement::replace(&mut fresh);
+        dem_run::step::exchange(&mut fresh);
         for clump in &fresh.clumps.all[before..] {
             let as_file = rotation(clump.turned) * rotation(template.axes).inverse();
             axes.push([Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| as_file * axis));
@@ -148,7 +148,7 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
             let spin = clump.spin_rad_s(&template) - Vector3::new(4.0, 5.0, 6.0);
             assert!(spin.norm() < 1e-13);
         }
-        dem_run::step::move_on(&mut fresh);
+        dem_run::step::drift(&mut fresh);
     }
     let n = axes.len() as f64;
     for axis in 0..3 {
@@ -174,8 +174,8 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
         &format!("{}{WIDE}", lump("lump", turned)),
         "bodies = [\"lump\"]\nrate = 1000\n",
     );
-    dem_run::step::act(&mut state);
-    dem_run::stages::replacement::replace(&mut state);
+    dem_run::step::interact(&mut state);
+    dem_run::step::exchange(&mut state);
     let found = rotation(state.clumps.all[0].turned) * rotation(template.axes).inverse();
     let wanted = Vector3::new(1.0, 2.0, 2.0) / 3.0 * 0.9;
     assert!((found.scaled_axis() - wanted).norm() < 1e-14);
@@ -221,8 +221,8 @@ fn bodies_with_larger_contact_spheres_do_not_come_into_each_other() {
         let inlet = "bodies = [\"body\"]\nrate = 1e9\ncount = 60\norientation = \"random\"\n";
         let mut state = fed(&format!("{MEETS}{body}{gate}"), inlet);
         for _ in 0..100 {
-            dem_run::step::act(&mut state);
-            dem_run::stages::replacement::replace(&mut state);
+            dem_run::step::interact(&mut state);
+            dem_run::step::exchange(&mut state);
             assert!(none_overlap(&state));
             state.steps += 1;
             state.time_s += 1e-6;

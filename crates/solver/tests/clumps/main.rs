@@ -30,11 +30,11 @@ use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
 use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::population::Renumbering;
-use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::state::State;
+use dem_run::state::events::Events;
+use dem_run::state::events::PopulationEvent;
 use dem_run::state::particles::Particles;
-use dem_run::step::{act, move_on};
+use dem_run::step::step;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The head of a scene: one material, which meets itself in this way, and bonds.
@@ -114,23 +114,18 @@ pub(crate) fn planned(text: &str) -> Plan {
     try_plan(text).unwrap()
 }
 
-/// What a step has changed.
-pub(crate) type Changed = Option<(Vec<Renumbering>, Vec<PopulationEvent>)>;
-
-/// A step as a run takes it.
-pub(crate) fn go(state: &mut State, bodies: &mut Vec<PlacedBody>) -> Changed {
-    act(state);
-    let changed = replace(state);
-    for by in changed.iter().flat_map(|(renumbered, _)| renumbered) {
+/// A step, after which the bodies are counted anew.
+pub(crate) fn go<'a>(state: &'a mut State, bodies: &mut Vec<PlacedBody>) -> &'a Events {
+    let events = step(state);
+    for by in &events.renumberings {
         renumber(bodies, by);
     }
-    move_on(state);
-    changed
+    events
 }
 
 /// A step of which only what happened is asked.
 pub(crate) fn happens(state: &mut State) -> Vec<PopulationEvent> {
-    go(state, &mut Vec::new()).map_or(Vec::new(), |(_, happened)| happened)
+    step(state).population.clone()
 }
 
 /// Mass, centre of mass, momentum, angular momentum about a place and kinetic energy of some particles.

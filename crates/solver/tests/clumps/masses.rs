@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::Body;
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::replacement::PopulationEvent;
+use dem_run::state::events::PopulationEvent;
 
 use crate::{HEAD, MEETS, Whole, happens, scene};
 

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use dem_run::check::ledger::balance;
-use dem_run::step::{act, move_on, step};
+use dem_run::stages::ledger::balance;
+use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 
 use crate::{HEAD, planned};
@@ -56,15 +56,15 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     while state.time_s < 100.0 / swing_rad_s {
         if state.steps.is_multiple_of(50) {
             // Against the momentum of the fall.
-            act(&mut state);
+            interact(&mut state);
             let balance = balance(&mut state);
             assert!(balance.momentum_error < 1e-10);
-            move_on(&mut state);
+            advance(&mut state);
         } else {
             step(&mut state);
         }
     }
-    act(&mut state);
+    interact(&mut state);
     let wall = &state.walls[0];
     assert_eq!(wall.touching.len(), count as usize);
     for touch in &wall.touching {

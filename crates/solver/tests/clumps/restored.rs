@@ -1,11 +1,11 @@
 //! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
 
-use dem_run::check::totals::elastic_energy;
 use dem_run::stages::population::{TopologyChange, apply_topology_change};
-use dem_run::stages::replacement::{PopulationEvent, replace};
-use dem_run::stages::restoring::restore;
+use dem_run::stages::restoring::restore_clumps;
+use dem_run::stages::totals::elastic_energy;
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::state::events::PopulationEvent;
+use dem_run::step::{exchange, interact, step};
 use nalgebra::Vector3;
 
 use crate::books::{booked, feed};
@@ -23,8 +23,9 @@ fn flying() -> State {
          [regions.far]\nbox = {{ min = [10, 10, 10], max = [11, 11, 11] }}\n"
     ))
     .state;
-    act(&mut state);
-    replace(&mut state).unwrap();
+    interact(&mut state);
+    exchange(&mut state);
+    assert!(!state.events.population.is_empty());
     state.steps = 200;
     state
 }
@@ -39,9 +40,10 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
     let start = whole(&state);
     let mut first = None;
     for _ in 0..10 {
-        let (_, happened) = restore(&mut state).unwrap();
+        state.events.population.clear();
+        assert_eq!(restore_clumps(&mut state), 1);
         assert!(
-            matches!(&happened[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
+            matches!(&state.events.population[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
         );
         let clump = state.clumps.all[0];
         // The template of the scene serves again.
@@ -93,7 +95,9 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let places: Vec<Vector3<f64>> = state.particles.poses.iter().map(|p| p.place()).collect();
     let bonds = state.bonds.len();
     assert!(strain_j > 0.0);
-    let (_, happened) = restore(&mut state).unwrap();
+    state.events.population.clear();
+    restore_clumps(&mut state);
+    let happened = state.events.population.clone();
     let [PopulationEvent::Restored { lost_j, .. }] = &happened[..] else {
         panic!("{happened:?}");
     };
@@ -131,9 +135,7 @@ fn a_time_does_not_ask_twice() {
     let mut state = flying();
     state.time_step_s = 1e-9;
     for _ in 0..300 {
-        act(&mut state);
-        replace(&mut state);
-        move_on(&mut state);
+        step(&mut state);
     }
     assert_eq!((state.rules.replaced, state.rules.restored), (1, 1));
     assert_eq!(state.clumps.all.len(), 1);

@@ -1,11 +1,11 @@
 //! Clumps that nothing acts on move as rigid bodies do.
 
-use dem_run::check::ledger::balance;
 use dem_run::physics::rotation::{drift, kinetic_j};
 use dem_run::stages::clumps::place_all;
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
 use dem_run::state::clumps::{Template, rotation};
-use dem_run::step::{act, move_on, step};
+use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 use serde_json::Value;
 use std::sync::Arc;
@@ -74,14 +74,14 @@ fn a_tumbling_clump_keeps_its_energy_over_a_hundred_thousand_steps() {
     let moving = 0.5 * template.mass_kg * (x * x + y * y + z * z);
     let (mut worst, mut ledger) = (0.0_f64, 0.0_f64);
     for _ in 0..100_000 {
-        act(&mut state);
+        interact(&mut state);
         worst = worst.max(((turning(&state) - start) / (start - moving)).abs());
         if state.steps.is_multiple_of(1000) {
             let balance = balance(&mut state);
             ledger = ledger.max(balance.energy_error.abs());
             assert!(balance.momentum_error < 1e-12 && balance.angular_momentum_error < 1e-12);
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
     eprintln!("energy of rotation {worst:.1e}, ledger {ledger:.1e}");
     assert!(worst < 1e-5 && ledger < 1e-5);

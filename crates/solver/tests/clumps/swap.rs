@@ -3,10 +3,10 @@
 use dem_run::plan::Plan;
 use dem_run::shape::fit::best_rotation;
 use dem_run::stages::clumps::place_all;
-use dem_run::stages::replacement::{PopulationEvent, replace};
 use dem_run::state::State;
 use dem_run::state::clumps::{numbers, rotation};
-use dem_run::step::{act, move_on};
+use dem_run::state::events::PopulationEvent;
+use dem_run::step::{drift, exchange, interact};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -36,8 +36,9 @@ fn swapped(far_m: f64, seed: u64) {
         .point(10.0_f64.powf(spin) * template.moments_kg_m2[0])
         .into();
     let before = *clump;
-    act(&mut state);
-    let (renumbered, happened) = replace(&mut state).unwrap();
+    interact(&mut state);
+    exchange(&mut state);
+    let (renumbered, happened) = (&state.events.renumberings, &state.events.population);
     let count = template.spheres.len();
     assert_eq!((renumbered.len(), happened.len()), (1, 1));
     assert_eq!(
@@ -139,7 +140,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
         let is_it = |c: &&dem_run::state::clumps::Clump| state.clumps.template(c).body == name;
         *state.clumps.all.iter().find(is_it).unwrap()
     };
-    let (_, happened) = go(&mut state, &mut bodies).unwrap();
+    let happened = &go(&mut state, &mut bodies).population;
     let replaced: Vec<(&str, u32)> = happened
         .iter()
         .map(|one| match one {
@@ -238,8 +239,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
     let (mut centre, mut angle, mut angle_bound) = (0.0_f64, 0.0_f64, 0.0_f64);
     for _ in 0..100_000 {
         for state in [&mut rigid, &mut elastic] {
-            act(state);
-            replace(state);
+            interact(state);
+            exchange(state);
         }
         let clump = rigid.clumps.all[0];
         if !elastic.clumps.all.is_empty() {
@@ -269,8 +270,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
             assert!(apart < bound, "{apart:e} {bound:e} at {since}");
             (angle, angle_bound) = (angle.max(apart), bound);
         }
-        move_on(&mut rigid);
-        move_on(&mut elastic);
+        drift(&mut rigid);
+        drift(&mut elastic);
     }
     eprintln!(
         "strain {strain:.1e}, centre {centre:.1e}, angle {angle:.1e} of {angle_bound:.1e} after {:.2} turns",

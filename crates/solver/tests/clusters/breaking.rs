@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use dem_run::clusters::{Clusters, Split};
 use dem_run::state::bonds::Bonds;
+use dem_run::state::clusters::{Clusters, Split};
 use proptest::prelude::*;
 
 use crate::{between, bonds, chain};

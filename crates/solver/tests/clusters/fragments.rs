@@ -1,8 +1,8 @@
 //! What fragments weigh and how they move: sums over the whole, and rigid bodies.
 
-use dem_run::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
-use dem_run::clusters::{Clusters, fragments};
 use dem_run::state::clumps::Clumps;
+use dem_run::state::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
+use dem_run::state::clusters::{Clusters, fragments};
 use dem_run::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
 use proptest::prelude::*;

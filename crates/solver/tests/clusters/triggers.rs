@@ -1,6 +1,6 @@
 //! When clusters are searched.
 
-use dem_run::clusters::Triggers;
+use dem_run::state::clusters::Triggers;
 
 /// Steps out of 1 to 400 in which there is a search, when one bond breaks at each of these steps.
 fn searches(triggers: Triggers, breaks: &[u64]) -> Vec<u64> {

@@ -1,10 +1,10 @@
 //! What a break says of itself, and that nothing comes after it.
 
-use dem_run::check::totals::synchronous_motions;
 use dem_run::physics::bond::failure::Cause;
+use dem_run::stages::totals::synchronous_motions;
 use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles, Wrench};
-use dem_run::step::{act, move_on, step};
+use dem_run::step::{advance, interact, step};
 
 use crate::bodies::{
     ALL, LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, YOUNG_PA, area_m2, bonded, on_one_thread, rod,
@@ -32,21 +32,21 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
             let mut state = flying_apart(incremental);
             let first = loop {
                 let before = state.clone();
-                act(&mut state);
-                if let Some(&first) = state.broken.first() {
-                    assert_eq!(state.broken.len(), 1);
+                interact(&mut state);
+                if let Some(&first) = state.events.broken.first() {
+                    assert_eq!(state.events.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
                     assert_eq!(state.broken_by_cause.tension, 1);
                     // The bond as it was: with the increments of this step, which need the forces to be found once more without strength.
                     let mut whole = before;
                     whole.bonds.rules[0].criteria = None;
-                    act(&mut whole);
+                    interact(&mut whole);
                     let forces = whole.bonds.forces(0, &whole.particles.poses);
                     assert_eq!(first.released_j, forces.energy.total());
                     assert!(first.released_j > 0.0);
                     break first;
                 }
-                move_on(&mut state);
+                advance(&mut state);
                 assert!(state.steps < 1000, "does not break");
             };
             assert_eq!(first.cause, Cause::Tension);
@@ -57,9 +57,9 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
                 (state.time_s - state.steps as f64 * state.time_step_s).abs()
                     < 1e-12 * state.time_s
             );
-            move_on(&mut state);
-            act(&mut state);
-            assert!(state.broken.is_empty(), "an event is told twice");
+            advance(&mut state);
+            interact(&mut state);
+            assert!(state.events.broken.is_empty(), "an event is told twice");
             assert_eq!(state.broken_count, 1);
         }
     });
@@ -84,11 +84,11 @@ fn a_broken_bond_never_acts_again() {
                 }
                 let motions: Vec<Motion> = state.particles.motions.clone();
                 for _ in 0..2000 {
-                    act(&mut state);
+                    interact(&mut state);
                     assert_eq!(state.particles.wrenches, [Wrench::default(); 2]);
                     assert_eq!(state.particles.motions, motions);
-                    assert!(state.broken.is_empty());
-                    move_on(&mut state);
+                    assert!(state.events.broken.is_empty());
+                    advance(&mut state);
                 }
             }
             assert_eq!(state.broken_count, 1);
@@ -106,13 +106,13 @@ fn the_break_comes_in_the_middle_of_the_kick() {
             let mut whole = state.clone();
             whole.bonds.rules[0].criteria = None;
             loop {
-                act(&mut state);
-                act(&mut whole);
+                interact(&mut state);
+                interact(&mut whole);
                 if state.broken_count > 0 {
                     break;
                 }
-                move_on(&mut state);
-                move_on(&mut whole);
+                advance(&mut state);
+                advance(&mut whole);
             }
             let at_break = [&state, &whole].map(synchronous_motions);
             for (a, b) in at_break[0].iter().zip(&at_break[1]) {

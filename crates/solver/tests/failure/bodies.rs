@@ -7,11 +7,12 @@ use dem_run::check::limit::limit;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 use dem_run::physics::bond::total::direction;
-use dem_run::stages::loads::SetLoad;
-use dem_run::stages::supports::{Held, SetSupport};
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::{Particles, Wrench};
+use dem_run::state::supports::Held;
+use dem_run::state::supports::SetSupport;
 
 /// Radius of spheres and bonds, m.
 pub(crate) const RADIUS_M: f64 = 1e-3;

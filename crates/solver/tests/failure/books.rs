@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use dem_io::scene::Factor;
-use dem_run::check::ledger::{Balance, EnergyLedger, balance};
 use dem_run::physics::bond::failure::Criteria;
-use dem_run::stages::loads::SetLoad;
+use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::state::loads::SetLoad;
+use dem_run::step::{advance, interact};
 
 use crate::bodies::{
     LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, area_m2, damp, hold, on_one_thread, rod,
@@ -65,7 +65,7 @@ fn shaken(incremental: bool, besides: Besides) -> State {
         }
         Besides::Damping => damp(&mut state, 0.2),
     }
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     state
 }
 
@@ -75,7 +75,7 @@ fn errors(mut state: State, part: f64, until_s: f64) -> (f64, f64, u64, Balance)
     let (mut energy, mut momentum) = (0.0_f64, 0.0_f64);
     let mut last = Balance::default();
     while state.time_s < until_s {
-        act(&mut state);
+        interact(&mut state);
         if state.broken_count > 0 {
             last = balance(&mut state);
             energy = energy.max(last.energy_error.abs());
@@ -83,7 +83,7 @@ fn errors(mut state: State, part: f64, until_s: f64) -> (f64, f64, u64, Balance)
                 .max(last.momentum_error)
                 .max(last.angular_momentum_error);
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
     (energy, momentum, state.broken_count, last)
 }
@@ -127,14 +127,14 @@ fn a_support_at_rest_does_no_work_in_a_break() {
             let m = 1.0 / state.particles.motions[1].inverse_mass;
             let speed = 2.0 * STRENGTH_PA * area_m2() / (m * state.bonds.normal(0)).sqrt();
             state.particles.motions[1].velocity_m_s = [speed, 0.1 * speed, 0.0];
-            state.ledger = EnergyLedger::opened(&state);
+            state.ledger = opened(&state);
             while state.broken_count == 0 {
-                act(&mut state);
+                interact(&mut state);
                 assert_eq!(balance(&mut state).support_work_j, 0.0);
-                move_on(&mut state);
+                advance(&mut state);
                 assert!(state.steps < 1000, "does not break");
             }
-            act(&mut state);
+            interact(&mut state);
             assert_eq!(balance(&mut state).support_work_j, 0.0);
         }
     });
@@ -151,12 +151,12 @@ fn a_bond_between_supports_breaks_without_an_error() {
         let speed = to_failure / (steps * state.time_step_s);
         hold(&mut state, std::iter::once(1), speed);
         state.particles.motions[1].velocity_m_s[0] = speed;
-        state.ledger = EnergyLedger::opened(&state);
+        state.ledger = opened(&state);
         let (mut largest_j, mut scale_j) = (0.0_f64, 0.0);
         let mut last_reaction = 0.0;
         while state.broken_count == 0 {
-            move_on(&mut state);
-            act(&mut state);
+            advance(&mut state);
+            interact(&mut state);
             let balance = balance(&mut state);
             largest_j = largest_j.max(balance.energy_error_j.abs());
             scale_j = balance.energy_scale_j;

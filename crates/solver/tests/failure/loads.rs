@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use dem_run::physics::bond::failure::{Cause, Criteria, Factors, stresses, utilisation};
-use dem_run::stages::loads::factor_at;
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::state::loads::factor_at;
+use dem_run::step::{advance, interact};
 
 use crate::bodies::{
     ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES,
@@ -70,8 +70,8 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     let mut before = vec![0.0; state.bonds.len()];
     while beyond(state) < 100.0 {
         let whole = state.bonds.clone();
-        act(state);
-        if let Some(&first) = state.broken.first() {
+        interact(state);
+        if let Some(&first) = state.events.broken.first() {
             let at = first.bond as usize;
             let bonds = std::mem::replace(&mut state.bonds, whole);
             // Increments are those of this step, which the bonds had before they broke.
@@ -86,7 +86,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
             *before = share(state, at);
             assert!(*before < 1.0, "{at} is beyond its strength");
         }
-        move_on(state);
+        advance(state);
     }
     None
 }

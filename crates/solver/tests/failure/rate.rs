@@ -2,7 +2,7 @@
 
 use dem_io::scene::RateOf;
 use dem_run::physics::bond::failure::{Cause, Criteria};
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, interact};
 
 use crate::bodies::{
     LENGTH_M, NORMAL, PRESSED, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
@@ -44,11 +44,11 @@ fn pulled_by(
     hold(&mut state, std::iter::once(1), half);
     state.time_step_s = STRENGTH_PA / YOUNG_PA / rate_1_s.abs() / STEPS;
     while (state.steps as f64) < 8.0 * STEPS {
-        act(&mut state);
-        if let Some(first) = state.broken.first() {
+        interact(&mut state);
+        if let Some(first) = state.events.broken.first() {
             return Some((state.steps as f64 / STEPS, first.cause));
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
     None
 }
@@ -141,9 +141,9 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
             hold(&mut state, std::iter::once(2), rate * LENGTH_M);
             let mut count = 0;
             while count == 0 && state.steps < 1_000_000 {
-                act(&mut state);
-                count = state.broken.len();
-                move_on(&mut state);
+                interact(&mut state);
+                count = state.events.broken.len();
+                advance(&mut state);
             }
             assert_eq!(count, 2);
         }
@@ -173,11 +173,11 @@ fn turning_strengthens_by_the_printed_rate_alone() {
                 motion.spin_rad_s = [0.0, 0.0, spin_1_s];
             }
             for _ in 0..20_000 {
-                act(&mut state);
-                if !state.broken.is_empty() {
+                interact(&mut state);
+                if !state.events.broken.is_empty() {
                     return true;
                 }
-                move_on(&mut state);
+                advance(&mut state);
             }
             false
         };

@@ -7,11 +7,10 @@ use dem_io::{Body, scene_from_text};
 use dem_run::physics::bond::scatter::strength_factor;
 use dem_run::plan::bodies::PlacedBody;
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::loads::factor_at;
-use dem_run::stages::replacement::replace;
 use dem_run::state::State;
+use dem_run::state::loads::factor_at;
 use dem_run::state::particles::Particles;
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, exchange, interact};
 
 use crate::bodies::{
     LENGTH_M, LOAD_STEP, NORMAL, RADIUS_M, SOFT_STEPS, STRENGTH_PA, YOUNG_PA, area_m2, bonded,
@@ -38,17 +37,17 @@ fn the_weakest_bond_of_a_chain_breaks_first() {
                 let force = strength * STRENGTH_PA * area_m2();
                 push(&mut state, 10, [force, 0.0, 0.0], [0.0; 3]);
                 while state.broken_count == 0 {
-                    act(&mut state);
+                    interact(&mut state);
                     if state.broken_count == 0 {
-                        move_on(&mut state);
+                        advance(&mut state);
                     }
                     assert!(
                         state.steps < 2 * u64::from(SOFT_STEPS) + 10,
                         "does not break"
                     );
                 }
-                assert_eq!(state.broken.len(), 1);
-                assert_eq!(state.broken[0].bond as usize, weakest);
+                assert_eq!(state.events.broken.len(), 1);
+                assert_eq!(state.events.broken[0].bond as usize, weakest);
                 let load = factor_at(&state.loads[0].factor, state.time_s);
                 let late = (load - 1.0) / LOAD_STEP;
                 assert!((-0.1..1.1).contains(&late), "{late} steps late");
@@ -83,16 +82,22 @@ fn strengths_are_those_of_weibull() {
     state.time_step_s = STRENGTH_PA / YOUNG_PA * LENGTH_M / speed / STEPS;
     let mut strengths = Vec::new();
     while strengths.len() < COUNT {
-        act(&mut state);
-        for broken in &state.broken {
+        interact(&mut state);
+        for broken in &state.events.broken {
             let strength = state.steps as f64 / STEPS;
             let given = state.bonds.strength_factor(broken.bond as usize);
             let late = (strength - given) * STEPS;
             assert!((-0.05..1.05).contains(&late), "{given} broke at {strength}");
             strengths.push(given);
         }
-        assert!(state.broken.windows(2).all(|two| two[0].bond < two[1].bond));
-        move_on(&mut state);
+        assert!(
+            state
+                .events
+                .broken
+                .windows(2)
+                .all(|two| two[0].bond < two[1].bond)
+        );
+        advance(&mut state);
         assert!((state.steps as f64) < 3.0 * STEPS, "not all break");
     }
     assert_eq!(state.broken_count as usize, COUNT);
@@ -178,9 +183,9 @@ fn planned_strengths(text: &str, body: &Body) -> BTreeMap<[u32; 2], f64> {
     if let Some(body) = bodies.iter().find(|body| body.name == "lump") {
         return strengths(&state, body);
     }
-    act(&mut state);
-    let (renumbered, _) = replace(&mut state).unwrap();
-    let body = PlacedBody::born(&renumbered[0].born[0]);
+    interact(&mut state);
+    exchange(&mut state);
+    let body = PlacedBody::born(&state.events.renumberings[0].born[0]);
     strengths(&state, &body)
 }
 

@@ -7,7 +7,7 @@ use dem_io::body::{body_summary, read_body};
 use dem_io::results::{Existing, ResultsFolder, read_frame};
 use dem_io::scene::BodySource;
 use dem_run::plan::plan;
-use dem_run::step::{act, step};
+use dem_run::step::{interact, step};
 
 use crate::{bodies_of, burst, bursting, planned, run_into};
 
@@ -105,7 +105,7 @@ fn the_first_frame_gives_back_the_body_under_the_stress_that_it_began_with() {
     let again = plan(&scene, bodies, 1, false).unwrap();
     let mut loads = [stressed, again].map(|plan| plan.state);
     for state in &mut loads {
-        act(state);
+        interact(state);
     }
     let [before, after] = loads.map(|state| state.particles.wrenches);
     let largest = before
@@ -138,7 +138,9 @@ fn a_fragment_runs_again_from_any_format() {
         let mut plan = plan(&scene, bodies_of(&scene), 1, false).unwrap();
         assert_eq!(plan.state.particles.len(), wanted.positions.len(), "{name}");
         assert_eq!(plan.state.bonds.len(), wanted.bonds.len(), "{name}");
-        (0..100).for_each(|_| step(&mut plan.state));
+        (0..100).for_each(|_| {
+            step(&mut plan.state);
+        });
         let places = &plan.state.particles.poses;
         assert!(places.iter().all(|pose| pose.position_m[0].is_finite()));
     }

@@ -6,8 +6,8 @@ use std::fs;
 use dem_io::results::fragments::{COLUMNS, TREE_COLUMNS};
 use dem_io::results::read_series;
 use dem_io::results::{Existing, ResultsFolder};
-use dem_run::clusters::{Cluster, Split};
 use dem_run::output::fragments::split_text;
+use dem_run::state::clusters::{Cluster, Split};
 use nalgebra::Vector3;
 
 use crate::{PARTICLES, burst, bursting, planned, run_into, table};

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use dem_run::clusters::{Cluster, Fragment};
 use dem_run::output::fragments::{counts_over_time, sizes};
+use dem_run::state::clusters::{Cluster, Fragment};
 
 use crate::burst;
 

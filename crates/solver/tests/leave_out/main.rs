@@ -14,12 +14,9 @@ use std::collections::BTreeMap;
 
 use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
-use dem_run::clock::Stage;
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::replacement::replace;
 use dem_run::state::State;
-use dem_run::state::memory::bytes;
-use dem_run::step::{act, move_on};
+use dem_run::step::{number_of, stages, step};
 
 /// A scene planned, its bodies read with `read`.
 fn planned_with(scene: &Scene, read: impl Fn(&str) -> Option<Body>) -> Result<Plan> {
@@ -46,22 +43,20 @@ fn planned(text: &str) -> (Scene, Plan) {
 /// Steps as a run does.
 fn go(state: &mut State, steps: u64) {
     for _ in 0..steps {
-        act(state);
-        replace(state);
-        move_on(state);
+        step(state);
     }
 }
 
 /// Stages that have done something.
 fn busy(state: &State) -> Vec<&'static str> {
-    let all = Stage::ALL
-        .iter()
-        .filter(|&&stage| state.clock.done(stage) > 0);
-    all.map(|stage| stage.name()).collect()
+    let all = stages().iter();
+    let busy = all.filter(|stage| state.clock.done(number_of(stage)) > 0);
+    busy.map(|stage| stage.name).collect()
 }
 
 /// Stages that have arrays.
 fn stored(state: &State) -> Vec<&'static str> {
-    let all = Stage::ALL.iter().filter(|&&stage| bytes(state, stage) > 0);
-    all.map(|stage| stage.name()).collect()
+    let all = stages().iter();
+    let stored = all.filter(|stage| (stage.bytes)(state) > 0);
+    stored.map(|stage| stage.name).collect()
 }

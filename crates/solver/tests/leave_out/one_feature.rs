@@ -46,7 +46,7 @@ fn expect(name: &str, text: &str, does: &[&str], stores: &[&str]) {
         "{name} stores"
     );
     for stage in plan.stages.iter().filter(|stage| !stage.needed) {
-        let left_out = stage.stage.name();
+        let left_out = stage.stage.name;
         assert!(
             !does.contains(&left_out),
             "{name}: {left_out} is said to be left out"

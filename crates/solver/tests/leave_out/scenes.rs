@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use dem_run::state::memory::bytes;
+use dem_run::step::number_of;
 
 use crate::{go, planned_with};
 
@@ -47,8 +47,13 @@ fn what_is_said_to_be_left_out_does_nothing_and_takes_no_memory() {
         go(&mut plan.state, steps);
         for stage in plan.stages.iter().filter(|stage| !stage.needed) {
             let (stage, place) = (stage.stage, path.display());
-            assert_eq!(plan.state.clock.done(stage), 0, "{place}: {}", stage.name());
-            assert_eq!(bytes(&plan.state, stage), 0, "{place}: {}", stage.name());
+            assert_eq!(
+                plan.state.clock.done(number_of(stage)),
+                0,
+                "{place}: {}",
+                stage.name
+            );
+            assert_eq!((stage.bytes)(&plan.state), 0, "{place}: {}", stage.name);
             seen += 1;
         }
     }

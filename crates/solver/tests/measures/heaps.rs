@@ -187,7 +187,7 @@ bodies.heap = {{ particles = [{particles}], material = \"m\" }}
 measures.slope = {{ of = \"heap\", quantity = \"angle_of_repose\", reference = \"30 deg\" }}
 "
     ));
-    run.act();
+    run.interact();
     let value = run.read()["slope"];
     let result = run.probes[0].result();
     assert_eq!(

@@ -15,14 +15,13 @@ use std::collections::BTreeMap;
 
 use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
-use dem_run::check::ledger::balance;
 use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
 use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::clumps::place_all;
-use dem_run::stages::replacement::replace;
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::step::{drift, exchange, interact};
 
 pub(crate) fn scene(text: &str) -> Scene {
     scene_from_text(text, "scene.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
@@ -62,15 +61,17 @@ impl Measured {
     }
 
     /// First half of a step, after which everything can be read.
-    pub(crate) fn act(&mut self) {
-        act(&mut self.state);
+    pub(crate) fn interact(&mut self) {
+        interact(&mut self.state);
     }
 
     /// What comes and goes. Whether anything did.
     pub(crate) fn replace(&mut self) -> bool {
-        let Some((renumbered, _)) = replace(&mut self.state) else {
+        exchange(&mut self.state);
+        if self.state.events.population.is_empty() {
             return false;
-        };
+        }
+        let renumbered = std::mem::take(&mut self.state.events.renumberings);
         for by in &renumbered {
             renumber(&mut self.bodies, by);
         }
@@ -78,8 +79,8 @@ impl Measured {
         true
     }
 
-    pub(crate) fn move_on(&mut self) {
-        move_on(&mut self.state);
+    pub(crate) fn advance(&mut self) {
+        drift(&mut self.state);
     }
 
     /// All values by name.
@@ -94,14 +95,14 @@ impl Measured {
     /// Steps until this time, s, and reads there alone: the results by name.
     pub(crate) fn run(&mut self, end_s: f64) -> BTreeMap<String, f64> {
         loop {
-            self.act();
+            self.interact();
             if self.state.time_s >= end_s {
                 self.read();
                 let results = self.probes.iter().map(Probe::result);
                 return results.map(|result| (result.name, result.value)).collect();
             }
             self.replace();
-            self.move_on();
+            self.advance();
         }
     }
 }

@@ -76,15 +76,15 @@ fn assert_same(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>, share
 fn a_clump_that_is_replaced_in_flight_shows_the_same_before_and_after() {
     let clump = "start_as = \"clump\"\n[replacement.lump]\nwhen = { time = 1e-4 }";
     let mut run = Measured::new(&lump(clump));
-    run.act();
+    run.interact();
     let start = run.read();
     let before = loop {
         let before = run.read();
         if run.replace() {
             break before;
         }
-        run.move_on();
-        run.act();
+        run.advance();
+        run.interact();
     };
     assert_eq!(run.state.particles.free, 6);
     let time_s = run.state.time_s;
@@ -117,7 +117,7 @@ fn a_clump_that_is_replaced_in_flight_shows_the_same_before_and_after() {
 fn a_clump_shows_what_the_bonded_body_shows() {
     let [clump, bonded] = ["start_as = \"clump\"", ""].map(|more| {
         let mut run = Measured::new(&lump(more));
-        run.act();
+        run.interact();
         run.read()
     });
     assert_same(&clump, &bonded, 1e-13);
@@ -150,7 +150,7 @@ measures.own = { of = \"left\", quantity = \"angular_velocity_z\" }
 measures.speed = { quantity = \"velocity\" }
 ";
     let mut run = Measured::new(text);
-    run.act();
+    run.interact();
     let values = run.read();
     assert_near(values["turn"], 3.0 * 2.0 / (9.0 + 0.4), 1e-15);
     assert_eq!(values["own"], 0.0);
@@ -168,7 +168,7 @@ measures.place = { quantity = \"position_x\" }
 measures.speed = { quantity = \"velocity_x\" }
 ";
     let mut run = Measured::new(text);
-    run.act();
+    run.interact();
     let values = run.read();
     assert_near(values["place"], 8.0, 1e-14);
     assert_near(values["speed"], 8.0, 1e-14);
@@ -185,7 +185,7 @@ bodies.right = { particles = [[3, 0, 0, 1]], material = \"stuff\" }
 measures.turn = { quantity = \"rotation_z\" }
 ";
     let mut run = Measured::new(text);
-    run.act();
+    run.interact();
     for (pose, degrees) in run.state.particles.poses.iter_mut().zip([170.0_f64, 186.0]) {
         let turn = Vector3::z() * degrees.to_radians();
         let turned = UnitQuaternion::from_scaled_axis(turn);

@@ -5,12 +5,12 @@ use std::fmt::Write;
 
 use dem_io::Body;
 use dem_io::scene::{BodySource, scene_from_text};
-use dem_run::check::ledger::{EnergyLedger, balance};
 use dem_run::measure::bond_utilisation;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::plan::{Plan, plan};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
-use dem_run::step::{act, move_on, step};
+use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 
 use crate::clouds::scattered;
@@ -111,7 +111,7 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
         motion.velocity_m_s = [0, 1, 2].map(|_| 0.3 * any());
         motion.spin_rad_s = [0, 1, 2].map(|_| 50.0 * any());
     }
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     let strong = state.bonds.rules[0].criteria.unwrap();
     let end_s = 2e-3;
     let mut worst = 0.0_f64;
@@ -128,11 +128,11 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
             ..strong
         };
         state.bonds.rules[0].criteria = Some(weaker);
-        act(&mut state);
+        interact(&mut state);
         let balance = balance(&mut state);
         worst = worst.max(balance.energy_error);
         assert!(balance.momentum_error < 1e-11, "{balance:?}");
-        move_on(&mut state);
+        advance(&mut state);
     }
     let pieces = state.clusters.as_ref().unwrap().living().count();
     assert!(state.broken_count > 100 && pieces > 20, "{pieces} pieces");
@@ -217,7 +217,7 @@ fn a_bond_without_strength_is_none() {
 fn a_bond_without_strength_holds_a_body_at_rest_together() {
     let text = cube(0.25, "").replace("tension = 1e9", "tension = 0, von_mises = 0");
     let Plan { mut state, .. } = planned(&text);
-    act(&mut state);
+    interact(&mut state);
     for at in 0..state.bonds.len() {
         assert!(!bond_utilisation(&state, at).is_nan());
     }
@@ -265,7 +265,7 @@ fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search
     let mut looks = 0;
     while state.time_s < 8e-3 {
         step(&mut state);
-        if !state.broken.is_empty() {
+        if !state.events.broken.is_empty() {
             looks += 1;
             let wanted = breadth_first(&state);
             let clusters = &state.clusters.as_ref().unwrap().of_particle;

@@ -1,18 +1,18 @@
 //! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however often near pairs are looked for.
 
-use dem_run::check::ledger::{EnergyLedger, balance};
-use dem_run::clusters::Clusters;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_run::run::Progress;
 use dem_run::snapshot::{Snapshot, fingerprint};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
+use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
 use dem_run::state::particles::Particles;
-use dem_run::step::{act, move_on, step};
+use dem_run::step::{advance, interact, step};
 
 /// Numbers between -1 and 1 that look random.
 pub(crate) fn scattered() -> impl FnMut() -> f64 {
@@ -86,7 +86,7 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     contacts.divide(count, shares);
     state.contacts = Some(contacts);
     state.clusters = Some(Clusters::new(count, &state.bonds));
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     state
 }
 
@@ -95,16 +95,16 @@ fn worst_energy_error(time_step_s: f64) -> f64 {
     let mut state = cloud(0.1e-3, 1, time_step_s);
     let mut worst = 0.0_f64;
     while state.time_s < 2e-3 {
-        act(&mut state);
+        interact(&mut state);
         if state.steps.is_multiple_of(20) {
             let balance = balance(&mut state);
             worst = worst.max(balance.energy_error.abs());
             assert!(balance.momentum_error < 1e-12, "{balance:?}");
             assert!(balance.angular_momentum_error < 1e-12, "{balance:?}");
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
-    act(&mut state);
+    interact(&mut state);
     let balance = balance(&mut state);
     assert!(balance.friction_j > 0.0 && balance.contact_damping_j > 0.0);
     eprintln!("dt {time_step_s:e}: worst energy error {worst:.2e}, {balance:?}");

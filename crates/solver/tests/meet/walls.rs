@@ -1,13 +1,13 @@
 //! Clouds of spheres that fall on walls: fixed, turning, on a belt, pressed by a servo.
 
 use dem_io::scene::{Factor, WallMotion};
-use dem_run::check::ledger::{EnergyLedger, balance};
 use dem_run::check::limit::{Bound, limit};
 use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::walls::Wall;
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, interact};
 
 use crate::clouds::{cloud, kinds};
 
@@ -34,7 +34,7 @@ fn falling(walls: Vec<Wall>, time_step_s: f64) -> State {
         motion.velocity_m_s[2] -= 1.0;
     }
     state.walls = walls;
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     state
 }
 
@@ -42,7 +42,7 @@ fn worst_energy_error(walls: &[Wall], time_step_s: f64) -> f64 {
     let mut state = falling(walls.to_vec(), time_step_s);
     let mut worst = 0.0_f64;
     while state.time_s < 4e-3 {
-        act(&mut state);
+        interact(&mut state);
         if state.steps.is_multiple_of(20) {
             let balance = balance(&mut state);
             worst = worst.max(balance.energy_error.abs());
@@ -55,9 +55,9 @@ fn worst_energy_error(walls: &[Wall], time_step_s: f64) -> f64 {
                 state.steps
             );
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
-    act(&mut state);
+    interact(&mut state);
     eprintln!(
         "dt {time_step_s:e}: worst {worst:.2e} {:?}",
         balance(&mut state)
@@ -107,7 +107,7 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     };
     let mut shares = Vec::new();
     while state.time_s < 4e-3 {
-        act(&mut state);
+        interact(&mut state);
         if state.steps.is_multiple_of(200) {
             let exact_s = limit(&mut state).step_s;
             let bound_s = free.with_more(contact_rates(&state));
@@ -115,7 +115,7 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
                 shares.push(bound_s / exact_s);
             }
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
     let smallest = shares
         .iter()
@@ -146,7 +146,7 @@ fn the_stiffest_contact_is_found_among_those_that_matter() {
         .fold(0.0, |m: f64, motion| m.max(motion.inverse_mass));
     let mut looks = 0;
     while state.time_s < 4e-3 {
-        act(&mut state);
+        interact(&mut state);
         if state.steps.is_multiple_of(100) {
             let largest = largest_contact_rate_1_s2(&state, Matters::ALL);
             looks += usize::from(largest > 0.0);
@@ -163,7 +163,7 @@ fn the_stiffest_contact_is_found_among_those_that_matter() {
                 }
             }
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
     assert!(looks > 30, "{looks} looks with contacts");
 }

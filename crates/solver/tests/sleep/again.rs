@@ -108,12 +108,9 @@ fn an_interruption_changes_nothing() {
     let (mut awake, mut next) = (0, 0);
     while state.time_s < END_S {
         go(&mut state);
-        let woke = sleep(&state).events.iter().any(|news| news.kind == "awake");
+        let woke = state.events.sleep.iter().any(|news| news.kind == "awake");
         awake += usize::from(woke);
-        let fell = sleep(&state)
-            .events
-            .iter()
-            .any(|news| news.kind == "asleep");
+        let fell = state.events.sleep.iter().any(|news| news.kind == "asleep");
         if state.steps >= next || woke || fell {
             next = state.steps + 1 + state.steps % 37 + (END_S / state.time_step_s / 20.0) as u64;
             let shot = Snapshot::taken(

@@ -1,8 +1,8 @@
 //! The books of energy and momentum close over sleep.
 
-use dem_run::check::ledger::{Balance, EnergyLedger, balance};
+use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, interact};
 
 use crate::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
 
@@ -15,9 +15,9 @@ fn scene() -> String {
 }
 
 fn look(state: &mut State) -> Balance {
-    act(state);
+    interact(state);
     let found = balance(state);
-    move_on(state);
+    advance(state);
     found
 }
 
@@ -53,7 +53,7 @@ fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
             assert!(lost_j > 0.0);
             assert!(jump_j < 1e-3 * lost_j + 1e-13 * now.energy_scale_j);
         }
-        for news in sleep(&state).events.iter() {
+        for news in state.events.sleep.iter() {
             counts[usize::from(news.kind == "awake")] += 1;
             if news.kind == "asleep" {
                 before = Some(now);
@@ -94,7 +94,7 @@ fn damping_of_bonds_is_booked_until_the_motion_stops() {
     for (i, along) in [(0, 0.02), (1, -0.02)] {
         state.particles.motions[i].velocity_m_s = [along, 0.0, 0.0];
     }
-    state.ledger = EnergyLedger::opened(&state);
+    state.ledger = opened(&state);
     let mut before = look(&mut state);
     while sleep(&state).bodies == 0 {
         before = look(&mut state);

@@ -19,10 +19,9 @@ use std::fmt::Write;
 use dem_io::scene::BodySource;
 use dem_io::{Body, scene_from_text};
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::replacement::replace;
 use dem_run::state::State;
 use dem_run::state::sleep::Sleep;
-use dem_run::step::{act, move_on};
+use dem_run::step::step;
 use nalgebra::Vector3;
 
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
@@ -92,9 +91,7 @@ pub(crate) fn planned(text: &str) -> State {
 
 /// A step as a run takes it.
 pub(crate) fn go(state: &mut State) {
-    act(state);
-    replace(state);
-    move_on(state);
+    step(state);
 }
 
 pub(crate) fn go_until(state: &mut State, time_s: f64) {

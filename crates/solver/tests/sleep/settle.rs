@@ -1,7 +1,7 @@
 //! Bodies that have come to rest sleep where they lie.
 
 use dem_run::stages::clumps::place_all;
-use dem_run::step::act;
+use dem_run::step::interact;
 
 use crate::{
     AFTER_S, CLUMP, GROUND, SLEEP, SPEED_M_S, apart_m, ball, depth_m, go, go_until,
@@ -50,7 +50,7 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
 fn the_ground_still_feels_those_who_sleep() {
     let mut state = planned(&format!("{}{SLEEP}", falling()));
     go_until_asleep(&mut state, 3);
-    act(&mut state);
+    interact(&mut state);
     let [force_n, torque_n_m] = state.walls[0].whole_push();
     let weight_n = 2.25 * slab_kg() * crate::GRAVITY_M_S2;
     assert_eq!(state.walls[0].push.force_n, [0.0; 3]);
@@ -79,7 +79,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
     let mut seen = Vec::new();
     while state.time_s < 0.3 {
         go(&mut state);
-        for news in &sleep(&state).events {
+        for news in &state.events.sleep {
             seen.push((news.kind, news.bodies));
         }
     }

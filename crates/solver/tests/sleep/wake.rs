@@ -2,7 +2,7 @@
 
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, interact};
 use nalgebra::Vector3;
 
 use crate::{
@@ -73,9 +73,9 @@ fn on_a_slope_friction_holds_as_before() {
     assert_eq!(springs.len(), 4);
     while sleep(&state).bodies > 0 {
         assert!(state.time_s < 0.11);
-        act(&mut state);
+        interact(&mut state);
         if sleep(&state).bodies > 0 {
-            move_on(&mut state);
+            advance(&mut state);
         }
     }
     assert!((state.time_s - 0.1).abs() < 2.0 * state.time_step_s);
@@ -98,7 +98,7 @@ fn on_a_slope_friction_holds_as_before() {
     }
     let slid = springs[0].touch.history.tangential;
     let spring_m = slid[0].hypot(slid[1]);
-    move_on(&mut state);
+    advance(&mut state);
     let mut moved_m = 0.0_f64;
     while state.time_s < 0.103 {
         go(&mut state);
@@ -130,7 +130,7 @@ fn a_pile_wakes_as_one() {
     while sleep(&state).bodies == 4 {
         go(&mut state);
     }
-    let news = &sleep(&state).events;
+    let news = &state.events.sleep;
     assert_eq!((news.len(), news[0].kind, news[0].bodies), (1, "awake", 3));
     let asleep: Vec<bool> = state.clumps.all.iter().map(|clump| clump.asleep).collect();
     assert_eq!(asleep, [true, false, false, false]);

@@ -4,9 +4,9 @@ use std::fs;
 
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::{Existing, ResultsFolder};
-use dem_run::check::ledger::balance;
 use dem_run::snapshot::Snapshot;
-use dem_run::step::{act, move_on};
+use dem_run::stages::ledger::balance;
+use dem_run::step::{advance, interact};
 
 use crate::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned, run_of, try_planned};
 
@@ -23,9 +23,9 @@ fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
         let mut state = planned(&text).state;
         let mut balances = Vec::new();
         while state.time_s < 0.9e-3 {
-            act(&mut state);
+            interact(&mut state);
             balances.push(balance(&mut state));
-            move_on(&mut state);
+            advance(&mut state);
         }
         let speed_m_s = force_n * end_s / (2.0 * MASS_KG);
         for motion in &state.particles.motions {
@@ -63,7 +63,7 @@ fn a_pair_that_is_let_go_swings_with_the_amplitude_of_its_release() {
     let amplitude_m = 1e-6;
     let stored_j = 0.5 * STIFFNESS_N_M * amplitude_m * amplitude_m;
     for n in 0..1900 {
-        act(&mut state);
+        interact(&mut state);
         let now = balance(&mut state);
         let pull_n = state.supports[1].held[0].reactions;
         if n < 400 {
@@ -87,7 +87,7 @@ fn a_pair_that_is_let_go_swings_with_the_amplitude_of_its_release() {
         if n > 400 {
             assert_eq!(pull_n, [[0.0; 6]; 2]);
         }
-        move_on(&mut state);
+        advance(&mut state);
     }
 }
 
@@ -100,7 +100,7 @@ fn a_body_that_is_let_go_in_motion_keeps_its_velocity() {
     );
     let mut state = planned(&text).state;
     while state.time_s < 1.5e-3 - 0.5e-6 {
-        act(&mut state);
+        interact(&mut state);
         let now = balance(&mut state);
         assert!(
             now.energy_error.abs() < 1e-9,
@@ -109,7 +109,7 @@ fn a_body_that_is_let_go_in_motion_keeps_its_velocity() {
             now.energy_error
         );
         assert!(now.momentum_error < 1e-12, "{:e}", now.momentum_error);
-        move_on(&mut state);
+        advance(&mut state);
     }
     // It falls freely since 0.5 ms, and goes on along x.
     assert!((place(&state, 0).z / (-0.5 * 10.0 * 1e-6) - 1.0).abs() < 1e-9);

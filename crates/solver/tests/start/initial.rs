@@ -1,7 +1,7 @@
 //! `[initial]`: what is displaced swings, what is set in motion moves.
 
-use dem_run::check::ledger::balance;
-use dem_run::step::{act, move_on};
+use dem_run::stages::ledger::balance;
+use dem_run::step::{advance, interact};
 
 use crate::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};
 
@@ -20,7 +20,7 @@ fn a_pair_pulled_apart_swings_with_the_amplitude_it_had() {
     let omega = (2.0 * STIFFNESS_N_M / MASS_KG).sqrt();
     let phi = (1.0 - 0.5 * (omega * step_s).powi(2)).acos();
     for n in 0..1000 {
-        act(&mut state);
+        interact(&mut state);
         let now = balance(&mut state);
         if n == 0 {
             let stored_j = 0.5 * STIFFNESS_N_M * stretch_m * stretch_m;
@@ -38,7 +38,7 @@ fn a_pair_pulled_apart_swings_with_the_amplitude_it_had() {
             (apart_m - wanted_m).abs() < 1e-8 * stretch_m,
             "{n}: {apart_m:e}, {wanted_m:e}"
         );
-        move_on(&mut state);
+        advance(&mut state);
     }
     // The centre of mass stays where it was put.
     let centre_m = 0.5 * (place(&state, 0) + place(&state, 1));

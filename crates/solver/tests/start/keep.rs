@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use dem_run::check::ledger::balance;
-use dem_run::step::{act, move_on, step};
+use dem_run::stages::ledger::balance;
+use dem_run::step::{advance, interact, step};
 
 use crate::{assert_near, place, planned, try_planned};
 
@@ -50,7 +50,7 @@ fn spheres_at_their_static_overlap_stay() {
         let mut state = planned(&scene("keep", &places)).state;
         let count = heights.len() as f64;
         for _ in 0..3000 {
-            act(&mut state);
+            interact(&mut state);
             let now = balance(&mut state);
             assert!(now.energy_error.abs() < 1e-9, "{:e}", now.energy_error);
             assert!(
@@ -60,7 +60,7 @@ fn spheres_at_their_static_overlap_stay() {
             );
             let push_n = state.walls[0].push.force_n[2];
             assert_near(push_n, count * weight_n, 1e-9);
-            move_on(&mut state);
+            advance(&mut state);
         }
         for (i, z) in heights.iter().enumerate() {
             let moved_m = (place(&state, i).z - z).abs();
@@ -82,7 +82,7 @@ fn the_energy_of_what_is_kept_is_counted_from_the_start() {
     let upper = lower + 2.0 * RADIUS_M - on_sphere;
     let text = scene("keep", &[[0.0, 0.0, lower], [0.0, 0.0, upper]]);
     let mut state = planned(&text).state;
-    act(&mut state);
+    interact(&mut state);
     let now = balance(&mut state);
     let stored_j = 0.4 * (2.0 * weight_n * on_plane + weight_n * on_sphere);
     assert_near(now.contact_elastic_j, stored_j, 1e-9);

@@ -40,7 +40,7 @@ fn assert_same(state: &State, size_m: f64) {
     let (mut at_once, mut stepped) = (state.clone(), state.clone());
     let found = rest(&mut at_once);
     with_threads(1, || step_to_rest(&mut stepped, size_m));
-    dem_run::step::act(&mut stepped);
+    dem_run::step::interact(&mut stepped);
     let start = &state.particles.poses;
     let way = |of: &State, i: usize| of.particles.poses[i].place() - start[i].place();
     let all = 0..start.len();

@@ -1,15 +1,15 @@
 //! Bodies that the tests run, and what they do with them.
 
-use dem_run::check::ledger::{Balance, EnergyLedger, balance};
 use dem_run::physics::bond::damping::{
     DampingCoefficients, Reduced, chen, chen_by_mode, platzer, reduced,
 };
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::direction;
+use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
 use dem_run::state::particles::{Particles, Wrench};
-use dem_run::step::{act, move_on, step};
+use dem_run::step::{advance, interact, step};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rule without damping and failure.
@@ -240,14 +240,14 @@ pub(crate) fn tumble(state: &mut State) {
 
 /// Opens the ledger anew.
 pub(crate) fn reopen(state: &mut State) {
-    state.ledger = EnergyLedger::opened(state);
+    state.ledger = opened(state);
 }
 
 /// A step, with the ledger in its middle.
 pub(crate) fn step_and_balance(state: &mut State) -> Balance {
-    act(state);
+    interact(state);
     let balance = balance(state);
-    move_on(state);
+    advance(state);
     balance
 }
 

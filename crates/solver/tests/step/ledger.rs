@@ -6,9 +6,10 @@ use crate::bars::{
 };
 use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::stages::loads::SetLoad;
-use dem_run::stages::supports::{Held, SetSupport};
 use dem_run::state::State;
+use dem_run::state::loads::SetLoad;
+use dem_run::state::supports::Held;
+use dem_run::state::supports::SetSupport;
 
 /// Steps of the limit over this that a run lasts, and of which times are made that all steps meet.
 const LENGTH: f64 = 300.0 * BAR_LIMIT_S;

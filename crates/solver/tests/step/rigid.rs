@@ -5,8 +5,8 @@ use crate::bars::{
 };
 use dem_io::scene::Factor;
 use dem_run::stages::bonds::bond_wrenches;
-use dem_run::stages::loads::SetLoad;
 use dem_run::state::State;
+use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::Particles;
 use dem_run::step::step;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -5,16 +5,17 @@ use crate::bars::{
     with_threads,
 };
 use dem_io::scene::{Factor, Hold};
-use dem_run::check::ledger::Balance;
 use dem_run::check::limit::{Limit, limit};
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::stages::breakage::Break;
-use dem_run::stages::loads::SetLoad;
-use dem_run::stages::supports::{Held, SetSupport};
+use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::events::Break;
+use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::{Motion, Pose};
+use dem_run::state::supports::Held;
+use dem_run::state::supports::SetSupport;
 
 const BREAKING: BondRule = BondRule {
     incremental: false,
@@ -122,8 +123,8 @@ fn left(shares: usize, threads: usize) -> Left {
         let (mut balances, mut broken) = (Vec::new(), Vec::new());
         for _ in 0..150 {
             balances.push(step_and_balance(&mut state));
-            assert!(state.broken.is_sorted_by_key(|b| b.bond));
-            broken.extend(&state.broken);
+            assert!(state.events.broken.is_sorted_by_key(|b| b.bond));
+            broken.extend(&state.events.broken);
         }
         Left {
             limit,

@@ -3,11 +3,11 @@
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, bar, damp, damp_particles, random_body, shake, with_threads,
 };
-use dem_run::check::ledger::balance;
 use dem_run::check::limit::limit;
 use dem_run::check::watchdog::Watchdog;
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
-use dem_run::step::{act, move_on};
+use dem_run::step::{advance, interact};
 
 /// Bond damping and particle damping, each or both or none.
 const DAMPING: [(Option<BondDamping>, f64); 8] = [
@@ -25,10 +25,10 @@ const DAMPING: [(Option<BondDamping>, f64); 8] = [
 fn stopped_at(state: &mut State, steps: u64) -> Option<u64> {
     let watchdog = Watchdog::new(0.98);
     (0..steps).find(|_| {
-        act(state);
+        interact(state);
         let balance = balance(state);
         let stopped = watchdog.look(state, &balance, &[]).is_err();
-        move_on(state);
+        advance(state);
         stopped
     })
 }

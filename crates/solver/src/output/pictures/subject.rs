@@ -3,10 +3,10 @@
 use super::colours::{SINGLE, of_fragment};
 use super::render::Ball;
 use super::surface::{HalfSpace, Surface};
-use crate::clusters::Cluster;
 use crate::geometry::Bounds;
 use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 
 /// All particles: by cluster, or where there are none by body.

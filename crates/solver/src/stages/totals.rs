@@ -4,11 +4,13 @@ use crate::physics::bond::total::BondEnergy;
 use crate::stages::clumps::synchronous;
 use crate::stages::loads::add_resultant;
 use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums};
-use crate::stages::supports::{Phase, SetSupport, velocity_at_kick};
+use crate::stages::supports::velocity_at_kick;
 use crate::state::State;
 use crate::state::clumps::Clumps;
+use crate::state::ledger::momenta_of;
 use crate::state::particles::{Motion, Particles};
-use nalgebra::Vector3;
+use crate::state::supports::Phase;
+use crate::state::supports::SetSupport;
 use rayon::prelude::*;
 
 /// Velocities and spins at the time of the poses, between a kick and the drift after it. One per particle.
@@ -97,23 +99,8 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
     }
 }
 
-/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity, m/s, and own angular momentum; and their magnitudes.
-pub(super) fn momenta_of(
-    mass_kg: f64,
-    place_m: [f64; 3],
-    velocity_m_s: [f64; 3],
-    own: [f64; 3],
-    about_m: [f64; 3],
-) -> [f64; 8] {
-    let momentum = Vector3::from(velocity_m_s) * mass_kg;
-    let arm = Vector3::from(place_m) - Vector3::from(about_m);
-    let angular = arm.cross(&momentum) + Vector3::from(own);
-    let ([px, py, pz], [lx, ly, lz]): ([f64; 3], [f64; 3]) = (momentum.into(), angular.into());
-    [px, py, pz, lx, ly, lz, momentum.norm(), angular.norm()]
-}
-
 /// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
-pub(super) fn momenta(
+pub fn momenta(
     particles: &Particles,
     clumps: &Clumps,
     about_m: [f64; 3],

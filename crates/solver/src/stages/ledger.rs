@@ -3,18 +3,59 @@
 //! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning, half at its end. So the ledger is as exact
 //! as the step: its error falls with the square of the time step.
 
-use super::totals::{elastic_energy, kinetic_energy, momenta, momenta_of, synchronous_motions};
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::{ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::reactions_work_j;
+use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions};
 use crate::state::State;
 use crate::state::contacts::ContactKind;
+use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Push, Wall};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+
+/// The ledgers of energy and momentum.
+pub const LEDGER: Stage = Stage {
+    name: "ledger",
+    within: None,
+    need: |_, _| Need::Needed("energy and momentum".to_owned()),
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Checks of the limit of the step and of energy.
+pub const CHECKS: Stage = Stage {
+    name: "checks",
+    within: None,
+    need: |_, _| Need::Needed("of energy, and of the limit of the step".to_owned()),
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Books the work of the half step that ends with the kick to come.
+pub fn book_before_kick(state: &mut State) -> usize {
+    before_kick(state);
+    0
+}
+
+/// Books the kick that has just been done.
+pub fn book_after_kick(state: &mut State) -> usize {
+    after_kick(state);
+    0
+}
+
+/// Time goes on to the end of the drift.
+pub fn advance_time(state: &mut State) -> usize {
+    state.ledger.drift(state.time_step_s);
+    state.time_s += state.time_step_s;
+    state.previous_time_step_s = state.time_step_s;
+    state.steps += 1;
+    0
+}
 
 /// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest law of the scene, J; 0 where nothing can touch.
 fn pressed_by_a_millionth_j(state: &State) -> f64 {
@@ -34,47 +75,45 @@ fn pressed_by_a_millionth_j(state: &State) -> f64 {
     })
 }
 
-/// What went in and out since the start.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct EnergyLedger {
-    /// Up to the present moment; the half step after it is in `pending`.
-    work: Work,
-    pending: Work,
-    /// Released by bonds that broke, J.
-    released_j: f64,
-    /// Brought by bodies that came, J.
-    brought_j: f64,
-    /// Kinetic, elastic and potential energy at the start, J.
-    opening_j: f64,
-    /// Most that gravity had given, or taken, at a time, J.
-    fallen_j: f64,
-    /// Largest energy and work seen, J.
-    scale_j: f64,
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
-    floor_j: f64,
-    /// The centre of mass at the start, about which moments are taken, m.
-    about_m: [f64; 3],
-    mass_kg: f64,
-    /// Sum of mass times place from `about_m`, kg m.
-    first_moment: [f64; 3],
-    /// The same two of what sleeps, on which gravity does not act.
-    asleep_kg: f64,
-    asleep_moment: [f64; 3],
-    /// What momentum and angular momentum should be, N s and N m s.
-    momentum: [f64; 3],
-    angular_momentum: [f64; 3],
-    /// Largest sums of magnitudes seen, N s and N m s.
-    momentum_scale: f64,
-    angular_momentum_scale: f64,
-}
-
-/// Work by cause, J. Dissipation counts as positive.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct Work {
-    loads: f64,
-    supports: f64,
-    bond_damping: f64,
-    particle_damping: f64,
+/// The ledger of a state before its first step.
+pub fn opened(state: &State) -> EnergyLedger {
+    let p = &state.particles;
+    let clumps = &state.clumps;
+    let free_kg = ordered_sum(p.free, |i| 1.0 / p.motions[i].inverse_mass);
+    let mass_kg = free_kg + clumps.mass_kg();
+    let about_m = [0, 1, 2].map(|k| {
+        let of_free = ordered_sum(p.free, |i| {
+            p.poses[i].position_m[k] / p.motions[i].inverse_mass
+        });
+        let of_clumps = clumps.all.iter();
+        let of_clumps: f64 = of_clumps
+            .map(|clump| clump.place_m[k] * clumps.template(clump).mass_kg)
+            .sum();
+        over(of_free + of_clumps, mass_kg)
+    });
+    let mut ledger = EnergyLedger {
+        is_open: true,
+        about_m,
+        mass_kg,
+        ..EnergyLedger::default()
+    };
+    let elastic = elastic_energy(state).total();
+    let bonds = &state.bonds;
+    let stretched = |at: usize| {
+        let stretch = 1e-6 * bonds.initial_length_m(at);
+        0.5 * bonds.normal(at) * stretch * stretch
+    };
+    ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
+    let pressed = state.contacts.as_ref();
+    let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
+    let pressed = pressed + state.walls.iter().map(|wall| wall.elastic_j).sum::<f64>();
+    let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
+    ledger.opening_j = kinetic + elastic + pressed;
+    ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
+    let (momentum, scales) = momenta(p, clumps, about_m);
+    [ledger.momentum, ledger.angular_momentum] = momentum;
+    [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
+    ledger
 }
 
 /// The ledger at a moment.
@@ -138,149 +177,6 @@ impl Balance {
     }
 }
 
-impl EnergyLedger {
-    /// The ledger of a state before its first step.
-    pub fn opened(state: &State) -> Self {
-        let p = &state.particles;
-        let clumps = &state.clumps;
-        let free_kg = ordered_sum(p.free, |i| 1.0 / p.motions[i].inverse_mass);
-        let mass_kg = free_kg + clumps.mass_kg();
-        let about_m = [0, 1, 2].map(|k| {
-            let of_free = ordered_sum(p.free, |i| {
-                p.poses[i].position_m[k] / p.motions[i].inverse_mass
-            });
-            let of_clumps = clumps.all.iter();
-            let of_clumps: f64 = of_clumps
-                .map(|clump| clump.place_m[k] * clumps.template(clump).mass_kg)
-                .sum();
-            over(of_free + of_clumps, mass_kg)
-        });
-        let mut ledger = Self {
-            about_m,
-            mass_kg,
-            ..Self::default()
-        };
-        let elastic = elastic_energy(state).total();
-        let bonds = &state.bonds;
-        let stretched = |at: usize| {
-            let stretch = 1e-6 * bonds.initial_length_m(at);
-            0.5 * bonds.normal(at) * stretch * stretch
-        };
-        ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
-        let pressed = state.contacts.as_ref();
-        let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
-        let pressed = pressed + state.walls.iter().map(|wall| wall.elastic_j).sum::<f64>();
-        let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
-        ledger.opening_j = kinetic + elastic + pressed;
-        ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
-        let (momentum, scales) = momenta(p, clumps, about_m);
-        [ledger.momentum, ledger.angular_momentum] = momentum;
-        [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
-        ledger
-    }
-
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
-    pub fn floor_j(&self) -> f64 {
-        self.floor_j
-    }
-
-    /// Mass of all particles, kg.
-    pub fn mass_kg(&self) -> f64 {
-        self.mass_kg
-    }
-
-    /// What a run could have in energy at most: that of the start, what loads, supports, walls and gravity gave, J.
-    pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
-        let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
-        let pushed = walls_work_j(walls).abs();
-        let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen;
-        let given = given + self.brought_j.abs();
-        self.opening_j.abs() + given + self.floor_j
-    }
-
-    /// Size of what gravity has given until now, J.
-    fn fallen_now_j(&self, gravity_m_s2: [f64; 3]) -> f64 {
-        let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
-        fallen.abs()
-    }
-
-    fn settle(&mut self) {
-        let pending = std::mem::take(&mut self.pending);
-        self.work.add(&pending, 1.0);
-    }
-
-    /// Books something that comes (1) or goes (-1) between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
-    /// angular momentum that it has after the kick, and with this energy at the moment of the places, that in gravity left out, J.
-    pub fn bring(
-        &mut self,
-        sign: f64,
-        [mass_kg, energy_j]: [f64; 2],
-        [place_m, velocity_m_s, own]: [[f64; 3]; 3],
-        gravity_m_s2: [f64; 3],
-    ) {
-        let [px, py, pz, lx, ly, lz, ..] =
-            momenta_of(mass_kg, place_m, velocity_m_s, own, self.about_m);
-        self.brought_j += sign * energy_j;
-        self.mass_kg += sign * mass_kg;
-        for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {
-            let moment = sign * mass_kg * (place_m[k] - self.about_m[k]);
-            self.first_moment[k] += moment;
-            self.brought_j -= gravity_m_s2[k] * moment;
-            self.momentum[k] += sign * p;
-            self.angular_momentum[k] += sign * l;
-        }
-    }
-
-    /// Books energy that was gained without a cause that has a place of its own, J.
-    pub fn gain(&mut self, energy_j: f64) {
-        self.brought_j += energy_j;
-    }
-
-    /// Books something that stops where it is, between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
-    /// angular momentum that it has after the kick, and with this kinetic energy at the moment of the places, J.
-    pub fn stop(
-        &mut self,
-        [mass_kg, kinetic_j]: [f64; 2],
-        [place_m, velocity_m_s, own]: [[f64; 3]; 3],
-    ) {
-        let [px, py, pz, lx, ly, lz, ..] =
-            momenta_of(mass_kg, place_m, velocity_m_s, own, self.about_m);
-        self.brought_j -= kinetic_j;
-        for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {
-            self.momentum[k] -= p;
-            self.angular_momentum[k] -= l;
-        }
-    }
-
-    /// Takes down what sleeps from now on: masses, kg, and places, m.
-    pub fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
-        self.asleep_kg = 0.0;
-        self.asleep_moment = [0.0; 3];
-        for (mass_kg, place_m) in sleepers {
-            self.asleep_kg += mass_kg;
-            for (k, moment) in self.asleep_moment.iter_mut().enumerate() {
-                *moment += mass_kg * (place_m[k] - self.about_m[k]);
-            }
-        }
-    }
-
-    /// Where the centre of mass should be after a drift.
-    pub fn drift(&mut self, time_step_s: f64) {
-        for k in 0..3 {
-            self.first_moment[k] += time_step_s * self.momentum[k];
-        }
-    }
-}
-
-impl Work {
-    fn add(&mut self, other: &Self, factor: f64) {
-        self.loads += factor * other.loads;
-        self.supports += factor * other.supports;
-        self.bond_damping += factor * other.bond_damping;
-        self.particle_damping += factor * other.particle_damping;
-    }
-}
-
 /// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to come (1).
 fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
     push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
@@ -334,7 +230,7 @@ pub fn after_kick(state: &mut State) {
     ledger.work.supports += supported[0];
     ledger.pending.add(&pending, 0.5 * after_s);
     ledger.pending.supports = supported[1];
-    for broken in &state.broken {
+    for broken in &state.events.broken {
         ledger.released_j += broken.released_j;
     }
     ledger.fallen_j = ledger.fallen_j.max(ledger.fallen_now_j(state.gravity_m_s2));
@@ -468,11 +364,6 @@ pub fn balance(state: &mut State) -> Balance {
         ),
         momentum_scales: [ledger.momentum_scale, ledger.angular_momentum_scale],
     }
-}
-
-/// Work that all walls did on particles so far, J.
-fn walls_work_j(walls: &[Wall]) -> f64 {
-    walls.iter().map(|wall| wall.work_j).sum()
 }
 
 /// A ratio that is 0 where there is nothing to compare with.

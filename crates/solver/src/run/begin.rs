@@ -1,0 +1,161 @@
+//! A run before its first step.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use dem_io::Result;
+use dem_io::body::mass::BodyMass;
+use dem_io::scene::Scene;
+
+use super::RunSettings;
+use super::events::{change_step, new_step};
+use super::files::Files;
+use super::limits::Limits;
+use super::pictures::{Order, Pictures};
+use super::progress::{OutputSchedule, Progress};
+use crate::check::watchdog::Watchdog;
+use crate::laboratory::watch::Watch;
+use crate::machine::processor_time_s;
+use crate::measure::{Probe, place_watches, probes, renumber as renumber_probes};
+use crate::output::frames::FrameOrder;
+use crate::output::series;
+use crate::plan::bodies::PlacedBody;
+use crate::plan::inputs::Inputs;
+use crate::plan::{Plan, PlannedStage};
+use crate::snapshot::fingerprint;
+use crate::state::State;
+
+/// A run: what is stepped, and what watches it.
+pub(super) struct Run<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) settings: RunSettings<'a>,
+    pub(super) state: State,
+    pub(super) bodies: Vec<PlacedBody>,
+    /// Measures.
+    pub(super) probes: Vec<Probe>,
+    /// The laboratory test. None: the scene has none.
+    pub(super) watch: Option<Watch<'a>>,
+    pub(super) watchdog: Watchdog,
+    pub(super) limits: Limits<'a>,
+    pub(super) progress: Progress,
+    pub(super) schedule: OutputSchedule,
+    /// None: no results are kept.
+    pub(super) files: Option<Files<'a>>,
+    /// Whether a checkpoint is to be written once the step is done.
+    pub(super) is_checkpoint_due: bool,
+    /// When the last checkpoint was written.
+    pub(super) saved: Instant,
+    /// Of what the plan fixed.
+    pub(super) fingerprint: u64,
+    /// What the plan says that the summary repeats.
+    pub(super) planned: Planned,
+    pub(super) first_step: u64,
+    pub(super) began: Instant,
+    pub(super) processor_before_s: Option<f64>,
+}
+
+/// What the summary repeats of the plan.
+pub(super) struct Planned {
+    pub(super) stages: Vec<PlannedStage>,
+    pub(super) masses: BTreeMap<String, BodyMass>,
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    pub(super) inputs: Inputs,
+    /// How the time step of a run that goes on differs from before.
+    pub(super) changed_step: Option<String>,
+}
+
+impl<'a> Run<'a> {
+    /// Begins a run, or goes on with one.
+    ///
+    /// # Errors
+    /// The checkpoint is not of this scene, or leaves nothing to do; those of the files.
+    pub(super) fn begin(plan: Plan, scene: &'a Scene, settings: RunSettings<'a>) -> Result<Self> {
+        let mut settings = settings;
+        let mut probes = probes(scene, &plan);
+        let watch = match (&scene.test, &plan.test, settings.test.take()) {
+            (Some(test), Some(setup), Some(of_test)) => {
+                Some(Watch::new(scene, test, setup.clone(), of_test, &plan))
+            }
+            _ => None,
+        };
+        let Plan {
+            mut state,
+            mut bodies,
+            step: choice,
+            ..
+        } = plan;
+        place_watches(&probes, &mut state);
+        let fingerprint = fingerprint(&state);
+        let of_pictures = settings.folder.and(Order::of(scene, &state));
+        let size = state.particles.len() + state.bonds.len();
+        let schedule = OutputSchedule::of(scene, choice.step_s, size);
+        let mut progress = Progress::new(schedule, &choice);
+        let limits = Limits::of(scene, &state, &choice);
+        let mut changed_step = None;
+        let resumed = settings.resume.take();
+        let is_continued = resumed.is_some();
+        if let Some(snapshot) = resumed {
+            let place = settings
+                .folder
+                .map(|f| f.checkpoint().display().to_string());
+            snapshot
+                .check_scene(&scene.describe())
+                .and_then(|()| snapshot.restore(&mut state, &mut bodies))
+                .map_err(|error| error.within(&place.unwrap_or_default()))?;
+            progress = snapshot.progress;
+            progress.go_on(&state, schedule, scene)?;
+            for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
+                probe.history = history;
+            }
+            if !state.clumps.templates.is_empty() {
+                renumber_probes(&mut probes, &[], &bodies, &mut state);
+            }
+            changed_step = change_step(&mut state, &choice, scene.run.adaptive);
+        }
+        let mut files = None;
+        if let Some(folder) = settings.folder {
+            let columns = series::columns(scene.walls.keys(), &probes);
+            let order = FrameOrder::new(&bodies, &state);
+            let continued = is_continued.then_some(&progress);
+            let has_fragments = state.clusters.is_some();
+            let mut open = Files::open(folder, order, &columns, has_fragments, continued)?;
+            if let Some(order) = of_pictures {
+                let continued = is_continued.then_some((&state, progress.pictures));
+                open.pictures = Some(Pictures::open(folder, order, continued)?);
+            }
+            if let Some(detail) = &changed_step {
+                open.events.append(&[new_step(&state, "resumed", detail)])?;
+            }
+            files = Some(open);
+        }
+        let began = Instant::now();
+        Ok(Self {
+            scene,
+            settings,
+            bodies,
+            probes,
+            watch,
+            watchdog: Watchdog::new(choice.share_of_limit()),
+            limits,
+            progress,
+            schedule,
+            files,
+            is_checkpoint_due: false,
+            saved: began,
+            fingerprint,
+            planned: Planned {
+                stages: plan.stages,
+                masses: plan.masses,
+                notes: plan.notes,
+                warnings: plan.warnings,
+                inputs: plan.inputs,
+                changed_step,
+            },
+            first_step: state.steps,
+            state,
+            began,
+            processor_before_s: processor_time_s(),
+        })
+    }
+}

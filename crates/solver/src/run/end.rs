@@ -1,0 +1,150 @@
+//! The end of a run: its summary and its last files.
+
+use dem_io::Result;
+use dem_io::results::write_json;
+
+use super::Outcome;
+use super::begin::Run;
+use super::events::write_sleep;
+use super::finish::End;
+use super::observe::Ended;
+use crate::laboratory::evaluate::TestResult;
+use crate::machine::{machine, processor_time_s};
+use crate::measure::Probe;
+use crate::output::fragments::FragmentSummary;
+use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
+use crate::state::clusters::fragments as fragments_of;
+use crate::state::clusters::fragments::Fragment;
+use crate::step::{advance, number_of, stages};
+
+impl Run<'_> {
+    /// Writes what is left to be written, and sums up.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn end(mut self, ended: Ended) -> Result<Outcome> {
+        let folder = self.settings.folder;
+        let (state, progress) = (&self.state, &self.progress);
+        let test = self.watch.take();
+        let test = test.map(|watch| watch.finish(&progress.test, state, progress.broke, folder));
+        let clusters = state.clusters.as_ref();
+        let fragments = clusters.map(|c| fragments_of(c, &state.particles, &state.clumps, None));
+        self.progress.seen.look_at_edges(&self.state, &self.bodies);
+        let pieces = fragments.as_deref().unwrap_or_default();
+        let is_stopped = ended.problem.is_some();
+        let seen = &self.progress.seen;
+        let mut warnings = std::mem::take(&mut self.planned.warnings);
+        warnings.extend(seen.warnings(&self.state, self.scene, &self.bodies, pieces, is_stopped));
+        let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
+        summary.judge(warnings);
+        let Some(folder) = folder else {
+            return Ok(Outcome {
+                summary,
+                problem: ended.problem,
+            });
+        };
+        if ended.problem.is_some() {
+            write_json(&folder.summary(), &summary)?;
+        } else {
+            self.write_end(&summary)?;
+        }
+        Ok(Outcome {
+            summary,
+            problem: ended.problem,
+        })
+    }
+
+    /// The last checkpoint, from which a run can be taken further with a later end time; plots,
+    /// film and summary.
+    fn write_end(&mut self, summary: &Summary) -> Result<()> {
+        advance(&mut self.state);
+        if let Some(files) = &mut self.files {
+            write_sleep(&self.state, files)?;
+        }
+        let end = End::of(summary)?;
+        if let Some(folder) = self.settings.folder {
+            write_json(&folder.ended(), &end)?;
+        }
+        self.save()?;
+        match &self.files {
+            Some(files) => end.write(
+                files.folder,
+                &self.state,
+                &self.probes,
+                files.pictures.as_ref(),
+            ),
+            None => Ok(()),
+        }
+    }
+
+    fn summary(
+        &mut self,
+        ended: &Ended,
+        fragments: Option<&[Fragment]>,
+        test: Option<TestResult>,
+    ) -> Summary {
+        let (state, progress, scene) = (&self.state, &self.progress, self.scene);
+        let wall_s = self.began.elapsed().as_secs_f64();
+        let processor_s = processor_time_s().zip(self.processor_before_s);
+        let [energy_error, momentum_error, angular_momentum_error] =
+            progress.largest_errors(&ended.balance);
+        let steps_per_s = (state.steps - self.first_step) as f64 / wall_s;
+        let bonds = if state.rules.are_none() {
+            state.bonds.len() as f64
+        } else {
+            // Of the entire run, as the number of bonds changes.
+            state.rules.bond_steps[0] as f64 / state.steps.max(1) as f64
+        };
+        let of_state = state.clusters.as_ref().zip(fragments);
+        let left_out = self.planned.stages.iter().filter(|stage| !stage.needed);
+        let fraction = |stage| state.clock.fraction(number_of(stage));
+        Summary {
+            scene: scene.source.clone(),
+            program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            ended_by: ended.by.to_owned(),
+            problem: ended.problem.as_ref().map(ToString::to_string),
+            inputs: self.planned.inputs.clone(),
+            simulated_s: state.time_s,
+            wall_s,
+            processor_s: processor_s.map(|(after, before)| after - before),
+            threads: self.settings.threads,
+            machine: machine(),
+            particles: state.particles.len(),
+            bonds: state.bonds.len(),
+            bodies: self.planned.masses.clone(),
+            broken_bonds: state.broken_count,
+            largest_bond_strain: progress.seen.bond_strain.largest,
+            largest_overlap: progress.seen.overlap.largest,
+            broken_by_cause: state.broken_by_cause,
+            fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
+            population: PopulationSummary::of(state),
+            sleep: state.sleep.as_ref().map(SleepSummary::of),
+            steps: state.steps,
+            time_step_s: state.time_step_s,
+            adaptive: scene.run.adaptive.then(|| AdaptiveSummary {
+                smallest_step_s: progress.steps_s[0],
+                largest_step_s: progress.steps_s[1],
+                changes: progress.step_changes,
+            }),
+            limit_s: progress.limit_s,
+            share_of_limit: state.time_step_s / progress.limit_s,
+            steps_per_s,
+            bond_steps_per_s: steps_per_s * bonds,
+            energy_error,
+            momentum_error,
+            angular_momentum_error,
+            ledger: ended.balance,
+            measures: self.probes.iter().map(Probe::result).collect(),
+            time_by_stage: (stages().iter())
+                .map(|stage| (stage.name.to_owned(), fraction(stage)))
+                .collect(),
+            left_out: left_out.map(|stage| stage.stage.name.to_owned()).collect(),
+            notes: self.planned.notes.clone(),
+            verdict: Verdict::default(),
+            results: (self.settings.folder).map(|folder| folder.path().display().to_string()),
+            resumed_with: self.planned.changed_step.clone(),
+            test,
+            equilibrium: None,
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The files that grow during a run, and its checkpoints.
+
+use dem_io::checkpoint::write_checkpoint;
+use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
+use dem_io::scene::Scene;
+use dem_io::{Diagnostic, Result};
+
+use super::pictures::Pictures;
+use super::progress::Progress;
+use crate::measure::Probe;
+use crate::output::frames::FrameOrder;
+use crate::plan::bodies::PlacedBody;
+use crate::snapshot::Snapshot;
+use crate::state::State;
+
+/// Files that grow during a run.
+pub(super) struct Files<'a> {
+    pub(super) folder: &'a ResultsFolder,
+    pub(super) series: SeriesFile,
+    pub(super) events: EventFile,
+    pub(super) frames: FrameFiles,
+    /// None: no pictures are wanted.
+    pub(super) pictures: Option<Pictures>,
+    /// None: nothing can break into fragments.
+    pub(super) fragments: Option<FragmentFile>,
+    pub(super) order: FrameOrder,
+}
+
+impl<'a> Files<'a> {
+    /// New files, or those of a run that is `continued` where it stood.
+    pub(super) fn open(
+        folder: &'a ResultsFolder,
+        order: FrameOrder,
+        columns: &[String],
+        has_fragments: bool,
+        continued: Option<&Progress>,
+    ) -> Result<Self> {
+        let fragments = has_fragments.then(|| match continued {
+            Some(at) => FragmentFile::continue_at(&folder.fragments(), at.fragments_bytes),
+            None => FragmentFile::create(&folder.fragments()),
+        });
+        let (series, events, frames) = match continued {
+            Some(at) => (
+                SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
+                EventFile::continue_at(&folder.events(), at.events_bytes)?,
+                FrameFiles::continue_at(folder, at.frame_times_s.clone())?,
+            ),
+            None => (
+                SeriesFile::create(&folder.series(), columns)?,
+                EventFile::create(&folder.events())?,
+                FrameFiles::create(folder),
+            ),
+        };
+        Ok(Self {
+            folder,
+            series,
+            events,
+            frames,
+            pictures: None,
+            fragments: fragments.transpose()?,
+            order,
+        })
+    }
+}
+
+/// Writes a checkpoint, and everything to the disk that it goes on from.
+pub(super) fn save(
+    state: &State,
+    bodies: &[PlacedBody],
+    scene: &Scene,
+    fingerprint: u64,
+    probes: &[Probe],
+    progress: &mut Progress,
+    files: &mut Files<'_>,
+) -> Result<()> {
+    files.series.sync()?;
+    files.events.sync()?;
+    progress.series_bytes = files.series.length_bytes();
+    progress.events_bytes = files.events.length_bytes();
+    if let Some(fragments) = &files.fragments {
+        fragments.sync()?;
+        progress.fragments_bytes = fragments.length_bytes();
+    }
+    progress.frame_times_s = files.frames.times_s().to_vec();
+    if let Some(pictures) = &files.pictures {
+        progress.pictures = pictures.taken();
+    }
+    let measures = probes.iter().map(|probe| probe.history).collect();
+    let snapshot = Snapshot::taken(
+        state,
+        bodies,
+        scene.describe(),
+        fingerprint,
+        measures,
+        progress.clone(),
+    );
+    write_checkpoint(&files.folder.checkpoint(), &snapshot.to_bytes()?)
+}
+
+/// Says that the run can be taken up again where it has left a checkpoint.
+pub(super) fn with_checkpoint(mut problem: Diagnostic, files: Option<&Files<'_>>) -> Diagnostic {
+    let checkpoint = files.map(|files| files.folder.checkpoint());
+    if let Some(path) = checkpoint.filter(|path| path.is_file()) {
+        problem.remedy += &format!(
+            "; --resume takes it up from '{}' with that step",
+            path.display()
+        );
+    }
+    problem
+}
+
+pub(super) fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnostic {
+    let remedy = match files {
+        Some(files) => format!(
+            "go on with the same command and --resume: '{}' holds its state",
+            files.folder.checkpoint().display()
+        ),
+        None => "with --out FOLDER its state would have been kept".to_owned(),
+    };
+    Diagnostic::interrupted(
+        format!(
+            "interrupted at {:.6e} s, step {}",
+            state.time_s, state.steps
+        ),
+        remedy,
+    )
+}

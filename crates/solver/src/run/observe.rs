@@ -1,0 +1,327 @@
+//! What a run looks at and writes: between the two halves of a step, where everything can be
+//! measured, and after the second.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use dem_io::{Diagnostic, Result};
+
+use super::begin::Run;
+use super::events::{write_breaks, write_population, write_sleep, write_splits};
+use super::files::{interruption, save, with_checkpoint};
+use super::fragments::write_fragments;
+use super::limits::{LOOKS_EVERY, went_through};
+use super::progress::{due, next};
+use crate::measure::{read_probes, renumber as renumber_probes};
+use crate::output::frames::FrameOrder;
+use crate::output::series;
+use crate::plan::bodies::renumber;
+use crate::stages::clumps::place_all;
+use crate::stages::ledger::{Balance, CHECKS, balance};
+use crate::stages::pieces::find_pieces_now;
+use crate::stages::stage::Stage;
+use crate::stages::watching::OUTPUT;
+use crate::state::State;
+use crate::state::events::PopulationEvent;
+use crate::step::number_of;
+
+/// Wall time between two checkpoints where the scene names no other rhythm.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
+
+/// Steps between two looks at how bonds are bent and twisted: each costs about five times what the
+/// bonds of a step do.
+const EDGES_EVERY: u64 = 1024;
+
+/// What ends the loop over steps.
+pub(super) struct Ended {
+    pub(super) by: &'static str,
+    pub(super) balance: Balance,
+    pub(super) problem: Option<Diagnostic>,
+}
+
+/// What is due at a step.
+#[derive(Debug, Clone, Copy)]
+struct Due {
+    /// The run ends with this step.
+    end: bool,
+    row: bool,
+    frame: bool,
+    checkpoint: bool,
+    picture: bool,
+    watchdog: bool,
+}
+
+impl Due {
+    fn any(self) -> bool {
+        self.row || self.frame || self.checkpoint || self.picture || self.watchdog
+    }
+
+    /// A checkpoint of a run that has gone unstable would be worth nothing.
+    fn needs_balance(self) -> bool {
+        self.row || self.checkpoint || self.watchdog
+    }
+}
+
+impl Run<'_> {
+    /// Looks at the step where everything can be measured, and writes what is due. Says how the run
+    /// has ended, if it has.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn observe(&mut self, tell: &dyn Fn(f64)) -> Result<Option<Ended>> {
+        if let Some(problem) = went_through(&self.state, self.scene, &self.bodies) {
+            return Ok(Some(self.ended_early("instability", problem)));
+        }
+        self.note_step()?;
+        let test = self.watch.as_ref();
+        let broke = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
+        let due = self.due(broke);
+        if due.end {
+            self.find_last_pieces()?;
+        }
+        let since = due.any().then(Instant::now);
+        if due.any() {
+            place_all(&self.state.clumps, &mut self.state.particles);
+        }
+        let mut rests = false;
+        let mut balanced = None;
+        if due.needs_balance() {
+            let balance = balance(&mut self.state);
+            if let Err(problem) = self.watchdog.look(&self.state, &balance, &self.bodies) {
+                let problem = Some(with_checkpoint(problem, self.files.as_ref()));
+                let by = "instability";
+                return Ok(Some(Ended {
+                    by,
+                    balance,
+                    problem,
+                }));
+            }
+            self.progress
+                .note(&self.state, &balance, self.schedule.rest);
+            rests = self.progress.has_rested(&self.state);
+            if rests && !due.end {
+                self.find_last_pieces()?;
+            }
+            if due.row || rests {
+                self.write_row(&balance, tell)?;
+            }
+            balanced = Some(balance);
+        }
+        self.write_frame(due, rests)?;
+        self.plan_checkpoint(due);
+        if let (true, Some(balance)) = (due.end || rests, balanced) {
+            self.progress.rested = !due.end;
+            self.progress.broke = broke;
+            let by = match (broke, due.end, &self.watch) {
+                (true, ..) => "breakage",
+                (false, true, Some(_)) => "end of the stroke",
+                (false, true, None) => "end time",
+                (false, false, _) => "rest",
+            };
+            let problem = None;
+            return Ok(Some(Ended {
+                by,
+                balance,
+                problem,
+            }));
+        }
+        book(&mut self.state, &OUTPUT, since);
+        Ok(None)
+    }
+
+    /// Follows what has become of the bodies in the second half of the step, and of the limit of
+    /// the time step; writes a checkpoint where one is due. Says how the run has ended, if it has.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
+        let replaced = self.follow_population()?;
+        if let Some(files) = &mut self.files {
+            write_sleep(&self.state, files)?;
+        }
+        let since = self
+            .state
+            .steps
+            .is_multiple_of(LOOKS_EVERY)
+            .then(Instant::now);
+        let (bodies, files) = (&self.bodies, self.files.as_mut());
+        let followed =
+            (self.limits).follow(&mut self.state, replaced, &mut self.progress, bodies, files);
+        book(&mut self.state, &CHECKS, since);
+        if let Err(problem) = followed {
+            return Ok(Some(self.ended_early("instability", problem)));
+        }
+        let interrupted = self.settings.interrupted.load(Ordering::Relaxed);
+        if interrupted || self.is_checkpoint_due {
+            self.saved = Instant::now();
+            self.save()?;
+        }
+        if interrupted {
+            let problem = interruption(&self.state, self.files.as_ref());
+            let by = "interruption";
+            let balance = balance(&mut self.state);
+            let problem = Some(problem);
+            return Ok(Some(Ended {
+                by,
+                balance,
+                problem,
+            }));
+        }
+        Ok(None)
+    }
+
+    /// What has happened in the first half of the step.
+    fn note_step(&mut self) -> Result<()> {
+        let (state, bodies, seen) = (&self.state, &self.bodies, &mut self.progress.seen);
+        seen.note_breaks(state, bodies);
+        if state.steps.is_multiple_of(EDGES_EVERY) {
+            seen.look_at_edges(state, bodies);
+        }
+        if state.steps.is_multiple_of(LOOKS_EVERY) {
+            seen.look_at_contacts(state, self.scene, bodies);
+        }
+        if let Some(files) = &mut self.files {
+            write_breaks(state, bodies, files)?;
+            write_splits(state, files)?;
+        }
+        Ok(())
+    }
+
+    /// What is due at this step. `broke`: the body of a test has broken, so that it ends.
+    fn due(&self, broke: bool) -> Due {
+        let (state, schedule, progress) = (&self.state, &self.schedule, &self.progress);
+        let end_s = self.scene.run.end_time_s;
+        let end = broke || state.time_s + 0.5 * state.time_step_s >= end_s;
+        let first = state.steps == 0;
+        let frame = (schedule.frame_s).map_or(first, |s| due(state, s, progress.next_frame));
+        let checkpoint = schedule.checkpoint_s;
+        let pictures = self
+            .files
+            .as_ref()
+            .and_then(|files| files.pictures.as_ref());
+        Due {
+            end,
+            row: end || due(state, schedule.row_s, progress.next_row),
+            frame: end || frame,
+            checkpoint: checkpoint.is_some_and(|s| due(state, s, progress.next_checkpoint)),
+            picture: pictures.is_some_and(|pictures| pictures.are_due(state)),
+            watchdog: self.watchdog.is_due(state),
+        }
+    }
+
+    fn write_row(&mut self, balance: &Balance, tell: &dyn Fn(f64)) -> Result<()> {
+        let state = &self.state;
+        self.progress.next_row = next(state, self.schedule.row_s);
+        let values = read_probes(&mut self.probes, state, balance);
+        if let Some(files) = &mut self.files {
+            let row = series::row(state, balance, &values);
+            files.series.append(state.time_s, &row)?;
+        }
+        tell((state.time_s / self.scene.run.end_time_s).min(1.0));
+        Ok(())
+    }
+
+    /// Writes frame, picture and fragments where they are due.
+    fn write_frame(&mut self, due: Due, rests: bool) -> Result<()> {
+        let (state, progress) = (&self.state, &mut self.progress);
+        let Some(files) = &mut self.files else {
+            return Ok(());
+        };
+        if due.frame || rests {
+            progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
+            files.order.write(state, &mut files.frames)?;
+        }
+        if let Some(pictures) = &mut files.pictures
+            && (due.end || rests || due.picture)
+        {
+            pictures.take(state, &self.bodies)?;
+        }
+        if due.frame || rests || (due.row && progress.has_new_fragments(state)) {
+            write_fragments(state, progress, files)?;
+        }
+        Ok(())
+    }
+
+    /// Decides whether the state after this step is kept. The ledger of this step has been looked
+    /// at: what is saved is sound. Looking at it only to save would change its later figures.
+    fn plan_checkpoint(&mut self, due: Due) {
+        let every_s = self.schedule.checkpoint_s;
+        let is_late = every_s.is_none() && self.saved.elapsed() >= CHECKPOINT_EVERY;
+        self.is_checkpoint_due = due.checkpoint || (due.row && is_late);
+        if self.is_checkpoint_due {
+            self.progress.next_checkpoint = every_s.map_or(0, |s| next(&self.state, s));
+        }
+    }
+
+    /// Takes up how particles are counted once bodies have come, gone or become others. Says
+    /// whether clumps have become clusters.
+    fn follow_population(&mut self) -> Result<bool> {
+        let events = &self.state.events;
+        if events.population.is_empty() {
+            return Ok(false);
+        }
+        let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });
+        let replaced = events.population.iter().any(is_swap);
+        self.progress.seen.note_population(&events.population);
+        for by in &events.renumberings {
+            renumber(&mut self.bodies, by);
+        }
+        let renumberings = std::mem::take(&mut self.state.events.renumberings);
+        renumber_probes(
+            &mut self.probes,
+            &renumberings,
+            &self.bodies,
+            &mut self.state,
+        );
+        if let Some(files) = &mut self.files {
+            write_population(&self.state, files)?;
+            files.order = FrameOrder::new(&self.bodies, &self.state);
+        }
+        Ok(replaced)
+    }
+
+    /// Looks for pieces once more where bonds have broken since they were looked for last.
+    fn find_last_pieces(&mut self) -> Result<()> {
+        if self.state.unsearched.is_empty() {
+            return Ok(());
+        }
+        find_pieces_now(&mut self.state);
+        let files = self.files.as_mut();
+        files.map_or(Ok(()), |files| write_splits(&self.state, files))
+    }
+
+    /// Writes a checkpoint, where results are kept.
+    pub(super) fn save(&mut self) -> Result<()> {
+        let Some(files) = &mut self.files else {
+            return Ok(());
+        };
+        let (state, bodies, probes) = (&self.state, &self.bodies, &self.probes);
+        save(
+            state,
+            bodies,
+            self.scene,
+            self.fingerprint,
+            probes,
+            &mut self.progress,
+            files,
+        )
+    }
+
+    /// How a run ends that does not come to its end.
+    fn ended_early(&mut self, by: &'static str, problem: Diagnostic) -> Ended {
+        let problem = Some(with_checkpoint(problem, self.files.as_ref()));
+        let balance = balance(&mut self.state);
+        Ended {
+            by,
+            balance,
+            problem,
+        }
+    }
+}
+
+/// Books the time since then, if any, of work that is done in few steps.
+fn book(state: &mut State, stage: &Stage, since: Option<Instant>) {
+    if let Some(since) = since {
+        state.clock.book_all(number_of(stage), since.elapsed());
+    }
+}

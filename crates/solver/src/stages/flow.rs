@@ -1,0 +1,51 @@
+//! Bodies that come through inlets and leave through outlets.
+
+use super::inlets::coming;
+use super::outlets::leaving;
+use super::population::{TopologyChange, apply_topology_change};
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::state::State;
+
+/// Inlets and outlets.
+pub const FLOW: Stage = Stage {
+    name: "inlets and outlets",
+    within: None,
+    need: |state, _| {
+        let (inlets, outlets) = (state.rules.inlets.len(), state.rules.outlets.len());
+        Need::of(
+            inlets + outlets > 0,
+            || format!("{inlets} and {outlets}"),
+            "no body comes or goes",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Bodies come and go, between a kick and the drift after it. Returns how many inlets and outlets
+/// were looked at.
+pub fn let_bodies_come_and_go(state: &mut State) -> usize {
+    let leaving = leaving(state);
+    let coming = coming(state);
+    if !(leaving.is_empty() && coming.is_empty()) {
+        let changes = TopologyChange {
+            coming,
+            leaving,
+            ..TopologyChange::default()
+        };
+        let renumbering = apply_topology_change(state, changes);
+        state.events.renumberings.push(renumbering);
+    }
+    state.rules.inlets.len() + state.rules.outlets.len()
+}
+
+/// Counts the bonds that are there, and those that are left out because their bodies are clumps.
+pub fn count_bond_steps(state: &mut State) -> usize {
+    if !state.rules.are_none() {
+        let clumps = state.clumps.all.iter();
+        let left_out = clumps.map(|clump| state.clumps.template(clump).bonds.len() as u64);
+        state.rules.bond_steps[1] += left_out.sum::<u64>();
+        state.rules.bond_steps[0] += state.bonds.len() as u64;
+    }
+    0
+}

@@ -1,0 +1,195 @@
+//! Bodies that come through inlets.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::physics::random::uniform;
+use crate::state::State;
+use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::events::PopulationEvent;
+use crate::state::rules::{Feed, Inlet};
+use crate::state::walls::Wall;
+
+/// Places looked at for a body in one step.
+const TRIES: u32 = 10;
+/// Steps after which a place is looked for again.
+const WAIT: u64 = 50;
+
+/// Bodies that come through inlets in this step; books what they bring.
+pub(super) fn coming(state: &mut State) -> Vec<Clump> {
+    let mut coming: Vec<Clump> = Vec::new();
+    let asks =
+        |inlet: &Inlet| state.steps >= inlet.progress.next_try && is_due(inlet, state.time_s);
+    if !state.rules.inlets.iter().any(asks) {
+        return coming;
+    }
+    let mut inlets = std::mem::take(&mut state.rules.inlets);
+    let mut next_cluster = state
+        .clusters
+        .as_ref()
+        .map_or(0, |c| c.history.len() as u32);
+    for (n, inlet) in inlets.iter_mut().enumerate() {
+        while is_due(inlet, state.time_s) && state.steps >= inlet.progress.next_try {
+            let Some(clump) = next_body(n, inlet, state, &coming) else {
+                if inlet.progress.tries <= TRIES {
+                    inlet.progress.delayed += 1;
+                }
+                inlet.progress.next_try = state.steps + WAIT;
+                break;
+            };
+            let template = state.clumps.template(&clump);
+            let now = Clump {
+                velocity_m_s: inlet.velocity_m_s,
+                ..clump
+            };
+            state.ledger.bring(
+                1.0,
+                [template.mass_kg, now.kinetic_j(template)],
+                [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
+                state.gravity_m_s2,
+            );
+            inlet.progress.bodies += 1;
+            inlet.progress.mass_kg += template.mass_kg;
+            inlet.progress.tries = 0;
+            state.rules.instances += 1;
+            state.events.population.push(PopulationEvent::Came {
+                cluster: next_cluster,
+                body: template.body.clone(),
+                inlet: inlet.name.clone(),
+                place_m: clump.place_m,
+            });
+            next_cluster += 1;
+            coming.push(clump);
+        }
+    }
+    state.rules.inlets = inlets;
+    coming
+}
+
+/// What gravity adds to a velocity from the moment of the places to the half step after it, m/s.
+fn half_kick(state: &State) -> Vector3<f64> {
+    Vector3::from(state.gravity_m_s2) * (0.5 * state.time_step_s)
+}
+
+/// Whether an inlet owes a body.
+fn is_due(inlet: &Inlet, time_s: f64) -> bool {
+    let [start_s, end_s] = inlet.between_s;
+    if inlet.progress.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
+        return false;
+    }
+    let since_s = time_s - start_s;
+    match inlet.feed {
+        Feed::Number(per_s) => since_s * per_s >= f64::from(inlet.progress.bodies),
+        Feed::Mass(kg_s) => since_s * kg_s >= inlet.progress.mass_kg,
+    }
+}
+
+/// The next body of an inlet, where there is place for it: a random place of the region at which the sphere around it touches no sphere of another body, and
+/// none of its spheres a wall.
+fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
+    let seed = state.rules.seed;
+    let number = u64::from(inlet.progress.bodies);
+    let random = |of: u64, attempt: u32| uniform(seed, &[n as u64, number, of, u64::from(attempt)]);
+    let which = {
+        let share = random(0, 0);
+        let mut sum = 0.0;
+        let chosen = inlet.templates.iter().find(|(_, part)| {
+            sum += part;
+            share < sum
+        });
+        chosen.or(inlet.templates.last())?.0
+    };
+    let template = &state.clumps.templates[which as usize];
+    let region = &state.rules.regions[inlet.region];
+    let reach_m = template.reach_m * template.scale.max(1.0);
+    for _ in 0..TRIES {
+        inlet.progress.tries += 1;
+        let attempt = inlet.progress.tries;
+        let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
+            continue;
+        };
+        if is_taken(place_m, reach_m, state, coming) {
+            continue;
+        }
+        let as_file = if inlet.random_orientation {
+            any_rotation([4, 5, 6].map(|of| random(of, attempt)))
+        } else {
+            rotation(state.rules.starts[which as usize].turned)
+        };
+        let turned = numbers(&(as_file * rotation(template.axes)));
+        let velocity = Vector3::from(inlet.velocity_m_s) + half_kick(state);
+        let clump = Clump {
+            template: which,
+            instance: state.rules.instances + 1,
+            place_m,
+            turned,
+            velocity_m_s: velocity.into(),
+            angular_momentum: angular_momentum(template, turned, inlet.spin_rad_s),
+            ..Clump::default()
+        };
+        if !state
+            .walls
+            .iter()
+            .any(|wall| is_in_wall(&clump, template, wall))
+        {
+            return Some(clump);
+        }
+    }
+    None
+}
+
+/// Whether a sphere of a clump touches a wall.
+fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
+    let reach_m = template.reach_m * template.scale.max(1.0);
+    if !wall.bounds_in_space().is_near(&clump.place_m, reach_m) {
+        return false;
+    }
+    let mut touches = Vec::new();
+    template.outer.iter().any(|&sphere| {
+        let pose = template.pose(sphere as usize, clump);
+        let centre = wall.frame.to_wall(pose.place().into());
+        let radius_m = template.scale * pose.radius_m();
+        wall.shape.touches(centre, radius_m, &mut touches);
+        touches.iter().any(|touch| touch.distance_m < radius_m)
+    })
+}
+
+/// Angular momentum of a clump that is turned so and spins so, kg m2/s.
+pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64; 3]) -> [f64; 3] {
+    let turned = rotation(turned);
+    let spin = turned.inverse() * Vector3::from(spin_rad_s);
+    let own = spin.component_mul(&Vector3::from(template.moments_kg_m2));
+    (turned * own).into()
+}
+
+/// A rotation, uniform over all, from three numbers in (0, 1) (Shoemake 1992).
+fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
+    let turn = std::f64::consts::TAU;
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    let ((sv, cv), (sw, cw)) = ((turn * v).sin_cos(), (turn * w).sin_cos());
+    rotation([a * sv, a * cv, b * sw, b * cw])
+}
+
+fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) -> bool {
+    let place = Vector3::from(place_m);
+    let near = |other: Vector3<f64>, reach: f64| {
+        (other - place).norm_squared() < (reach_m + reach).powi(2)
+    };
+    let around = |clump: &Clump| {
+        let template = state.clumps.template(clump);
+        let reach = template.reach_m * template.scale.max(1.0);
+        near(clump.place_m.into(), reach)
+    };
+    // Those in the middle of a clump are not in the scene.
+    let in_clump = |clump: &Clump| {
+        let template = state.clumps.template(clump);
+        let touches = |sphere: usize| {
+            let pose = template.pose(sphere, clump);
+            near(pose.place(), template.scale * pose.radius_m())
+        };
+        around(clump) && (0..template.spheres.len()).any(touches)
+    };
+    let mut free = state.particles.poses[..state.particles.free].iter();
+    free.any(|pose| near(pose.place(), pose.radius_m()))
+        || state.clumps.all.iter().any(in_clump)
+        || coming.iter().any(around)
+}
