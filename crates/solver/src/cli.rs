@@ -28,8 +28,8 @@ use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Unfinished;
 use crate::plan::plan;
+use crate::run::snapshot::Snapshot;
 use crate::run::{Finished, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
-use crate::snapshot::Snapshot;
 
 /// Runs scenes with bonded bodies.
 #[derive(Debug, Parser)]

@@ -2,7 +2,7 @@
 //! written down or checked is timed always; and what a stage does is counted, so that it can be
 //! shown that a stage that a scene does not need does nothing.
 //!
-//! Stages are known by their numbers in [`crate::step::stages`].
+//! Stages are known by their numbers in the table of the step.
 
 use std::time::{Duration, Instant};
 

@@ -6,7 +6,5 @@ pub mod crack;
 pub mod evaluate;
 pub mod page;
 pub mod record;
-pub mod setup;
 mod text;
-pub mod theory;
 pub mod watch;

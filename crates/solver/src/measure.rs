@@ -14,11 +14,12 @@ use serde::Serialize;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::plan::Plan;
-use crate::plan::bodies::PlacedBody;
+use crate::plan::measures::FEWEST_IN_HEAP;
 use crate::stages::clumps::synchronous;
 use crate::stages::ledger::Balance;
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments;
 use crate::state::events::Renumbering;
 use crate::state::watches::{Seen, Watch, Watched};
@@ -26,7 +27,6 @@ use crate::state::watches::{Seen, Watch, Watched};
 use self::members::{Members, wall_number};
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
-pub use self::heap::FEWEST as FEWEST_IN_HEAP;
 pub use crate::state::watches::History;
 
 /// A measure and the particles that it is of.

@@ -1,5 +1,6 @@
 //! What a run tells: frames, pictures, time series, events, fragments, plots, and the summary at its end.
 
+pub mod equilibrium;
 pub mod fragments;
 pub mod frames;
 pub mod pictures;

@@ -4,14 +4,17 @@ pub mod bodies;
 mod clumps;
 mod contacts;
 mod forecast;
+pub mod held;
 mod initial;
 pub mod inputs;
 pub mod masses;
-mod measures;
+pub mod measures;
 mod outputs;
 mod rules;
 pub mod sets;
 mod stages;
+pub mod test_setup;
+pub mod test_theory;
 pub mod time_step;
 mod walls;
 
@@ -22,34 +25,36 @@ use dem_io::body::mass::BodyMass;
 use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
 
-use crate::laboratory::setup::{Setup, setup};
 use crate::stages::ledger::opened;
-use crate::stages::population::{TopologyChange, apply_topology_change};
+use crate::stages::population::apply_topology_change;
 use crate::state::State;
 use crate::state::clusters::{Clusters, Triggers};
+use crate::state::events::TopologyChange;
 use crate::state::loads::SetLoad;
 use crate::state::particles::Wrench;
 use crate::state::sleep::Sleep;
 use crate::state::supports::Held;
 use crate::state::supports::SetSupport;
-use crate::statics::held::refuse_loose;
 
-use self::bodies::{PlacedBody, place_bodies};
+use self::bodies::place_bodies;
 use self::clumps::{
     ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of, unused_bonds,
 };
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::forecast::forecast;
 pub use self::forecast::{Forecast, ToCome};
+use self::held::refuse_loose;
 use self::initial::start;
 use self::inputs::Inputs;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
-use self::sets::resolve_sets;
+use self::sets::{held_freedoms, particles_of, resolve_sets};
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
+use self::test_setup::{Setup, setup};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
+use crate::state::bodies::PlacedBody;
 
 /// Particles and bonds that are worth a thread of their own.
 const WORTH_A_THREAD: usize = 5000;
@@ -320,23 +325,4 @@ fn loads(
         });
     }
     Ok(loads)
-}
-
-/// Which freedoms of which particles these supports hold.
-fn held_freedoms<'a>(supports: impl Iterator<Item = &'a SetSupport>) -> BTreeMap<u32, [bool; 6]> {
-    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
-    for support in supports {
-        for one in &support.held {
-            let entry = held.entry(one.particle).or_default();
-            for (held, hold) in entry.iter_mut().zip(&support.holds) {
-                *held |= hold.is_some();
-            }
-        }
-    }
-    held
-}
-
-/// The particles of a set that the scene is known to have.
-fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
-    sets.get(name).map_or(&[], Vec::as_slice)
 }

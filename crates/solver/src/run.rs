@@ -8,50 +8,27 @@ mod finish;
 mod fragments;
 mod limits;
 mod observe;
+mod outcome;
 mod pictures;
 mod progress;
+mod schedule;
 mod seen;
+mod settings;
+pub mod snapshot;
+pub mod statics;
 
-use std::sync::atomic::AtomicBool;
-
-use dem_io::results::ResultsFolder;
+use dem_io::Result;
 use dem_io::scene::{Integrator, Scene};
-use dem_io::{Diagnostic, Result};
 
-use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
-use crate::snapshot::Snapshot;
 use crate::step::{advance, interact};
 
 use self::begin::Run;
 pub use self::finish::{Finished, finish};
+pub use self::outcome::Outcome;
 pub use self::progress::Progress;
-
-/// How a run is told to go.
-#[derive(Debug)]
-pub struct RunSettings<'a> {
-    /// Where results go. None: nowhere.
-    pub folder: Option<&'a ResultsFolder>,
-    /// Where to go on from. None: from the start.
-    pub resume: Option<Snapshot>,
-    /// Threads, as said in the summary.
-    pub threads: usize,
-    /// Set when the run is to stop.
-    pub interrupted: &'a AtomicBool,
-    /// What is known of the scene's laboratory test, for which it has been arranged. None: it is
-    /// not evaluated.
-    pub test: Option<TestSettings>,
-}
-
-/// How a run ended.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// What came of it, as far as it went.
-    pub summary: Summary,
-    /// Why it did not come to its end. None: it did.
-    pub problem: Option<Diagnostic>,
-}
+pub use self::settings::RunSettings;
 
 /// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is
 /// called now and then with the fraction of the end time reached, in 0..1.
@@ -79,7 +56,7 @@ pub fn run_as_far_as_it_goes(
     tell: &dyn Fn(f64),
 ) -> Result<Outcome> {
     if scene.run.integrator == Integrator::Static {
-        let summary = crate::statics::run(plan, scene, &settings, tell)?;
+        let summary = crate::run::statics::run(plan, scene, &settings, tell)?;
         return Ok(Outcome {
             summary,
             problem: None,

@@ -1,5 +1,6 @@
 //! What moves and what joins it, as plain arrays; and all that a step needs besides.
 
+pub mod bodies;
 pub mod bonds;
 pub mod clumps;
 pub mod clusters;

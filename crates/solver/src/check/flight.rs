@@ -11,8 +11,8 @@ use dem_io::scene::{Scene, WallMotion};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::geometry::Shape;
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Clump;
 use crate::state::events::REMOVED;
 use crate::state::walls::Wall;

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use std::ops::Range;
 
 use crate::check::linear::overlap_at_impact;
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::events::REMOVED;
 

@@ -3,12 +3,13 @@
 use dem_io::{Diagnostic, Result};
 
 use crate::physics::bond::pair::frequencies;
-use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::stages::contacts::contact_energy_j;
 use crate::stages::ledger::Balance;
 use crate::stages::loads::loads_power_w;
 use crate::stages::totals::{elastic_energy, kinetic_energy};
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
+use crate::state::bodies::bond_of_file;
 
 /// Energy that may appear above the limit, over what was put in: there it is a local mode that grows until it saturates, small against a large body.
 const BEYOND_LIMIT: f64 = 1e-4;

@@ -14,7 +14,7 @@ use dem_io::units::significant;
 use dem_io::{Diagnostic, Result, read_scene};
 use serde_json::Value;
 
-use crate::snapshot::Snapshot;
+use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
 pub(super) struct FragmentArguments {

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::check::size_text;
 use crate::plan::Plan;
 use crate::plan::masses;
-use crate::statics::Outlook;
+use crate::run::statics::Outlook;
 
 /// Keys and tables that mean nothing to such a scene.
 const UNUSED: &str = "run.rest, run.time_step, run.safety, run.adaptive, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";

@@ -18,16 +18,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::interrupt::Interrupt;
-use crate::sweep::collect::{Outcome, outcome};
+use crate::sweep::collect::outcome;
 use crate::sweep::curves;
 use crate::sweep::expand::{MOST_UNASKED, Run, runs};
 use crate::sweep::folder::{Earlier, SweepFolder};
 use crate::sweep::jobs::{
     Job, arguments, further_jobs, jobs, refuse_unlistable, scene_arguments, shell_line, work,
 };
+use crate::sweep::outcome::Outcome;
 use crate::sweep::page::page;
 use crate::sweep::plot::svg;
-use crate::sweep::table::{Row, SweepTable};
+use crate::sweep::rows::{Row, SweepTable};
 use crate::sweep::text::csv;
 use crate::sweep::want::{Want, fastest};
 

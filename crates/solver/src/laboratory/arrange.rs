@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use dem_io::scene::{Factor, Hold, Scene, Support, Test, TestKind, WallMotion};
 use dem_io::{Body, Diagnostic, Result};
 
-use super::theory::ON_PINS;
 use crate::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;
+use crate::plan::test_theory::ON_PINS;
 use crate::state::State;
 
 /// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets a support that moves, the run its end. A scene without a test stays

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use dem_io::results::plots::BEGIN;
 
-use super::setup::{Setup, Specimen};
 use crate::laboratory::evaluate::Crack;
+use crate::plan::test_setup::{Setup, Specimen};
 
 /// Width of the picture, px.
 const WIDTH: f64 = 640.0;

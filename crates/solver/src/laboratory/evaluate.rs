@@ -4,9 +4,9 @@ use dem_io::scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
 use super::record::{Record, Row};
-use super::setup::{Setup, Specimen};
-use super::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 use crate::physics::bond::failure::Cause;
+use crate::plan::test_setup::{Setup, Specimen};
+use crate::plan::test_theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 
 /// Shares of the largest load between which the stiffness is the slope of the load: below it pins settle into the surface, above it bonds break.
 const SLOPE: [f64; 2] = [0.2, 0.6];

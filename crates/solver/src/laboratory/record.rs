@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::setup::Setup;
 use crate::physics::bond::failure::Cause;
+use crate::plan::test_setup::Setup;
 use crate::state::State;
 
 /// Intervals of a test's whole stroke over which forces are averaged.

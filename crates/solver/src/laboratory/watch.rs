@@ -9,8 +9,8 @@ use super::crack::{CrackPicture, Sphere};
 use super::evaluate::{TestInput, TestResult, evaluate};
 use super::page::{TestFiles, write_test};
 use super::record::{Holders, Loading, Record};
-use super::setup::Setup;
 use crate::plan::Plan;
+use crate::plan::test_setup::Setup;
 use crate::state::State;
 
 /// What a run is told of a test.

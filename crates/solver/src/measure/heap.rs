@@ -9,10 +9,8 @@
 use nalgebra::Vector3;
 
 use super::members::Members;
+use crate::plan::measures::FEWEST_IN_HEAP;
 use crate::state::State;
-
-/// Fewest particles of which an angle of repose can be told.
-pub const FEWEST: usize = 50;
 
 /// Farther from the axis than this times the radius of the cone lies what has rolled away.
 const ROLLED_AWAY: f64 = 1.25;
@@ -42,10 +40,10 @@ struct Moments {
 
 /// Slope, degrees, of the cone whose mass is spread as far up and as far out as that of the
 /// members; 0 where they are flat on top. Few that have rolled far away do not change it. No number
-/// for fewer than [`FEWEST`]. `up`: unit vector.
+/// for fewer than [`FEWEST_IN_HEAP`]. `up`: unit vector.
 pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<f64>) -> f64 {
     let mut heap = spheres(members, state, &up);
-    if heap.len() < FEWEST {
+    if heap.len() < FEWEST_IN_HEAP {
         return f64::NAN;
     }
     loop {

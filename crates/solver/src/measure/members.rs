@@ -2,8 +2,8 @@
 
 use dem_io::scene::Scene;
 
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::clumps::{Clump, Template};
 use crate::state::events::REMOVED;
 use crate::state::events::Renumbering;

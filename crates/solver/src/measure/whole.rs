@@ -11,9 +11,11 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::members::Members;
 use crate::physics::rigid::rotation_vector;
-use crate::plan::bodies::PlacedBody;
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation;
 use crate::state::State;
-use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::bodies::PlacedBody;
+use crate::state::clumps::{Clump, Template};
 use crate::state::events::REMOVED;
 use crate::state::particles::Motion;
 

@@ -9,9 +9,9 @@ use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
-use crate::plan::bodies::PlacedBody;
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::events::REMOVED;
 
 /// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after them the spheres of clumps.

@@ -9,6 +9,7 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
+use super::equilibrium::EquilibriumSummary;
 use super::fragments::FragmentSummary;
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
@@ -19,7 +20,6 @@ use crate::stages::ledger::{Balance, over};
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;
-use crate::statics::EquilibriumSummary;
 
 /// Program and version.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
@@ -273,6 +273,47 @@ impl PopulationSummary {
 }
 
 impl Summary {
+    /// The text of a summary that is of an equilibrium.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    fn write_equilibrium(
+        &self,
+        found: &EquilibriumSummary,
+        f: &mut fmt::Formatter<'_>,
+    ) -> fmt::Result {
+        let results = self.results.as_ref();
+        writeln!(
+            f,
+            "{}: equilibrium at {} s in {} s{}",
+            visible(&self.scene),
+            significant(self.simulated_s, 6),
+            significant(self.wall_s, 3),
+            results.map_or(String::new(), |folder| format!(" -> {}", visible(folder))),
+        )?;
+        measure_lines(&self.measures, f)?;
+        let steps = |count: usize, what: &str| {
+            format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+        };
+        writeln!(
+            f,
+            "equilibrium  in {}{}, residual {} of the largest bond force",
+            steps(found.newton_steps, "Newton iteration"),
+            match found.load_steps {
+                1 => String::new(),
+                many => format!(" and {many} load steps"),
+            },
+            significant(found.residual, 2),
+        )?;
+        writeln!(
+            f,
+            "solved       {} unknowns; {} freedoms held",
+            found.unknowns, found.held
+        )?;
+        self.write_masses(f)?;
+        self.write_verdict(f)
+    }
+
     /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks
     /// of.
     pub(crate) fn judge(&mut self, warnings: Vec<String>) {
@@ -352,7 +393,7 @@ impl Summary {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(equilibrium) = &self.equilibrium {
-            return equilibrium.write(self, f);
+            return self.write_equilibrium(equilibrium, f);
         }
         let results = self
             .results

@@ -4,6 +4,8 @@
 //!
 //! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into space.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 use super::rigid::turn;
 
 /// Part of the step at each end for which the error of second order is least (McLachlan 1995).
@@ -95,4 +97,14 @@ fn rotated(&[x, y, z, w]: &[f64; 4], v: [f64; 3]) -> [f64; 3] {
     let twice = cross(u, v).map(|c| 2.0 * c);
     let more = cross(u, twice);
     [0, 1, 2].map(|k| v[k] + w * twice[k] + more[k])
+}
+
+/// A rotation from its numbers x, y, z, w.
+pub fn rotation([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+}
+
+/// The numbers x, y, z, w of a rotation.
+pub fn numbers(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+    [rotation.i, rotation.j, rotation.k, rotation.w]
 }

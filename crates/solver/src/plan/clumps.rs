@@ -9,11 +9,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation;
 use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{HIDDEN, SHARE_OF_SMALLEST, outer_layer};
 use crate::stages::inlets::angular_momentum;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Scatter, Template, numbers, reach_m, rotation, sub_spheres};
+use crate::state::clumps::{Clump, Scatter, Template, reach_m, sub_spheres};
 use crate::state::particles::Particles;
 
 /// Names of the bodies that are templates: those that start as clumps or come through inlets.

@@ -3,13 +3,13 @@
 use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
 use dem_io::{Diagnostic, Result};
 
-use super::bodies::{PlacedBody, called};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
+use crate::state::bodies::{PlacedBody, called};
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
 

@@ -6,10 +6,10 @@ use dem_io::scene::{FeedRate, Scene};
 use dem_io::units::significant;
 use serde::Serialize;
 
-use super::bodies::PlacedBody;
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
 use crate::check::laws::foreseen;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::step::all_bytes;
 
 /// Bodies of which it is said what they meet first; of others it is not looked at.

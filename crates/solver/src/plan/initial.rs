@@ -6,9 +6,10 @@ use dem_io::scene::{Initial, Scene};
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 
-use super::bodies::{PlacedBody, called, check_place};
-use super::{held_freedoms, particles_of};
+use super::bodies::check_place;
+use super::sets::{held_freedoms, particles_of};
 use crate::state::State;
+use crate::state::bodies::{PlacedBody, called};
 
 /// What moves along and about the axes is called so in messages.
 const MOTIONS: [&str; 6] = [

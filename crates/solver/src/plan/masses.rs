@@ -10,9 +10,12 @@ use dem_io::scene::{BodySource, Scene, WholeMass};
 use dem_io::units::significant;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::plan::bodies::{PlacedBody, material_density_kg_m3};
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation;
+use crate::plan::bodies::material_density_kg_m3;
 use crate::shape::inertia::of_spheres;
-use crate::state::clumps::{Template, numbers, rotation};
+use crate::state::bodies::PlacedBody;
+use crate::state::clumps::Template;
 use crate::state::particles::Particles;
 
 /// A difference that is worth a note, percent.

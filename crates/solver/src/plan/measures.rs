@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use dem_io::scene::{Measure, Quantity, Scene};
 use dem_io::{Diagnostic, Result};
 
-use crate::measure::FEWEST_IN_HEAP;
 use crate::state::State;
+
+/// Fewest particles of which an angle of repose can be told.
+pub const FEWEST_IN_HEAP: usize = 50;
 
 /// Refuses a force or a contact where nothing can touch, a contact between two that share
 /// particles, and a slope of a heap of few particles.

@@ -9,8 +9,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::walls::surface_of;
 use crate::geometry::{Bounds, Mesh};
+use crate::physics::rotation::numbers;
 use crate::state::State;
-use crate::state::clumps::{Template, numbers};
+use crate::state::clumps::Template;
 use crate::state::regions::Region;
 use crate::state::rules::{
     Feed, Inlet, InletProgress, Outlet, OutletTotals, Restore, Rules, Start, Trigger,

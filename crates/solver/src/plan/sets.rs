@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use dem_io::scene::{Pick, Scene};
 use dem_io::{Diagnostic, Result};
 
-use super::bodies::PlacedBody;
+use crate::state::bodies::PlacedBody;
 use crate::state::particles::Particles;
+use crate::state::supports::SetSupport;
 
 /// Particles (numbers in the state, rising) of every set, every body and `all`.
 ///
@@ -105,4 +106,25 @@ fn extent(particles: &Particles) -> String {
         format!("({x}, {y}, {z})")
     };
     format!("{} to {}", show(low), show(high))
+}
+
+/// Which freedoms of which particles these supports hold.
+pub(super) fn held_freedoms<'a>(
+    supports: impl Iterator<Item = &'a SetSupport>,
+) -> BTreeMap<u32, [bool; 6]> {
+    let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
+    for support in supports {
+        for one in &support.held {
+            let entry = held.entry(one.particle).or_default();
+            for (held, hold) in entry.iter_mut().zip(&support.holds) {
+                *held |= hold.is_some();
+            }
+        }
+    }
+    held
+}
+
+/// The particles of a set that the scene is known to have.
+pub(super) fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
+    sets.get(name).map_or(&[], Vec::as_slice)
 }

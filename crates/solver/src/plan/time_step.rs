@@ -8,13 +8,14 @@ use nalgebra::Vector3;
 use crate::check::limit::{Limit, limit, safe_step};
 use crate::check::linear::{Matters, at_impact, contact_rates, largest_contact_rate_1_s2};
 use crate::geometry::{Bounds, Shape};
-use crate::plan::bodies::PlacedBody;
-use crate::stages::population::{TopologyChange, apply_topology_change};
+use crate::stages::population::apply_topology_change;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Clump;
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{Contacts, Law};
+use crate::state::events::TopologyChange;
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 

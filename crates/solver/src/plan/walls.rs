@@ -7,12 +7,12 @@ use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 
-use super::bodies::{PlacedBody, called};
 use super::contacts::{Kinds, ROUNDING};
 use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
+use crate::state::bodies::{PlacedBody, called};
 use crate::state::contacts::ContactHistory;
 use crate::state::walls::{Wall, WallContact};
 

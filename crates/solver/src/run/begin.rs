@@ -7,23 +7,24 @@ use dem_io::Result;
 use dem_io::body::mass::BodyMass;
 use dem_io::scene::Scene;
 
-use super::RunSettings;
 use super::events::{change_step, new_step};
 use super::files::Files;
 use super::limits::Limits;
 use super::pictures::{Order, Pictures};
-use super::progress::{OutputSchedule, Progress};
+use super::progress::Progress;
+use super::schedule::OutputSchedule;
+use super::settings::RunSettings;
 use crate::check::watchdog::Watchdog;
 use crate::laboratory::watch::Watch;
 use crate::machine::processor_time_s;
 use crate::measure::{Probe, place_watches, probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
-use crate::plan::bodies::PlacedBody;
 use crate::plan::inputs::Inputs;
 use crate::plan::{Plan, PlannedStage};
-use crate::snapshot::fingerprint;
+use crate::run::snapshot::fingerprint;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 
 /// A run: what is stepped, and what watches it.
 pub(super) struct Run<'a> {

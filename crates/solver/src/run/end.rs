@@ -3,11 +3,11 @@
 use dem_io::Result;
 use dem_io::results::write_json;
 
-use super::Outcome;
 use super::begin::Run;
 use super::events::write_sleep;
 use super::finish::End;
 use super::observe::Ended;
+use super::outcome::Outcome;
 use crate::laboratory::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
 use crate::measure::Probe;

@@ -5,9 +5,10 @@ use dem_io::results::Event;
 
 use super::files::Files;
 use crate::output::fragments::split_text;
-use crate::plan::bodies::{PlacedBody, bond_of_file};
 use crate::plan::time_step::StepChoice;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
+use crate::state::bodies::bond_of_file;
 use crate::state::events::PopulationEvent;
 use crate::state::events::STARTS_BONDED;
 

@@ -9,9 +9,9 @@ use super::pictures::Pictures;
 use super::progress::Progress;
 use crate::measure::Probe;
 use crate::output::frames::FrameOrder;
-use crate::plan::bodies::PlacedBody;
-use crate::snapshot::Snapshot;
+use crate::run::snapshot::Snapshot;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 
 /// Files that grow during a run.
 pub(super) struct Files<'a> {

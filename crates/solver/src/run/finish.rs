@@ -7,9 +7,9 @@ use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use super::RunSettings;
 use super::pictures::{Order, Pictures};
-use super::progress::OutputSchedule;
+use super::schedule::OutputSchedule;
+use super::settings::RunSettings;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
 use crate::output::fragments::{write_fragment_plots, write_tree};

@@ -8,11 +8,12 @@ use super::files::Files;
 use super::progress::Progress;
 use crate::check::limit::{Bound, bound_near, limit};
 use crate::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
-use crate::plan::bodies::{PlacedBody, called};
 use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
 use crate::stages::totals::kinetic_energy;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
+use crate::state::bodies::called;
 use crate::state::particles::Pose;
 
 /// Steps between two looks at the strains of the bonds.

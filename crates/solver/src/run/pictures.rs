@@ -5,14 +5,14 @@ use dem_io::results::{PictureFiles, ResultsFolder};
 use dem_io::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use super::progress::{due, first_after, next};
+use super::schedule::{due, first_after, next};
 use crate::output::pictures::film::{
     COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
 };
 use crate::output::pictures::png_file::{Compression, read_png, to_png};
 use crate::output::pictures::{Image, View};
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 
 /// What a checkpoint keeps of the pictures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

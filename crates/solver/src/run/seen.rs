@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
-use crate::plan::bodies::{PlacedBody, called};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
+use crate::state::bodies::called;
 use crate::state::clusters::fragments::Fragment;
 use crate::state::events::PopulationEvent;
 use crate::state::events::REMOVED;

@@ -6,9 +6,11 @@ use super::pieces::clusters_bytes;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::rigid::rotation_vector;
 use crate::physics::rotation;
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation as rotation_of;
 use crate::state::State;
 use crate::state::clumps::Template;
-use crate::state::clumps::{Clump, Clumps, numbers, rotation as rotation_of};
+use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Particles, Wrench};
 
 /// Rigid clumps.

@@ -1,6 +1,7 @@
 //! Forces of contacts between particles.
 
 mod close;
+mod input;
 mod stored;
 
 pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n};
@@ -8,6 +9,7 @@ pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pa
 pub(in crate::stages) use self::stored::{stored_energy_j, stored_force_n};
 
 use self::close::{close_m, look};
+use self::input::StepInput;
 use super::bonds::any_bond;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
@@ -25,7 +27,7 @@ use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts, Law, Rolling};
-use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::particles::{Particles, Wrench};
 
 /// Contacts of particles.
 pub const CONTACTS: Stage = Stage {
@@ -210,16 +212,6 @@ pub fn list_contacts(
     );
     contacts.divide(particles.len(), contacts.wanted_partitions.max(1));
     contacts.skin_left_m = 0.5 * skin_m;
-}
-
-/// What all partitions look at.
-struct StepInput<'a> {
-    contacts: &'a Contacts,
-    poses: &'a [Pose],
-    motions: &'a [Motion],
-    /// Whether all pairs are looked at, not only those that were close.
-    checks_all: bool,
-    dt: f64,
 }
 
 /// What a partition writes: histories of its own contacts, the rest of its own particles.

@@ -2,9 +2,10 @@
 
 use super::inlets::coming;
 use super::outlets::leaving;
-use super::population::{TopologyChange, apply_topology_change};
+use super::population::apply_topology_change;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
+use crate::state::events::TopologyChange;
 
 /// Inlets and outlets.
 pub const FLOW: Stage = Stage {

@@ -3,8 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::random::uniform;
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation;
 use crate::state::State;
-use crate::state::clumps::{Clump, Template, numbers, rotation};
+use crate::state::clumps::{Clump, Template};
 use crate::state::events::PopulationEvent;
 use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;

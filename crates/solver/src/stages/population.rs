@@ -13,23 +13,10 @@ use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
-use crate::state::events::{NewCluster, REMOVED, Renumbering};
+use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::partitions::divide;
 use crate::state::walls::Wall;
-
-/// What is to happen.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TopologyChange {
-    /// Clumps that become bonded clusters: numbers, rising.
-    pub to_clusters: Vec<usize>,
-    /// Clusters that become clumps: their numbers, rising, and the clumps.
-    pub to_clumps: Vec<(u32, Clump)>,
-    /// Clumps that come.
-    pub coming: Vec<Clump>,
-    /// Clusters that leave, be they clumps or not: their numbers, rising.
-    pub leaving: Vec<u32>,
-}
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.
 pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {

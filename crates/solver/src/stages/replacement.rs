@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::population::{TopologyChange, apply_topology_change};
+use super::population::apply_topology_change;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clumps::Clump;
+use crate::state::events::TopologyChange;
 use crate::state::events::{PopulationEvent, STARTS_BONDED};
 use crate::state::rules::Trigger;
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::population::{TopologyChange, apply_topology_change};
+use super::population::apply_topology_change;
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
@@ -18,6 +18,7 @@ use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
 use crate::state::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::state::events::PopulationEvent;
 use crate::state::events::Renumbering;
+use crate::state::events::TopologyChange;
 use crate::state::particles::Motion;
 
 /// Clusters are looked at once in so many steps.

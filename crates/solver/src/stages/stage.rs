@@ -1,5 +1,5 @@
 //! What a stage of the step says of itself. Each stands at the top of its own file; the order in
-//! which they are done stands in [`crate::step`].
+//! which they are done stands in `step.rs`.
 
 use dem_io::scene::Scene;
 

@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
 use super::particles::{Motion, Particles, Pose, Wrench};
 use crate::physics::rotation::{kinetic_j, spin_rad_s};
+use crate::physics::rotation::{numbers, rotation};
 use crate::shape::inertia::MassProperties;
 
 /// A sphere of a template.
@@ -133,16 +134,6 @@ pub struct Clumps {
     pub near: Vec<u32>,
     /// What their outer spheres are for, m: see [`crate::shape::outer_layer::outer_layer`].
     pub ball_m: f64,
-}
-
-/// A rotation from its numbers x, y, z, w.
-pub fn rotation([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
-    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
-}
-
-/// The numbers x, y, z, w of a rotation.
-pub fn numbers(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
-    [rotation.i, rotation.j, rotation.k, rotation.w]
 }
 
 impl Template {

@@ -168,3 +168,16 @@ pub struct Renumbering {
     /// Clusters that clumps have become.
     pub born: Vec<NewCluster>,
 }
+
+/// Bodies that are to come, leave and become others.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TopologyChange {
+    /// Clumps that become bonded clusters: numbers, rising.
+    pub to_clusters: Vec<usize>,
+    /// Clusters that become clumps: their numbers, rising, and the clumps.
+    pub to_clumps: Vec<(u32, Clump)>,
+    /// Clumps that come.
+    pub coming: Vec<Clump>,
+    /// Clusters that leave, be they clumps or not: their numbers, rising.
+    pub leaving: Vec<u32>,
+}

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::total::End;
 use crate::physics::contact::kinematics::ContactSphere;
 use crate::physics::number::Vec3;
-use crate::state::clumps::rotation;
+use crate::physics::rotation::rotation;
 
 /// Where a particle is and how it is turned. One cache line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -13,8 +13,8 @@ use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
 use serde_json::Value;
 
-use super::collect::Outcome;
 use super::expand::Run;
+use super::outcome::Outcome;
 
 /// Runs that are done more than once are repeated until so much time has been measured, s, or so often: short ones scatter most.
 const MEASURED_S: f64 = 0.5;

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use dem_io::scene::study::{MeasureOf, Reference, Study};
 use dem_io::units::significant;
 
-use super::collect::Done;
 use super::curves;
 use super::expand::{Run, group};
 use super::masses::{by_chance, distance};
+use super::outcome::Done;
 use super::reference::{Extrapolated, richardson};
-use super::table::{Judged, Row};
+use super::rows::{Judged, Row};
 
 /// Finds the references of one measure, and from them the errors.
 pub fn judge(

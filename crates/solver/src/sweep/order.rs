@@ -3,31 +3,13 @@
 use std::collections::BTreeMap;
 
 use dem_io::scene::study::{Reference, Study};
-use serde::Serialize;
 
 use super::expand::{Run, group};
 use super::reference::{observed_order, richardson};
-use super::table::Row;
+use super::rows::{Order, Row};
 
 /// Fewest runs for an order.
 const FEWEST: usize = 3;
-
-/// An observed order.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Order {
-    /// The measure.
-    pub measure: String,
-    /// The axis along which the size changes.
-    pub along: String,
-    /// What the runs have in common: the values of the other axes.
-    pub of: Vec<String>,
-    /// The order.
-    pub order: f64,
-    /// Number of runs from which it was found.
-    pub runs: usize,
-    /// "errors": the slope of error over size; "values": from Richardson extrapolation.
-    pub by: String,
-}
 
 /// Of each measure, along each axis with sizes. Errors below the uncertainty of their reference say nothing and are left out.
 pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {

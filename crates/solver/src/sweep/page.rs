@@ -7,7 +7,7 @@ use dem_io::units::significant;
 
 use super::curves;
 use super::plot::svg;
-use super::table::{Judged, Row, SweepTable};
+use super::rows::{Judged, Row, SweepTable};
 use super::text::front_of;
 
 /// Most runs in the table of all; the CSV has every one.

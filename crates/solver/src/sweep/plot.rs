@@ -7,8 +7,8 @@ use std::path::Path;
 
 use dem_io::text::for_page;
 
+use super::rows::{Row, SweepTable};
 use super::scale::{Scale, tick};
-use super::table::{Row, SweepTable};
 
 const WIDTH: f64 = 820.0;
 const LEFT: f64 = 78.0;

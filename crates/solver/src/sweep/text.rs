@@ -5,7 +5,7 @@ use std::fmt;
 use dem_io::text::visible;
 use dem_io::units::significant;
 
-use super::table::{Row, SweepTable};
+use super::rows::{Row, SweepTable};
 
 /// Most lines of a part that a person is told.
 const MOST_LINES: usize = 20;

@@ -3,7 +3,7 @@
 use dem_io::units::{NUMBER, quantity, significant};
 use dem_io::{Diagnostic, Result};
 
-use super::table::{Row, SweepTable};
+use super::rows::{Row, SweepTable};
 
 /// A wanted error.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,11 @@
 //! The same bits on any number of threads, and after any interruption.
 
 use dem_run::plan::Plan;
-use dem_run::plan::bodies::PlacedBody;
 use dem_run::run::Progress;
-use dem_run::snapshot::{Snapshot, fingerprint};
+use dem_run::run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
+use dem_run::state::bodies::PlacedBody;
 use dem_run::state::clumps::Clump;
 use dem_run::state::partitions::divide;
 

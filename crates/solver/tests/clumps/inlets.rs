@@ -1,7 +1,8 @@
 //! Bodies come as often, in such shares and so turned as the scene says, and where there is place.
 
+use dem_run::physics::rotation::rotation;
 use dem_run::state::State;
-use dem_run::state::clumps::{Clump, rotation};
+use dem_run::state::clumps::Clump;
 use dem_run::state::events::PopulationEvent;
 use nalgebra::Vector3;
 

@@ -28,9 +28,10 @@ use std::fmt::Write;
 
 use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
-use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
+use dem_run::state::bodies::PlacedBody;
+use dem_run::state::bodies::renumber;
 use dem_run::state::events::Events;
 use dem_run::state::events::PopulationEvent;
 use dem_run::state::particles::Particles;

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use dem_run::stages::population::{TopologyChange, apply_topology_change};
+use dem_run::stages::population::apply_topology_change;
 use dem_run::state::State;
 use dem_run::state::clumps::{Clump, Template};
+use dem_run::state::events::TopologyChange;
 use dem_run::step::step;
 
 use crate::{HEAD, MEETS, block, planned};

@@ -1,10 +1,11 @@
 //! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
 
-use dem_run::stages::population::{TopologyChange, apply_topology_change};
+use dem_run::stages::population::apply_topology_change;
 use dem_run::stages::restoring::restore_clumps;
 use dem_run::stages::totals::elastic_energy;
 use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
+use dem_run::state::events::TopologyChange;
 use dem_run::step::{exchange, interact, step};
 use nalgebra::Vector3;
 

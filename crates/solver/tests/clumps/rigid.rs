@@ -1,10 +1,11 @@
 //! Clumps that nothing acts on move as rigid bodies do.
 
+use dem_run::physics::rotation::rotation;
 use dem_run::physics::rotation::{drift, kinetic_j};
 use dem_run::stages::clumps::place_all;
 use dem_run::stages::ledger::balance;
 use dem_run::state::State;
-use dem_run::state::clumps::{Template, rotation};
+use dem_run::state::clumps::Template;
 use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 use serde_json::Value;

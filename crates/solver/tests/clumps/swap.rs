@@ -1,10 +1,11 @@
 //! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster has taken the place of a clump, and the path goes on.
 
+use dem_run::physics::rotation::numbers;
+use dem_run::physics::rotation::rotation;
 use dem_run::plan::Plan;
 use dem_run::shape::fit::best_rotation;
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
-use dem_run::state::clumps::{numbers, rotation};
 use dem_run::state::events::PopulationEvent;
 use dem_run::step::{drift, exchange, interact};
 use nalgebra::Vector3;

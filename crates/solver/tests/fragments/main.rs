@@ -22,8 +22,8 @@ use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
+use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
-use dem_run::snapshot::Snapshot;
 use dem_run::state::clusters::{Clusters, Triggers};
 use tempfile::TempDir;
 

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::{Existing, ResultsFolder};
-use dem_run::snapshot::Snapshot;
+use dem_run::run::snapshot::Snapshot;
 
 use crate::{burst, bursting, planned, run_into};
 

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use dem_io::scene::{BondKind, Test, TestKind};
 use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
-use dem_run::laboratory::setup::{Setup, Specimen};
-use dem_run::laboratory::theory::{Beam, KAPPA};
 use dem_run::physics::bond::failure::Cause;
+use dem_run::plan::test_setup::{Setup, Specimen};
+use dem_run::plan::test_theory::{Beam, KAPPA};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,

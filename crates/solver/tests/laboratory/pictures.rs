@@ -5,8 +5,8 @@ use dem_io::scene::TestKind;
 use dem_run::laboratory::crack::{CrackPicture, crack_svg};
 use dem_run::laboratory::evaluate::rows_of;
 use dem_run::laboratory::page::curve;
-use dem_run::laboratory::setup::Specimen;
-use dem_run::laboratory::theory::Beam;
+use dem_run::plan::test_setup::Specimen;
+use dem_run::plan::test_theory::Beam;
 
 use crate::evaluation::{PLACES, evaluated, record, setup, test};
 

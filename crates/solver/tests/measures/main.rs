@@ -16,11 +16,12 @@ use std::collections::BTreeMap;
 use dem_io::scene::{BodySource, Scene};
 use dem_io::{Body, Result, scene_from_text};
 use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
-use dem_run::plan::bodies::{PlacedBody, renumber};
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::clumps::place_all;
 use dem_run::stages::ledger::balance;
 use dem_run::state::State;
+use dem_run::state::bodies::PlacedBody;
+use dem_run::state::bodies::renumber;
 use dem_run::step::{drift, exchange, interact};
 
 pub(crate) fn scene(text: &str) -> Scene {

@@ -5,7 +5,7 @@ use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_run::run::Progress;
-use dem_run::snapshot::{Snapshot, fingerprint};
+use dem_run::run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;

@@ -2,7 +2,7 @@
 
 use dem_run::plan::Plan;
 use dem_run::run::Progress;
-use dem_run::snapshot::{Snapshot, fingerprint};
+use dem_run::run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
 use dem_run::state::partitions::divide;

@@ -21,8 +21,8 @@ use dem_io::scene::{BodySource, Scene, scene_from_text};
 use dem_io::{Body, Result};
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
+use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
-use dem_run::snapshot::Snapshot;
 use dem_run::state::State;
 use nalgebra::Vector3;
 

@@ -21,11 +21,11 @@ mod supports;
 
 use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::run::statics::{Equilibrium, come_to_rest, equilibrium};
 use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
-use dem_run::statics::{Equilibrium, come_to_rest, equilibrium};
 use nalgebra::Vector3;
 
 use crate::bars::{ELASTIC, body, spheres, steel};

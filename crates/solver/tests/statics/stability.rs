@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 
 use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::run::statics::{Cause, equilibrium};
 use dem_run::state::State;
-use dem_run::statics::{Cause, equilibrium};
 
 use crate::{END_S, assert_near, bar, fix, load, rest};
 

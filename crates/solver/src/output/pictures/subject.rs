@@ -4,8 +4,8 @@ use super::colours::{SINGLE, of_fragment};
 use super::render::Ball;
 use super::surface::{HalfSpace, Surface};
 use crate::geometry::Bounds;
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 

@@ -37,3 +37,8 @@ pub(crate) fn across(a: [f64; 3]) -> [f64; 3] {
 pub(crate) fn are_finite(a: [f64; 3]) -> bool {
     a.into_iter().all(f64::is_finite)
 }
+
+/// Of directions of light.
+pub(crate) fn dot_f32(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

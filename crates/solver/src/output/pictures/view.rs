@@ -7,8 +7,8 @@ use super::render::render;
 use super::subject::{balls, surfaces};
 use super::surface::Surface;
 use crate::geometry::Bounds;
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 
 /// Width and height of a picture, px.
 pub const SIZE_PX: [u32; 2] = [960, 540];

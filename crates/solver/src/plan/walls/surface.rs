@@ -39,7 +39,7 @@ impl Sizes {
 }
 
 /// The surface of a file that a scene names, in m.
-pub(in crate::plan) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
+pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
     let file = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| {
         Diagnostic::input(

@@ -1,6 +1,6 @@
 //! Which of the near pairs are close: only those are computed, until others may have come close.
 
-use super::StepInput;
+use super::input::StepInput;
 use crate::physics::number::Vec3;
 use crate::stages::blocks::fetch_soon;
 use crate::stages::lanes::{Lanes, MOST};

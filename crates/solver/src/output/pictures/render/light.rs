@@ -2,6 +2,7 @@
 //!
 //! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the wall begins, which is fainter and falls on walls only.
 
+use crate::output::pictures::vector::dot_f32 as dot;
 use rayon::prelude::*;
 
 use super::band::crossings;
@@ -387,10 +388,6 @@ impl Map {
 /// How fast depth changes along a surface that looks so much towards the light.
 fn steepness(facing: f32) -> f32 {
     ((1.0 - facing * facing).max(0.0).sqrt() / facing.max(0.05)).min(10.0)
-}
-
-pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn unit(a: [f32; 3]) -> [f32; 3] {

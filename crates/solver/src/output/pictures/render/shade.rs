@@ -1,7 +1,7 @@
 //! How bright a point of a surface is. Colours are proportional to light: the square of what is stored in a picture.
 
-use super::light::dot;
 use super::{Body, Face, Scene};
+use crate::output::pictures::vector::dot_f32 as dot;
 
 /// Light of the lamp and of the sky.
 const LAMP: f32 = 0.72;

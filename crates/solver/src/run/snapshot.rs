@@ -8,12 +8,12 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::progress::Progress;
 use crate::measure;
 use crate::physics::bond::failure::CauseCounts;
 use crate::physics::bond::incremental::History;
-use crate::plan::bodies::PlacedBody;
-use crate::run::Progress;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::ledger::EnergyLedger;
 use crate::state::particles::Motion;
 use crate::state::partitions::divide_anew;

@@ -5,7 +5,7 @@ use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::theory::Beam;
+use super::test_theory::Beam;
 use crate::state::State;
 
 /// Half the size of the part of a body whose way is measured, over its height.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use crate::plan::bodies::PlacedBody;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Template};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};

@@ -8,7 +8,6 @@
 
 pub mod factor;
 pub mod freedoms;
-pub mod held;
 pub mod matrix;
 pub mod moves;
 pub mod newton;
@@ -17,7 +16,6 @@ mod record;
 
 pub use newton::{Cause, Equilibrium, Unsolved, equilibrium};
 pub use outlook::Outlook;
-pub use record::EquilibriumSummary;
 
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -31,7 +29,7 @@ use crate::measure::{bond_utilisation, probes, read_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
-use crate::run::RunSettings;
+use crate::run::settings::RunSettings;
 use crate::stages::ledger::Balance;
 use crate::stages::totals::elastic_energy;
 use crate::state::State;
@@ -40,7 +38,7 @@ use crate::state::particles::Motion;
 use crate::check::laws::strain_warning;
 
 use self::newton::{loads, six};
-use self::record::AtRest;
+use self::record::{AtRest, equilibrium_summary};
 
 /// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
 ///
@@ -81,7 +79,7 @@ pub fn run(
     let balance = balance(&state, start_moments);
     let values = read_probes(&mut probes, &state, &balance);
     let beyond = (0..state.bonds.len()).filter(|at| bond_utilisation(&state, *at) >= 1.0);
-    let found = EquilibriumSummary::new(&found, beyond.count());
+    let found = equilibrium_summary(&found, beyond.count());
     let at_rest = AtRest {
         state: &state,
         scene,

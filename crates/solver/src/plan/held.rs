@@ -4,8 +4,9 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::{Matrix6, SymmetricEigen, Vector3, Vector6};
 
 use crate::disjoint::{find, join};
-use crate::plan::bodies::{PlacedBody, called};
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
+use crate::state::bodies::called;
 
 /// Smallest share of the best held rigid motion with which another counts as held: some 1e-6 in lengths.
 const HELD: f64 = 1e-12;
