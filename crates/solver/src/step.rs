@@ -16,7 +16,7 @@ use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
-use crate::stages::listing::{SEARCH, renew_lists};
+use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
 use crate::stages::motion::{
     GRAVITY, MOTION, PARTICLE_DAMPING, compute_particle_damping, count_falling, drift_particles,
@@ -28,7 +28,7 @@ use crate::stages::restoring::restore_clumps;
 use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
 use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
-use crate::stages::walls::{WALLS, advance_walls, compute_wall_contacts, plan_wall_motions};
+use crate::stages::walls::{WALLS, compute_wall_contacts, drift_walls, plan_wall_motions};
 use crate::stages::watching::{OUTPUT, watch};
 use crate::state::State;
 use crate::state::events::Events;
@@ -71,18 +71,19 @@ const INTERACT: [Part; 27] = [
 
 /// Second half, where velocities stand half a step later: bodies come, go and become others.
 const EXCHANGE: [Part; 4] = [
-    (&REPLACEMENT, count_bond_steps),
+    (&LEDGER, count_bond_steps),
     (&FLOW, let_bodies_come_and_go),
     (&REPLACEMENT, restore_clumps),
     (&REPLACEMENT, replace_clumps),
 ];
 
 /// And all move on.
-const DRIFT: [Part; 5] = [
+const DRIFT: [Part; 6] = [
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
     (&CLUMPS, drift_clumps),
-    (&WALLS, advance_walls),
+    (&WALLS, drift_walls),
+    (&SEARCH, use_up_skin),
     (&LEDGER, advance_time),
 ];
 

@@ -88,6 +88,8 @@ impl<'a> Run<'a> {
         } = plan;
         place_watches(&probes, &mut state);
         let fingerprint = fingerprint(&state);
+        // Of the bonds at the start, be they broken since or not.
+        let mut order = FrameOrder::new(&bodies, &state);
         let of_pictures = settings.folder.and(Order::of(scene, &state));
         let size = state.particles.len() + state.bonds.len();
         let schedule = OutputSchedule::of(scene, choice.step_s, size);
@@ -111,13 +113,13 @@ impl<'a> Run<'a> {
             }
             if !state.clumps.templates.is_empty() {
                 renumber_probes(&mut probes, &[], &bodies, &mut state);
+                order = FrameOrder::new(&bodies, &state);
             }
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
         let mut files = None;
         if let Some(folder) = settings.folder {
             let columns = series::columns(scene.walls.keys(), &probes);
-            let order = FrameOrder::new(&bodies, &state);
             let continued = is_continued.then_some(&progress);
             let has_fragments = state.clusters.is_some();
             let mut open = Files::open(folder, order, &columns, has_fragments, continued)?;

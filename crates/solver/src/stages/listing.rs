@@ -31,6 +31,21 @@ pub const SEARCH: Stage = Stage {
     saving: NO_SAVING,
 };
 
+/// Takes what has moved in a drift from what may move before lists are made anew.
+pub fn use_up_skin(state: &mut State) -> usize {
+    if let Some(contacts) = &mut state.contacts {
+        let moved_m = state.fastest_m_s * state.time_step_s;
+        contacts.moved_m = moved_m;
+        contacts.close_skin_left_m -= moved_m;
+        contacts.skin_left_m -= moved_m;
+        if contacts.skin_left_m < moved_m {
+            // After one more such step, who is not listed could overlap.
+            contacts.skin_left_m = -1.0;
+        }
+    }
+    0
+}
+
 /// Makes the lists anew if something may have come near since they were made. Returns how many
 /// particles were gone through.
 pub fn renew_lists(state: &mut State) -> usize {

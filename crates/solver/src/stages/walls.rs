@@ -579,18 +579,10 @@ pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
     fastest
 }
 
-/// Moves the walls on, and takes what has moved from what may move before lists are made anew.
-pub fn advance_walls(state: &mut State) -> usize {
-    if let Some(contacts) = &mut state.contacts {
+/// Moves the walls on.
+pub fn drift_walls(state: &mut State) -> usize {
+    if state.contacts.is_some() {
         state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);
-        let moved_m = state.fastest_m_s * state.time_step_s;
-        contacts.moved_m = moved_m;
-        contacts.close_skin_left_m -= moved_m;
-        contacts.skin_left_m -= moved_m;
-        if contacts.skin_left_m < moved_m {
-            // After one more such step, who is not listed could overlap.
-            contacts.skin_left_m = -1.0;
-        }
     }
     0
 }
