@@ -1,5 +1,5 @@
-//! The table of doc/leave-out.md: what each feature of a scene costs when it is there, and that it costs nothing when it is not.
-//! `cargo bench -p dem-tests --bench features`. A minute.
+//! The table of doc/leave-out.md: what each feature of a scene costs when it is there, and that it
+//! costs nothing when it is not. `cargo bench -p dem-tests --bench features`. A minute.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
@@ -37,10 +37,12 @@ const SHAPE: &str = concat!(
 const ROUNDS: usize = 15;
 const STEPS: u32 = 60;
 
-/// What is compared: a free, turning body without anything else; or what a feature is compared with.
+/// What is compared: a free, turning body without anything else; or what a feature is compared
+/// with.
 const PLAIN: &str = "a free body";
 
-/// A scene: its name, what it is compared with, what it does more, and its text in place of run, bonds and tables.
+/// A scene: its name, what it is compared with, what it does more, and its text in place of run,
+/// bonds and tables.
 struct Case {
     name: &'static str,
     beside: &'static str,

@@ -1,6 +1,8 @@
-//! The time step of dem-run on free bodies packed by dem-pack, on one thread and on all: `cargo bench -p dem-tests`.
+//! The time step of dem-run on free bodies packed by dem-pack, on one thread and on all: `cargo
+//! bench -p dem-tests`.
 //!
-//! "bonds" is the pass over the bonds alone; "step" the whole step with failure, without damping; "damped" the same with damping of the bonds.
+//! "bonds" is the pass over the bonds alone; "step" the whole step with failure, without damping;
+//! "damped" the same with damping of the bonds.
 #![allow(
     missing_docs,
     clippy::expect_used,

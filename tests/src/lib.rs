@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-/// One of the programs, built in the profile of the test that runs: cargo builds no binaries for tests of another package.
+/// One of the programs, built in the profile of the test that runs: cargo builds no binaries for
+/// tests of another package.
 pub fn program(name: &str) -> Command {
     static BUILT: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -15,7 +16,8 @@ pub fn program(name: &str) -> Command {
     Command::new(path)
 }
 
-/// Runs a program once with a standard error that is full, and once with one whose reader is gone; the exit codes.
+/// Runs a program once with a standard error that is full, and once with one whose reader is gone;
+/// the exit codes.
 #[cfg(target_os = "linux")]
 pub fn codes_without_standard_error(command: &mut Command) -> [Option<i32>; 2] {
     let full = std::fs::File::options().write(true).open("/dev/full");

@@ -1,4 +1,5 @@
-//! README.md says what is true: its commands run, and the files, options and shapes that it names exist.
+//! README.md says what is true: its commands run, and the files, options and shapes that it names
+//! exist.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -31,8 +32,9 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
     found
 }
 
-/// Every command runs, in order, in a folder that holds a copy of the shapes, scenes and bodies. So that it takes little time, spheres are larger, the chute
-/// ends sooner, and a shape with few facets stands in for the rock.
+/// Every command runs, in order, in a folder that holds a copy of the shapes, scenes and bodies. So
+/// that it takes little time, spheres are larger, the chute ends sooner, and a shape with few
+/// facets stands in for the rock.
 #[test]
 fn commands_run_as_pasted() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! The shapes of `data/shapes`: as the generator writes them, closed, turned outwards, not crossing themselves, and of
-//! the volume that their closed forms have.
+//! The shapes of `data/shapes`: as the generator writes them, closed, turned outwards, not crossing
+//! themselves, and of the volume that their closed forms have.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 // The generator (`cargo run --example make_shapes`) itself.
@@ -75,7 +75,8 @@ fn length(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Six times the volume of the tetrahedron `a b c d`: positive where `d` lies behind the facet `a b c`.
+/// Six times the volume of the tetrahedron `a b c d`: positive where `d` lies behind the facet `a b
+/// c`.
 fn six_volumes(a: Point, b: Point, c: Point, d: Point) -> f64 {
     dot(sub(a, d), cross(sub(b, d), sub(c, d)))
 }
@@ -99,8 +100,9 @@ fn key(point: Point) -> [u32; 3] {
     point.map(|x| (x as f32).to_bits())
 }
 
-/// The largest distance between a smooth surface and the flat facets that have their corners on it, where the
-/// surface's radii of curvature are at least `radius`: the sagitta of the largest facet's circumcircle.
+/// The largest distance between a smooth surface and the flat facets that have their corners on it,
+/// where the surface's radii of curvature are at least `radius`: the sagitta of the largest facet's
+/// circumcircle.
 fn sagitta(facets: &[[Point; 3]], radius: f64) -> f64 {
     let around = facets.iter().map(|&[a, b, c]| {
         let [u, v, w] = [sub(b, a), sub(c, b), sub(a, c)];
@@ -237,8 +239,9 @@ fn flat_sided_shapes_have_their_exact_volume() {
         "{} {exact}",
         volume(&disc)
     );
-    // A ring of n sections whose sides are plane has the volume of Pappus' theorem times sin(a)/a, a = 2 pi/n; the polygon
-    // in the torus' section has m corners. Coordinates are rounded to 1e-4 mm: the volume to that times the area.
+    // A ring of n sections whose sides are plane has the volume of Pappus' theorem times sin(a)/a,
+    // a = 2 pi/n; the polygon in the torus' section has m corners. Coordinates are rounded to 1e-4
+    // mm: the volume to that times the area.
     let section = |m: f64, radius: f64| m / 2.0 * radius * radius * (2.0 * PI / m).sin();
     let torus = facets("torus.stl");
     let exact = 120.0 * (2.0 * PI / 120.0).sin() * 20.0 * section(48.0, 6.0);
@@ -301,7 +304,8 @@ fn the_rock_is_fine_and_star_shaped() {
 
 #[test]
 fn the_knot_is_as_thick_as_it_should_be_and_clears_itself() {
-    // Rings of 30 corners lie about the points of the curve; strands that cross are more than half a loop apart.
+    // Rings of 30 corners lie about the points of the curve; strands that cross are more than half
+    // a loop apart.
     let corners: Vec<Point> = facets("infinity-knot.stl").into_iter().flatten().collect();
     let on_curve = |t: f64| [45.0 * t.sin(), 20.0 * (2.0 * t).sin(), 8.0 * t.cos()];
     let curve: Vec<Point> = (0..24_000)

@@ -1,10 +1,12 @@
-//! The table of doc/replacement.md: the chute in three ways, with several seeds. From the folder of the clone:
+//! The table of doc/replacement.md: the chute in three ways, with several seeds. From the folder of
+//! the clone:
 //!
 //! ```sh
 //! cargo build --release && cargo run --release -p dem-run --example replacement_table
 //! ```
 //!
-//! Takes a quarter of an hour. One thread and hardly any pictures, so that it is the steps that are compared.
+//! Takes a quarter of an hour. One thread and hardly any pictures, so that it is the steps that are
+//! compared.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -53,12 +53,14 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what a scene will do: time step and why, stages, memory, predicted run time; nothing is run
+    /// Say what a scene will do: time step and why, stages, memory, predicted run time; nothing is
+    /// run
     Check {
         #[command(flatten)]
         scene: SceneArguments,
     },
-    /// Write a fragment of a run as a body: its particles where they stand in a frame, and the bonds that hold
+    /// Write a fragment of a run as a body: its particles where they stand in a frame, and the
+    /// bonds that hold
     #[command(
         after_help = "Bonds keep the lengths at which they are free of force: one that is stretched stays so. Velocities, and that bonds are bent, \
                       twisted or sheared, are not kept.\n\
@@ -74,7 +76,8 @@ enum Command {
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
     )]
     Sweep(sweep::SweepArguments),
-    /// Try the solver on stiff and extreme scenes, each with a prediction made before its run: a table of case, predicted, observed, verdict
+    /// Try the solver on stiff and extreme scenes, each with a prediction made before its run: a
+    /// table of case, predicted, observed, verdict
     #[command(after_help = "Exit code 0 if all cases do as predicted, else 1.\n\
                       Example:\n  dem-run stress spin mass-ratio")]
     Stress(stress::StressArguments),
@@ -92,7 +95,8 @@ struct SceneArguments {
     /// The scene (.toml); or a body (.vtp, .data, .csv, .txt) to say what it holds
     #[arg(value_name = "SCENE", required_unless_present = "body")]
     file: Option<PathBuf>,
-    /// File of a body, in place of the scene's; - is a .vtp on standard input. NAME= may be left out where there is one body
+    /// File of a body, in place of the scene's; - is a .vtp on standard input. NAME= may be left
+    /// out where there is one body
     #[arg(long, value_name = "[NAME=]FILE")]
     body: Vec<String>,
     /// Set a value of the scene, such as run.end_time=0.5 or "bonds.bar.young_modulus=20 MPa"
@@ -130,7 +134,8 @@ struct RunArguments {
 /// Does what was asked for. `interrupt` tells a run to stop.
 ///
 /// # Errors
-/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. A reader that closes standard output early is no error.
+/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. A
+/// reader that closes standard output early is no error.
 pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     match &arguments.command {
         Some(Command::Check { scene }) if !scene.names_a_scene() => Err(Diagnostic::input(

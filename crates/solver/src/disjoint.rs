@@ -1,4 +1,5 @@
-//! Disjoint sets (union-find) in a plain array: each element names another one of its set, and the smallest names itself.
+//! Disjoint sets (union-find) in a plain array: each element names another one of its set, and the
+//! smallest names itself.
 
 /// The smallest element of the set of `x`.
 pub(crate) fn find(names: &mut [u32], mut x: u32) -> u32 {

@@ -1,9 +1,11 @@
 //! Where a sphere touches a wall: plain geometry in the wall's own frame, m.
 //!
-//! A touch is a point of the wall that is nearer to the centre than all wall around it. A flat or convex wall has one; in a concave corner each side has one.
+//! A touch is a point of the wall that is nearer to the centre than all wall around it. A flat or
+//! convex wall has one; in a concave corner each side has one.
 //!
-//! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A [`Mesh`] is a surface with two sides, open or closed: it
-//! pushes towards the side on which the centre is, and a sphere whose centre has passed through is pushed on.
+//! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A
+//! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side on which the
+//! centre is, and a sphere whose centre has passed through is pushed on.
 
 pub mod cylinder;
 pub mod frame;
@@ -24,11 +26,13 @@ pub use solid_box::SolidBox;
 pub struct Touch {
     /// Nearest point of the wall's surface, m. Length 3.
     pub point: [f64; 3],
-    /// Unit vector into the wall: from the centre towards the point, or away from it where the centre is inside a solid. Length 3.
+    /// Unit vector into the wall: from the centre towards the point, or away from it where the
+    /// centre is inside a solid. Length 3.
     pub normal: [f64; 3],
     /// From the centre to the point, m; negative where the centre is inside a solid.
     pub distance_m: f64,
-    /// Which flat part, straight edge, corner, ... of the wall: stays the same while a sphere slides over it. Its meaning is that of the shape.
+    /// Which flat part, straight edge, corner, ... of the wall: stays the same while a sphere
+    /// slides over it. Its meaning is that of the shape.
     pub feature: u32,
 }
 
@@ -151,7 +155,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Adds all places where the wall is nearer than `reach_m` to `centre`, each once. Equal input gives equal order.
+    /// Adds all places where the wall is nearer than `reach_m` to `centre`, each once. Equal input
+    /// gives equal order.
     pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
         let touch = match self {
             Self::Plane(plane) => plane.touch(centre),

@@ -1,6 +1,7 @@
 //! Values between points.
 
-/// The value at `x` on the lines that join points (x, y), rising in x; before the first point and after the last one the value of that. None: there are none.
+/// The value at `x` on the lines that join points (x, y), rising in x; before the first point and
+/// after the last one the value of that. None: there are none.
 pub fn interpolated(points: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = points.partition_point(|point| point[0] <= x);
     match (points[..after].last(), points.get(after)) {

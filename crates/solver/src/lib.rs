@@ -1,4 +1,5 @@
-//! Runs scenes with bonded bodies: TOML scene -> [`plan`] -> [`state`] -> [`step`], step, ... -> results.
+//! Runs scenes with bonded bodies: TOML scene -> [`plan`] -> [`state`] -> [`step`], step, ... ->
+//! results.
 
 pub mod check;
 pub mod cli;

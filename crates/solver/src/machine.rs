@@ -1,4 +1,5 @@
-//! Which machine this is, as run times of different ones are not compared, and the time that its processors gave to this program.
+//! Which machine this is, as run times of different ones are not compared, and the time that its
+//! processors gave to this program.
 
 /// Processor and number of cores: `AMD EPYC 7763, 16 cores`. Nodes of one kind are one machine.
 pub fn machine() -> String {
@@ -14,14 +15,16 @@ pub fn machine() -> String {
     format!("{model}, {cores} core{}", if cores == 1 { "" } else { "s" })
 }
 
-/// Time that processors have spent on this program, all its threads together, s. None: the system does not say.
+/// Time that processors have spent on this program, all its threads together, s. None: the system
+/// does not say.
 #[cfg(unix)]
 pub fn processor_time_s() -> Option<f64> {
     let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64)
 }
 
-/// Time that processors have spent on this program, all its threads together, s. None: the system does not say.
+/// Time that processors have spent on this program, all its threads together, s. None: the system
+/// does not say.
 #[cfg(not(unix))]
 pub fn processor_time_s() -> Option<f64> {
     None

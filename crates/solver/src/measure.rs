@@ -140,7 +140,8 @@ pub fn place_watches(probes: &[Probe], state: &mut State) {
     state.watches = watches;
 }
 
-/// Reads all probes between a kick and the drift after it, and notes what they show. One value for each.
+/// Reads all probes between a kick and the drift after it, and notes what they show. One value for
+/// each.
 pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Vec<f64> {
     let needs_motions = |g: &Probe| {
         matches!(
@@ -402,7 +403,8 @@ pub fn load(state: &State, at: usize) -> BondLoad {
     state.bonds.forces(at, &state.particles.poses).load
 }
 
-/// Stress over strength of a bond, before any strengthening by rate; 0 for one that is broken or cannot break.
+/// Stress over strength of a bond, before any strengthening by rate; 0 for one that is broken or
+/// cannot break.
 pub fn bond_utilisation(state: &State, at: usize) -> f64 {
     utilisation_under(state, at, &load(state, at))
 }

@@ -1,4 +1,5 @@
-//! What a run tells: frames, pictures, time series, events, fragments, plots, and the summary at its end.
+//! What a run tells: frames, pictures, time series, events, fragments, plots, and the summary at
+//! its end.
 
 pub mod equilibrium;
 pub mod fragments;

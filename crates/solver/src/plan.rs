@@ -1,4 +1,5 @@
-//! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs and why each other is left out.
+//! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs
+//! and why each other is left out.
 
 pub mod bodies;
 mod clumps;
@@ -91,12 +92,15 @@ pub struct Plan {
     pub inputs: Inputs,
 }
 
-/// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`: a given time step above the limit is taken.
+/// Plans a scene whose bodies have been read (one for each of [`Scene::bodies`]). `allow_any_step`:
+/// a given time step above the limit is taken.
 ///
 /// # Errors
-/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom held twice, a load on a held freedom, materials that
-/// meet without a word on how, bodies in each other or in walls, a wall's file that is no surface, a time step above the limit, a laboratory
-/// test that cannot be made; where the scene goes to its equilibrium at once, a piece that supports do not hold.
+/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom
+/// held twice, a load on a held freedom, materials that meet without a word on how, bodies in each
+/// other or in walls, a wall's file that is no surface, a time step above the limit, a laboratory
+/// test that cannot be made; where the scene goes to its equilibrium at once, a piece that supports
+/// do not hold.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,

@@ -1,4 +1,5 @@
-//! Geometry of bodies made of spheres: mass properties, which spheres can be touched, and how a body has turned.
+//! Geometry of bodies made of spheres: mass properties, which spheres can be touched, and how a
+//! body has turned.
 
 mod caps;
 mod cells;

@@ -36,7 +36,8 @@ use self::supports::SetSupport;
 use self::walls::Wall;
 use self::watches::Watch;
 
-/// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before the first step both stand at the start.
+/// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before
+/// the first step both stand at the start.
 #[derive(Debug, Clone)]
 pub struct State {
     /// Spheres: first those that move by themselves, then those that clumps carry.
@@ -85,7 +86,8 @@ pub struct State {
     pub time_step_s: f64,
     /// The step before, s; 0 at the start.
     pub previous_time_step_s: f64,
-    /// Largest speed of a particle in the step before, and where there are contacts that of a wall on top, m/s.
+    /// Largest speed of a particle in the step before, and where there are contacts that of a wall
+    /// on top, m/s.
     pub fastest_m_s: f64,
     /// What happened in the last step.
     pub events: Events,
@@ -102,7 +104,8 @@ pub struct State {
 }
 
 impl State {
-    /// A simulation of these particles and bonds, without loads, supports, gravity and particle damping. Work is divided for this many threads.
+    /// A simulation of these particles and bonds, without loads, supports, gravity and particle
+    /// damping. Work is divided for this many threads.
     pub fn new(particles: Particles, bonds: Bonds, time_step_s: f64, threads: usize) -> Self {
         let damped = bonds.rules.iter().any(|rule| rule.damped);
         let partitions = divide(&bonds, particles.len(), threads);
@@ -144,7 +147,8 @@ impl State {
         }
     }
 
-    /// The lists of damping forces that are booked apart: of bonds and on particles; each with one for each particle, or empty.
+    /// The lists of damping forces that are booked apart: of bonds and on particles; each with one
+    /// for each particle, or empty.
     pub fn resistances(&self) -> [&[Wrench]; 2] {
         [&self.bond_resistance, &self.particle_resistance]
     }

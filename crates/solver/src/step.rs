@@ -33,8 +33,8 @@ use crate::stages::watching::{OUTPUT, watch};
 use crate::state::State;
 use crate::state::events::Events;
 
-/// A part of the step: what is done, for which stage. Returns how many bonds, contacts, particles or
-/// bodies the stage has worked on with it.
+/// A part of the step: what is done, for which stage. Returns how many bonds, contacts, particles
+/// or bodies the stage has worked on with it.
 type Part = (&'static Stage, fn(&mut State) -> usize);
 
 /// First half of a step: what acts on the particles where they are, and how that changes their

@@ -11,14 +11,17 @@ use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
 
-/// Cubes of a face-centred lattice along each side: with four sites each, of which some are left empty, about 20,000 spheres.
+/// Cubes of a face-centred lattice along each side: with four sites each, of which some are left
+/// empty, about 20,000 spheres.
 const CUBES: usize = 18;
 const EMPTY: f64 = 0.143;
 const RADIUS_M: f64 = 1e-3;
 const SKIN_M: f64 = 0.1 * RADIUS_M;
 
-/// Spheres on a dense lattice with vacancies, of radii that differ by a thousandth: of their near pairs those overlap, by about as much, that happen to
-/// be large. About 2.9 pairs for each sphere touch, of 4.9 that are near. Nothing holds the bed together: its time step is so short that it does not move.
+/// Spheres on a dense lattice with vacancies, of radii that differ by a thousandth: of their near
+/// pairs those overlap, by about as much, that happen to be large. About 2.9 pairs for each sphere
+/// touch, of 4.9 that are near. Nothing holds the bed together: its time step is so short that it
+/// does not move.
 pub(crate) fn bed(threads: usize) -> State {
     let mut random = Random(1);
     let side_m = 2.0 * RADIUS_M * std::f64::consts::SQRT_2;

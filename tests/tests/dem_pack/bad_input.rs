@@ -1,4 +1,5 @@
-//! Input that cannot be right: exit code 2, one message with the value and what to do, nothing left behind.
+//! Input that cannot be right: exit code 2, one message with the value and what to do, nothing left
+//! behind.
 
 use super::{Bench, dem_pack, refusal, shape};
 use std::process::Output;

@@ -167,7 +167,8 @@ fn few_packings_are_finished_and_the_overlap_found_gives_the_same_body() {
 
 #[test]
 fn without_overlap_the_two_densities_are_one() {
-    // One is sampled, the other is the volume of the spheres; shapes that leave much of their box empty.
+    // One is sampled, the other is the volume of the spheres; shapes that leave much of their box
+    // empty.
     for name in ["22", "09"] {
         let made = Bench::new().pack(
             &shape(name),

@@ -1,4 +1,5 @@
-//! The same input gives the same bytes, for any number of threads; another seed another body; and the unit does not matter.
+//! The same input gives the same bytes, for any number of threads; another seed another body; and
+//! the unit does not matter.
 
 use super::facets::{cuboid, prism};
 use super::{Bench, bits, shape};
@@ -83,10 +84,11 @@ fn another_seed_gives_another_body_of_the_same_kind() {
     assert!(n.abs_diff(m) < n / 20, "{n} {m}");
 }
 
-/// Positions are computed in the shape's own scale from the numbers of the file; only the diameters, in metres, are rounded
-/// otherwise for another unit, by one part in 1e16. Where sphere leans on sphere that grows: it stays far below 1e-6 of a
-/// diameter in a bare front of this size. Settling adds to it: the spheres are the same, in the same order, each at its place,
-/// but those that nothing holds come to rest elsewhere within their cages.
+/// Positions are computed in the shape's own scale from the numbers of the file; only the
+/// diameters, in metres, are rounded otherwise for another unit, by one part in 1e16. Where sphere
+/// leans on sphere that grows: it stays far below 1e-6 of a diameter in a bare front of this size.
+/// Settling adds to it: the spheres are the same, in the same order, each at its place, but those
+/// that nothing holds come to rest elsewhere within their cages.
 #[test]
 fn the_unit_of_the_file_does_not_matter() {
     let bench = Bench::new();

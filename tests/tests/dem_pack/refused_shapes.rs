@@ -1,4 +1,5 @@
-//! Every difficult shape that cannot be packed: one message that names file, place and cause, and nothing left behind.
+//! Every difficult shape that cannot be packed: one message that names file, place and cause, and
+//! nothing left behind.
 
 use super::{Bench, refusal, shape};
 

@@ -13,7 +13,8 @@ const OPTIONS: [&str; 6] = [
     "1.3",
 ];
 
-/// Packs a shape of the folder and checks volume (mm3, to 1e-5) and pieces; `unsure` (mm) as for [`assert_exact`].
+/// Packs a shape of the folder and checks volume (mm3, to 1e-5) and pieces; `unsure` (mm) as for
+/// [`assert_exact`].
 fn packed(name: &str, more: &[&str], volume: f64, pieces: u64, unsure: f64) -> Made {
     let file = shape(name);
     let made = Bench::new().pack(&file, &[&OPTIONS, more].concat());

@@ -1,4 +1,5 @@
-//! The spheres placed have the sizes asked for: Kolmogorov-Smirnov, by number and by mass, against the distributions' own formulas.
+//! The spheres placed have the sizes asked for: Kolmogorov-Smirnov, by number and by mass, against
+//! the distributions' own formulas.
 
 use super::facets::cuboid;
 use super::{Bench, Made};
@@ -10,8 +11,9 @@ const LIMIT_95: f64 = 1.358;
 /// and this once in a thousand times.
 const LIMIT_999: f64 = 1.949;
 
-/// Largest distance between the share of the weight at or below each diameter and what it should be, with the number of
-/// spheres that so many weights are worth (Kish: the sum squared over the sum of squares).
+/// Largest distance between the share of the weight at or below each diameter and what it should
+/// be, with the number of spheres that so many weights are worth (Kish: the sum squared over the
+/// sum of squares).
 fn kolmogorov_smirnov(
     made: &Made,
     weight: &dyn Fn(f64) -> f64,
@@ -31,7 +33,8 @@ fn kolmogorov_smirnov(
     (distance, total * total / squares)
 }
 
-/// A distribution function with its other weighting: from a density, smooth between some diameters (mm), by Simpson's rule.
+/// A distribution function with its other weighting: from a density, smooth between some diameters
+/// (mm), by Simpson's rule.
 struct Law {
     breaks: Vec<f64>,
     density: Box<dyn Fn(f64) -> f64>,
@@ -129,12 +132,14 @@ fn laws(folder: &Path) -> Vec<(String, Law)> {
     ]
 }
 
-/// Powers of d that weigh the density so that it counts particles, and mass, when it is given as `by` says.
+/// Powers of d that weigh the density so that it counts particles, and mass, when it is given as
+/// `by` says.
 fn powers(by: &str) -> [i32; 2] {
     if by == "number" { [0, 3] } else { [-3, 0] }
 }
 
-/// Ten packings of about 10,000 spheres. Of ten, chance puts three or more beyond the limit of 95 % once in a hundred times.
+/// Ten packings of about 10,000 spheres. Of ten, chance puts three or more beyond the limit of 95 %
+/// once in a hundred times.
 #[test]
 fn every_distribution_is_followed_by_number_and_by_mass() {
     let bench = Bench::new();

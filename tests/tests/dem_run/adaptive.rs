@@ -61,7 +61,8 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
     assert!(following["momentum_error"].as_f64().unwrap() < 1e-11);
 }
 
-/// One of two spheres is pulled until the bond between them breaks, soon; after that nothing vibrates, and a constant force is followed exactly by any step.
+/// One of two spheres is pulled until the bond between them breaks, soon; after that nothing
+/// vibrates, and a constant force is followed exactly by any step.
 const DUMBBELL: &str = "version = 1
 run = { end_time = 4, ADAPTIVE }
 materials.stuff = { density = 2500 }
@@ -108,7 +109,8 @@ fn measure(of: &Value, name: &str) -> f64 {
     of["measures"][name]["value"].as_f64().unwrap()
 }
 
-/// Two elastic spheres that have come to a halt on each other when the step is looked at: their impact is not over.
+/// Two elastic spheres that have come to a halt on each other when the step is looked at: their
+/// impact is not over.
 const MID_CONTACT: &str = r#"version = 1
 [run]
 end_time = "0.5 s"
@@ -151,7 +153,8 @@ fn the_step_does_not_rise_in_the_middle_of_a_contact() {
     }
 }
 
-/// The step rises as the stiff body leaves, and what is listed as near was listed for small steps: two soft spheres meet then.
+/// The step rises as the stiff body leaves, and what is listed as near was listed for small steps:
+/// two soft spheres meet then.
 const LATE_LISTING: &str = r#"version = 1
 [run]
 end_time = "0.15 s"

@@ -121,7 +121,8 @@ fn two_bonded_particles_at_one_place() {
     );
 }
 
-/// A millimetre is lost at such a distance: of two tables it is that of the particles which says so.
+/// A millimetre is lost at such a distance: of two tables it is that of the particles which says
+/// so.
 #[test]
 fn a_body_that_is_put_too_far_away() {
     let bench = Bench::new();

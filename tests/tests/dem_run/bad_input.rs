@@ -1,4 +1,5 @@
-//! Scenes, options and folders that cannot be right: one message with the place, exit code 2, nothing left behind.
+//! Scenes, options and folders that cannot be right: one message with the place, exit code 2,
+//! nothing left behind.
 
 use super::{Bench, dem_run, good, refused, scene_of_data};
 

@@ -1,4 +1,5 @@
-//! The page of a sweep in a real browser: what is written can be read. Where no Chromium is installed there is nothing to look with.
+//! The page of a sweep in a real browser: what is written can be read. Where no Chromium is
+//! installed there is nothing to look with.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -34,7 +35,8 @@ fn look(chromium: &Path, home: &Path, options: &[&str], page: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Writes what is wrong with the words of the plots into the page: too small, outside of the plot, or over each other; and how many words there are.
+/// Writes what is wrong with the words of the plots into the page: too small, outside of the plot,
+/// or over each other; and how many words there are.
 const INSPECT: &str = "<script>
 const wrong = [];
 let words = 0;

@@ -1,4 +1,5 @@
-//! Scenes that the reader takes and the planner refuses: the message stands beside the line that it is about, after `#!`.
+//! Scenes that the reader takes and the planner refuses: the message stands beside the line that it
+//! is about, after `#!`.
 
 use super::{Bench, corpus, vtp_bytes};
 

@@ -7,7 +7,8 @@ use std::process::Command;
 
 use super::{Bench, dem_run, good, names_in, refused};
 
-/// Runs a shell script as the superuser of a namespace of its own, where a small disk is mounted on ./disk; None where that is not permitted.
+/// Runs a shell script as the superuser of a namespace of its own, where a small disk is mounted on
+/// ./disk; None where that is not permitted.
 fn on_a_small_disk(bench: &Bench, size: &str, script: &str) -> Option<std::process::Output> {
     fs::create_dir(bench.path("disk")).unwrap();
     let mount = format!("mount -t tmpfs -o size={size} tmpfs disk");

@@ -40,7 +40,8 @@ fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
     }
 }
 
-/// Sends a signal to a run when its time series has so many rows; what it says, or None if it was faster than the signal.
+/// Sends a signal to a run when its time series has so many rows; what it says, or None if it was
+/// faster than the signal.
 pub(super) fn interrupt(
     command: Command,
     signal: &str,
@@ -96,7 +97,8 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
         command.arg("--json");
         command
     });
-    // Nothing shows from outside that it runs; it does after a second at the latest, or it is ended at once.
+    // Nothing shows from outside that it runs; it does after a second at the latest, or it is ended
+    // at once.
     sleep(Duration::from_millis(700));
     send("-INT", &child);
     child.try_wait().unwrap();

@@ -8,7 +8,8 @@ use serde_json::Value;
 
 use crate::{Bench, root, scene_of_data};
 
-/// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The bonds are rods of 4 mm by which it has a closed form.
+/// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The
+/// bonds are rods of 4 mm by which it has a closed form.
 pub(crate) fn bar() -> String {
     let particles: Vec<String> = (0..11)
         .map(|i| format!("[0, 0, {}, 0.002]", 0.004 * f64::from(i)))
@@ -191,7 +192,8 @@ fn a_sample_is_bent_by_four_pins() {
         // The spheres do not quite touch the surface everywhere.
         assert!(off.abs() < 2e-3, "{name}: {off}");
     }
-    // What the pins press with, the supports carry, on the mean over the sample's swinging, until bonds break.
+    // What the pins press with, the supports carry, on the mean over the sample's swinging, until
+    // bonds break.
     let series = std::fs::read_to_string(bench.path("out/series.csv")).unwrap();
     let head: Vec<&str> = series.lines().next().unwrap().split(',').collect();
     let column = |name: &str| head.iter().position(|h| *h == name).unwrap();

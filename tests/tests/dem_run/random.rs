@@ -1,4 +1,5 @@
-//! Small scenes of random values, sensible and senseless: never a panic, always one of the exit codes, one message if it is not 0.
+//! Small scenes of random values, sensible and senseless: never a panic, always one of the exit
+//! codes, one message if it is not 0.
 
 use std::cell::RefCell;
 
@@ -18,7 +19,8 @@ fn number(usual: f64) -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Particles on a grid, a millimetre of radius or so, and bonds between them; sometimes two at one place, a bond to nowhere, to itself or twice.
+/// Particles on a grid, a millimetre of radius or so, and bonds between them; sometimes two at one
+/// place, a bond to nowhere, to itself or twice.
 fn body() -> impl Strategy<Value = String> {
     let particle = (0..50_u32, number(1e-3));
     let pair = (0..100_u32, 0..100_u32, 0..60_u32);

@@ -198,8 +198,9 @@ fn every_good_scene_of_the_corpus_runs() {
     }
 }
 
-/// How far each scene is run to see whether anything is stopped that should not be, and of which shape and diameters its body is if it asks for one. Tests of the
-/// laboratory, which have no end of their own, load within one period of the body.
+/// How far each scene is run to see whether anything is stopped that should not be, and of which
+/// shape and diameters its body is if it asks for one. Tests of the laboratory, which have no end
+/// of their own, load within one period of the body.
 const SHORT: [[&str; 4]; 16] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -309,7 +310,8 @@ fn bodies_of_one_shape_may_have_bonds_of_two_kinds() {
     let step_s = |options: &[&str]| {
         let said = bench.good(&scene, &[options, &["--json"]].concat());
         let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
-        // An adaptive step still is that of clumps in the step in which they become clusters, and what spins is stretched in it.
+        // An adaptive step still is that of clumps in the step in which they become clusters, and
+        // what spins is stretched in it.
         let allowed = if summary["adaptive"].is_null() {
             1e-5
         } else {

@@ -497,7 +497,8 @@ fn what_is_refused() {
     );
 }
 
-/// Those of the repository can be run as they stand, once the bodies are there that their first lines tell how to make.
+/// Those of the repository can be run as they stand, once the bodies are there that their first
+/// lines tell how to make.
 #[test]
 fn studies_of_data() {
     let bench = Bench::new();

@@ -52,7 +52,8 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     assert!((1e-6..2e-5).contains(&own), "{said}");
 }
 
-/// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all others.
+/// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all
+/// others.
 pub(super) fn uneven() -> String {
     "version = 1
 run = { end_time = \"20 ms\", gravity = [0, 0, -1] }
@@ -125,7 +126,8 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     assert!(said.contains("resumed      time step "), "{said}");
 }
 
-/// Two loose spheres that just touch, and a ball that falls and bounces without loss: at rest, and at the top of its way, there is next to no energy.
+/// Two loose spheres that just touch, and a ball that falls and bounces without loss: at rest, and
+/// at the top of its way, there is next to no energy.
 const TOUCHING: &str = r#"version = 1
 [run]
 end_time = "0.1 s"

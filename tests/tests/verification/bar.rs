@@ -23,7 +23,8 @@ pub(crate) const POISSON: f64 = 0.3;
 pub(crate) const LOAD: f64 = 1e5;
 /// Any; it only sets how long it takes to come to rest.
 const DENSITY: f64 = 7850.0;
-/// Particle damping gamma (Chen et al. 2022, eqs. 11 and 12). The paper's 0.001 gives the same rest, later.
+/// Particle damping gamma (Chen et al. 2022, eqs. 11 and 12). The paper's 0.001 gives the same
+/// rest, later.
 const DAMPING: f64 = 0.7;
 
 /// A straight row of bonded spheres along x, from 0 to `length_m`, whose first sphere is held.
@@ -90,7 +91,8 @@ impl Bar {
         stiffness(self.model, &shape, YOUNG, POISSON)
     }
 
-    /// The bar, held at its first sphere, with a load across it at its last that rises from 0 to `load_n` until the time `ramp_s`.
+    /// The bar, held at its first sphere, with a load across it at its last that rises from 0 to
+    /// `load_n` until the time `ramp_s`.
     fn loaded(&self, load_n: f64, ramp_s: f64) -> State {
         let count = self.radii_m.len();
         let along = self.turned * Vector3::x();
@@ -142,7 +144,8 @@ impl Bar {
         state
     }
 
-    /// Period of the slowest swing, s: that of a mass-less beam with a quarter of the bar's mass at its tip.
+    /// Period of the slowest swing, s: that of a mass-less beam with a quarter of the bar's mass at
+    /// its tip.
     fn period_s(&self) -> f64 {
         let second_moment = 0.25 * PI * self.bond_radius_m.powi(4);
         let stiffness = 3.0 * YOUNG * second_moment / self.length_m.powi(3);
@@ -154,8 +157,8 @@ impl Bar {
         2.0 * PI * (0.25 * mass / stiffness).sqrt()
     }
 
-    /// Loads the bar in one period of its slowest swing and runs it to rest: until in each of three periods no sphere has moved, in any step, by more
-    /// than the rounding of its place.
+    /// Loads the bar in one period of its slowest swing and runs it to rest: until in each of three
+    /// periods no sphere has moved, in any step, by more than the rounding of its place.
     pub(crate) fn at_rest(&self, load_n: f64) -> Rest {
         let period = self.period_s();
         let mut state = self.loaded(load_n, period);
@@ -197,8 +200,9 @@ impl Bar {
         }
     }
 
-    /// Deflections, m, and rotations, rad, of the spheres under a small load, exactly: the bar is statically determinate, so each bond carries the
-    /// load across and its moment about the contact point, and gives way by these over its stiffnesses.
+    /// Deflections, m, and rotations, rad, of the spheres under a small load, exactly: the bar is
+    /// statically determinate, so each bond carries the load across and its moment about the
+    /// contact point, and gives way by these over its stiffnesses.
     pub(crate) fn exact(&self, load_n: f64) -> (Vec<f64>, Vec<f64>) {
         let (mut deflections, mut rotations) = (vec![0.0], vec![0.0]);
         let mut start = 0.0;

@@ -7,8 +7,8 @@ use crate::bar::{Bar, LOAD, Rest};
 /// Numbers of bonds that the bars of case 2 and 4 are run with.
 pub(crate) const COUNTS: [usize; 7] = [1, 2, 3, 4, 6, 8, 10];
 
-/// Tip deflection over length at which bars are run that are compared with small-deflection theory. The deflection is then off by about the square of
-/// this: 2.5e-9.
+/// Tip deflection over length at which bars are run that are compared with small-deflection theory.
+/// The deflection is then off by about the square of this: 2.5e-9.
 const SMALL: f64 = 5e-5;
 
 /// What rest is compared with: geometry and rest together.
@@ -41,10 +41,12 @@ pub(crate) fn case5(middle_radius_m: f64, model: BondModel) -> Bar {
     bar
 }
 
-/// Normal over shear stiffness of an Euler-Bernoulli bond of case 5, which the paper gives to the parallel bond there: L^2 / (3 r^2).
+/// Normal over shear stiffness of an Euler-Bernoulli bond of case 5, which the paper gives to the
+/// parallel bond there: L^2 / (3 r^2).
 pub(crate) const KAPPA_OF_CASE_5: f64 = 2.0 * 2.0 / (3.0 * 0.2 * 0.2);
 
-/// A bar at rest under a load so small that theory for small deflections holds, scaled to the paper's load.
+/// A bar at rest under a load so small that theory for small deflections holds, scaled to the
+/// paper's load.
 #[derive(Debug, Clone)]
 pub(crate) struct Small {
     /// Displacements of the spheres along the load, m.
@@ -106,7 +108,8 @@ fn assert_reaction(rest: &Rest, load_n: f64, length_m: f64, tolerance: f64) {
     );
 }
 
-/// On one worker thread: the bars are too small for more, and handing each step to another thread takes longer than the step.
+/// On one worker thread: the bars are too small for more, and handing each step to another thread
+/// takes longer than the step.
 pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(work)

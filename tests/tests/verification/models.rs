@@ -46,7 +46,8 @@ pub(crate) const MODELS: [Named; 5] = [
     },
 ];
 
-/// Exact solutions of the bars under a small load by direct stiffness, by an independent implementation.
+/// Exact solutions of the bars under a small load by direct stiffness, by an independent
+/// implementation.
 pub(crate) fn small_load() -> Value {
     serde_json::from_str(include_str!("data/cantilever.json")).unwrap()
 }

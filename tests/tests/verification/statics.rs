@@ -10,7 +10,8 @@ use crate::cases::{
 };
 use crate::models::{MODELS, PARALLEL, number, numbers, small_load, whole_load};
 
-/// The closed form that the bars are held against is what an independent implementation finds by direct stiffness.
+/// The closed form that the bars are held against is what an independent implementation finds by
+/// direct stiffness.
 #[test]
 fn exact_solution_is_that_of_the_direct_stiffness_method() {
     let reference = small_load();
@@ -76,8 +77,9 @@ fn both_formulations_bend_alike() {
     });
 }
 
-/// In a turned bar, places are rounded along the load as well, by up to 4e-16 m; what the stiffness along the bar makes of that is 3e-5 N.
-/// Particle damping acts on it as dry friction, and the load is 2 kN: 1e-8, and more in deflections that add it up.
+/// In a turned bar, places are rounded along the load as well, by up to 4e-16 m; what the stiffness
+/// along the bar makes of that is 3e-5 N. Particle damping acts on it as dry friction, and the load
+/// is 2 kN: 1e-8, and more in deflections that add it up.
 #[test]
 fn a_turned_bar_bends_as_one_along_x() {
     on_one_thread(|| {
@@ -92,7 +94,8 @@ fn a_turned_bar_bends_as_one_along_x() {
     });
 }
 
-/// Under the paper's load the bar comes to rest in the least of the energy that its bonds state, which was found without any time stepping.
+/// Under the paper's load the bar comes to rest in the least of the energy that its bonds state,
+/// which was found without any time stepping.
 #[test]
 fn at_the_whole_load_energy_is_least() {
     let reference = whole_load();
@@ -126,8 +129,8 @@ fn at_the_whole_load_increments_agree() {
     });
 }
 
-/// The independent implementation's total formulation has another energy, the same to second order. Its tips are those of that energy, and
-/// differ from ours by the difference of the two.
+/// The independent implementation's total formulation has another energy, the same to second order.
+/// Its tips are those of that energy, and differ from ours by the difference of the two.
 #[test]
 fn the_other_total_formulation_is_another_energy() {
     let reference = whole_load();
@@ -140,8 +143,9 @@ fn the_other_total_formulation_is_another_energy() {
     }
 }
 
-/// The bar under the paper's load bends less than theory for small deflections says, by the square of the load: its tip comes nearer to the support,
-/// which shortens the lever of the load. The elastica says 4/35 (F L^2/EI)^2.
+/// The bar under the paper's load bends less than theory for small deflections says, by the square
+/// of the load: its tip comes nearer to the support, which shortens the lever of the load. The
+/// elastica says 4/35 (F L^2/EI)^2.
 #[test]
 fn the_lever_of_the_load_shortens() {
     on_one_thread(|| {

@@ -9,8 +9,8 @@ use crate::cases::{
 };
 use crate::models::{MODELS, PARALLEL};
 
-/// Names of the lines of plots; models without a name are not drawn. The elastic solid bond has the stiffnesses of the parallel bond where spheres
-/// are equal.
+/// Names of the lines of plots; models without a name are not drawn. The elastic solid bond has the
+/// stiffnesses of the parallel bond where spheres are equal.
 const DRAWN: [&str; 5] = [
     "parallel, elastic solid",
     "Euler-Bernoulli",
@@ -28,7 +28,8 @@ const DRAWN_TOGETHER: [&str; 5] = [
     "",
 ];
 
-/// A number with this many decimals. It must not hang on what differs from machine to machine, the last `doubt` of it.
+/// A number with this many decimals. It must not hang on what differs from machine to machine, the
+/// last `doubt` of it.
 pub(crate) fn digits(value: f64, decimals: usize, doubt: f64) -> String {
     let text = |value: f64| {
         let text = format!("{value:.decimals$}");
@@ -198,7 +199,8 @@ pub(crate) fn of_case1() -> (String, [Plot; 2]) {
     (table, plots)
 }
 
-/// Tips of bars of these numbers of bonds: as a table of what is off Timoshenko's theory, per cent, and for each bar its tips and the theory.
+/// Tips of bars of these numbers of bonds: as a table of what is off Timoshenko's theory, per cent,
+/// and for each bar its tips and the theory.
 fn swept(
     counts: &[usize],
     bar: fn(usize, BondModel) -> Bar,

@@ -1,4 +1,5 @@
-//! The largest stable time step: from the largest eigenvalue of the linearised system, found by Lanczos' method on the real forces.
+//! The largest stable time step: from the largest eigenvalue of the linearised system, found by
+//! Lanczos' method on the real forces.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -14,10 +15,12 @@ use crate::state::particles::{Motion, Pose, Wrench};
 const ITERATIONS: [usize; 2] = [20, 200];
 /// Beyond the least number of iterations, one in so many asks whether it was enough.
 const EVERY: usize = 5;
-/// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes of bonds, in radians.
+/// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes
+/// of bonds, in radians.
 const STEP: f64 = 1e-5;
 
-/// Largest distance from 1 of the eigenvalue at which the search for a damped limit ends, and most eigenvalues computed for it.
+/// Largest distance from 1 of the eigenvalue at which the search for a damped limit ends, and most
+/// eigenvalues computed for it.
 const NEAR: f64 = 1e-3;
 const TRIES: usize = 8;
 
@@ -26,13 +29,15 @@ const TRIES: usize = 8;
 enum Search {
     /// As well as a limit needs it.
     Fine,
-    /// Where a thousandth does not matter, as of a bound near a step that is to say whether there is room: with one difference for two.
+    /// Where a thousandth does not matter, as of a bound near a step that is to say whether there
+    /// is room: with one difference for two.
     Rough,
 }
 
 impl Search {
-    /// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second largest eigenvalue, 1e-3 below the largest, in a
-    /// damped body; ten iterations more cost little.
+    /// Largest residual over eigenvalue at which the search ends. At 1e-4 it can end at the second
+    /// largest eigenvalue, 1e-3 below the largest, in a damped body; ten iterations more cost
+    /// little.
     fn residual(self) -> f64 {
         match self {
             Self::Fine => 1e-5,
@@ -54,7 +59,8 @@ pub struct Limit {
     pub damping_1_s: f64,
     /// Iterations needed for the frequency.
     pub iterations: usize,
-    /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or their damping, or both.
+    /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or
+    /// their damping, or both.
     pub all_iterations: usize,
 }
 
@@ -67,13 +73,16 @@ pub struct Bound {
     pub is_damped: bool,
 }
 
-/// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue of M^-1 (dt^2/4 K + dt/2 C) is above 1.
+/// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue
+/// of M^-1 (dt^2/4 K + dt/2 C) is above 1.
 ///
-/// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always against its force, which damping of particles
-/// raises by its share of it: K counts 1 + gamma times.
+/// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
+/// against its force, which damping of particles raises by its share of it: K counts 1 + gamma
+/// times.
 ///
-/// Bonds of the incremental formulation count with the stiffness of the total one, which is the same. Contacts count at the overlap that they have, stuck.
-/// The wrenches of particles that move by themselves are overwritten; spheres of clumps have none afterwards.
+/// Bonds of the incremental formulation count with the stiffness of the total one, which is the
+/// same. Contacts count at the overlap that they have, stuck. The wrenches of particles that move
+/// by themselves are overwritten; spheres of clumps have none afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
@@ -104,7 +113,8 @@ pub fn limit(state: &mut State) -> Limit {
     limit
 }
 
-/// A step that is not above the limit, or by less than a thousandth, and not below this one, s, unless the limit is: found in a fraction of the time that the limit takes. What counts is said
+/// A step that is not above the limit, or by less than a thousandth, and not below this one, s,
+/// unless the limit is: found in a fraction of the time that the limit takes. What counts is said
 /// at [`limit`].
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
@@ -133,14 +143,15 @@ fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
     !state.bond_resistance.is_empty() || !contacts.is_empty()
 }
 
-/// Those of other particles begin anew in each step; what acts on spheres of clumps is added to what is there.
+/// Those of other particles begin anew in each step; what acts on spheres of clumps is added to
+/// what is there.
 fn forget_wrenches_of_clumps(state: &mut State) {
     let free = state.particles.free;
     state.particles.wrenches[free..].fill(Wrench::default());
 }
 
-/// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K + dt/2 C): it grows at least with the step and at most with
-/// its square.
+/// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
+/// dt/2 C): it grows at least with the step and at most with its square.
 fn not_too_long(step_s: f64, value: f64) -> f64 {
     if value < 1.0 {
         step_s / value.sqrt()
@@ -149,8 +160,8 @@ fn not_too_long(step_s: f64, value: f64) -> f64 {
     }
 }
 
-/// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2 + 4 k))/k, written so that nothing cancels.
-/// It is the limit where both belong to the same mode.
+/// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2 +
+/// 4 k))/k, written so that nothing cancels. It is the limit where both belong to the same mode.
 pub fn safe_step(k: f64, c: f64) -> f64 {
     4.0 / (c + (c * c + 4.0 * k).sqrt())
 }
@@ -166,13 +177,15 @@ impl Limit {
 }
 
 impl Bound {
-    /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2, and c, 1/s, of its own: the largest eigenvalue of a sum is
-    /// at most the sum of the largest ones.
+    /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2,
+    /// and c, 1/s, of its own: the largest eigenvalue of a sum is at most the sum of the largest
+    /// ones.
     pub fn with_more(&self, [k, c]: [f64; 2]) -> f64 {
         if k == 0.0 && c == 0.0 {
             return self.step_s;
         }
-        // What is there grows with the square of the step; with damping, at least with the step itself.
+        // What is there grows with the square of the step; with damping, at least with the step
+        // itself.
         let present = 2.0 / self.step_s;
         if self.is_damped {
             safe_step(k, c + present)
@@ -182,8 +195,9 @@ impl Bound {
     }
 }
 
-/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a step that is not too long. By the secant of the
-/// eigenvalue over dt; not above the limit if the eigenvalues found are the largest, and less than `NEAR` below it. And the iterations needed.
+/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a
+/// step that is not too long. By the secant of the eigenvalue over dt; not above the limit if the
+/// eigenvalues found are the largest, and less than `NEAR` below it. And the iterations needed.
 fn damped_limit(
     state: &mut State,
     contacts: &[LinearContact],
@@ -237,7 +251,8 @@ impl Weights {
     }
 }
 
-/// A vector with three displacements and three rotations for each particle, each times the root of its mass or inertia.
+/// A vector with three displacements and three rotations for each particle, each times the root of
+/// its mass or inertia.
 pub(super) type Field = Vec<[f64; 6]>;
 
 /// Largest eigenvalue of a sum of the operators over mass, and the iterations needed for it.
@@ -261,7 +276,8 @@ fn largest_eigenvalue(
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     let mut largest = (0.0, 0.0);
     for iteration in 1..=ITERATIONS[1].min(6 * roots.len()) {
-        // The image of the present vector takes the place of the one before, of which only its part is left.
+        // The image of the present vector takes the place of the one before, of which only its part
+        // is left.
         let beta_before = beside.last().copied().unwrap_or(0.0);
         let mut image = before;
         image.iter_mut().flatten().for_each(|f| *f *= -beta_before);
@@ -308,7 +324,8 @@ fn largest_eigenvalue(
     ((value + residual).max(0.0), diagonal.len())
 }
 
-/// Largest eigenvalue of Lanczos' tridiagonal matrix, and how far it can be from an eigenvalue of the operator.
+/// Largest eigenvalue of Lanczos' tridiagonal matrix, and how far it can be from an eigenvalue of
+/// the operator.
 fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
     let n = diagonal.len();
     let mut matrix = DMatrix::zeros(n, n);
@@ -352,7 +369,8 @@ fn inverse_mass_roots(state: &State) -> Field {
     roots
 }
 
-/// A unit vector that has a part of every mode: signs and sizes scattered by a hash, the same on every machine.
+/// A unit vector that has a part of every mode: signs and sizes scattered by a hash, the same on
+/// every machine.
 fn start(roots: &Field) -> Field {
     let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
     let mut field: Field = roots
@@ -381,14 +399,16 @@ fn dot(a: &Field, b: &Field) -> f64 {
     crate::stages::motion::ordered_sum(a.len(), |i| (0..6).map(|k| a[i][k] * b[i][k]).sum())
 }
 
-/// Displacements and rotations, or velocities and spins, that an entry of a field stands for; and forces and torques over the roots.
+/// Displacements and rotations, or velocities and spins, that an entry of a field stands for; and
+/// forces and torques over the roots.
 fn scaled(field: &[f64; 6], roots: &[f64; 6]) -> [f64; 6] {
     [0, 1, 2, 3, 4, 5].map(|k| field[k] * roots[k])
 }
 
-/// Adds `weight` times the stiffness times a field, each scaled by `roots`, to `sum`: minus the change of the forces in a small displacement, by a central difference, or
-/// from what they are `at_rest`: for half the work, good to about 1e-5.
-/// The poses in `displaced` (one for each particle) are overwritten.
+/// Adds `weight` times the stiffness times a field, each scaled by `roots`, to `sum`: minus the
+/// change of the forces in a small displacement, by a central difference, or from what they are
+/// `at_rest`: for half the work, good to about 1e-5. The poses in `displaced` (one for each
+/// particle) are overwritten.
 pub(super) fn add_stiffness_times(
     state: &mut State,
     weight: f64,

@@ -1,4 +1,5 @@
-//! Contacts as the limit of the time step sees them: springs and dashpots at the overlap that they have, or that an impact will give them.
+//! Contacts as the limit of the time step sees them: springs and dashpots at the overlap that they
+//! have, or that an impact will give them.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -13,7 +14,8 @@ use crate::state::contacts::{ContactKind, ContactPartition, Law, Rolling};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
 
-/// Translation and rotation of an end answer to a tangential force together: 1/m + R^2/I is so many times 1/m for a sphere.
+/// Translation and rotation of an end answer to a tangential force together: 1/m + R^2/I is so many
+/// times 1/m for a sphere.
 const WITH_ROTATION: f64 = 3.5;
 
 /// A contact that is there.
@@ -75,8 +77,9 @@ fn at_wall(
     }
 }
 
-/// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over mass, 1/s, of clumps: all contacts of a clump together, each
-/// pushing where the clump is turned most easily. 0 where no clump touches anything.
+/// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over
+/// mass, 1/s, of clumps: all contacts of a clump together, each pushing where the clump is turned
+/// most easily. 0 where no clump touches anything.
 pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
     let clumps = &state.clumps;
     let mut sums = vec![[0.0; 2]; clumps.all.len()];
@@ -105,9 +108,11 @@ pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
     rates
 }
 
-/// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of clumps: quickly found, and up to some times too large.
+/// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of
+/// clumps: quickly found, and up to some times too large.
 ///
-/// Of two ends that a spring joins, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so each end answers to twice the sum of its springs.
+/// Of two ends that a spring joins, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so each end answers to
+/// twice the sum of its springs.
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let contacts = linear_contacts(state);
     let p = &state.particles;
@@ -159,7 +164,8 @@ pub struct Weights {
     pub damping: f64,
 }
 
-/// Sets `wrenches` to what the contacts do to particles that are displaced, or move, by `motions`; one of each for each particle.
+/// Sets `wrenches` to what the contacts do to particles that are displaced, or move, by `motions`;
+/// one of each for each particle.
 pub fn linear_wrenches(
     contacts: &[LinearContact],
     weights: Weights,
@@ -197,8 +203,9 @@ pub fn linear_wrenches(
     }
 }
 
-/// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all that touch, 1/s2: how far the limit may have fallen since
-/// this was smaller. 0 where nothing touches. Contacts that are not stiffer than `matters` says may be left out.
+/// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all
+/// that touch, 1/s2: how far the limit may have fallen since this was smaller. 0 where nothing
+/// touches. Contacts that are not stiffer than `matters` says may be left out.
 pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -244,7 +251,8 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
 pub struct Matters {
     /// Stiffness over mass that contacts have had, 1/s2.
     pub above_1_s2: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be; none: nobody knows.
+    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be; none: nobody
+    /// knows.
     pub extremes: Option<[f64; 2]>,
 }
 
@@ -255,7 +263,8 @@ impl Matters {
         extremes: None,
     };
 
-    /// Overlap up to which no contact of a law matters, m: not even that of two of the largest, were they as light as the lightest.
+    /// Overlap up to which no contact of a law matters, m: not even that of two of the largest,
+    /// were they as light as the lightest.
     fn least_overlap_m(&self, law: &Law) -> f64 {
         let Some([radius_m, inverse_kg]) = self.extremes else {
             return 0.0;
@@ -273,8 +282,10 @@ impl Matters {
     }
 }
 
-/// What the first impact at a speed, m/s, will add to the largest eigenvalues of stiffness and damping over mass, 1/s2 and 1/s, if a particle meets a wall or
-/// another of its size by itself; and its [rate](largest_contact_rate_1_s2), 1/s2. A particle that a body pushes from behind may go deeper.
+/// What the first impact at a speed, m/s, will add to the largest eigenvalues of stiffness and
+/// damping over mass, 1/s2 and 1/s, if a particle meets a wall or another of its size by itself;
+/// and its [rate](largest_contact_rate_1_s2), 1/s2. A particle that a body pushes from behind may
+/// go deeper.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
@@ -355,8 +366,9 @@ pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     largest
 }
 
-/// Those on which impacts are fastest, with the inverse of the mass that each moves, 1/kg: of particles that move by themselves the smallest of each material; of
-/// the clumps of each template a largest sphere, as if it stood at the end of the longest lever.
+/// Those on which impacts are fastest, with the inverse of the mass that each moves, 1/kg: of
+/// particles that move by themselves the smallest of each material; of the clumps of each template
+/// a largest sphere, as if it stood at the end of the longest lever.
 fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();

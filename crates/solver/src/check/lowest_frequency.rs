@@ -12,7 +12,8 @@ const DEGREE: usize = 4;
 const MONOMIALS: usize = 35;
 /// Fields: each monomial as a displacement along x, y and z.
 const FIELDS: usize = 3 * MONOMIALS;
-/// Fields that differ from others by less than this share of the largest mass are left out: all there are in a flat or thin body.
+/// Fields that differ from others by less than this share of the largest mass are left out: all
+/// there are in a flat or thin body.
 const DEPENDENT: f64 = 1e-10;
 /// Ways to move without strain.
 const RIGID: usize = 6;
@@ -21,12 +22,15 @@ const NOTHING: f64 = 1e-12;
 /// Particles handled by one task.
 const CHUNK: usize = 1024;
 
-/// Lowest frequency of the bodies of a state as one free body, Hz: no supports, walls or contacts. None: nothing vibrates.
+/// Lowest frequency of the bodies of a state as one free body, Hz: no supports, walls or contacts.
+/// None: nothing vibrates.
 ///
-/// Displacements are polynomials of up to the fourth degree in x, y and z about the centre, and each particle turns by half the curl. The smallest
-/// of their frequencies is never below the true one. It is 0.3 % above that of the first bending mode of a slender beam (22.45 instead of
-/// 22.37 in the formula omega = 22.37 sqrt(EI/(rho A L^4))), and more above that of a packing, whose particles follow no polynomial. Pieces that no bond joins
-/// count as if the polynomials held them together.
+/// Displacements are polynomials of up to the fourth degree in x, y and z about the centre, and
+/// each particle turns by half the curl. The smallest of their frequencies is never below the true
+/// one. It is 0.3 % above that of the first bending mode of a slender beam (22.45 instead of 22.37
+/// in the formula omega = 22.37 sqrt(EI/(rho A L^4))), and more above that of a packing, whose
+/// particles follow no polynomial. Pieces that no bond joins count as if the polynomials held them
+/// together.
 ///
 /// The wrenches of the state are overwritten.
 pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {
@@ -190,7 +194,8 @@ impl Basis {
         sums.iter().sum()
     }
 
-    /// Coefficients of the three translations and the three rotations about the centre, one a column.
+    /// Coefficients of the three translations and the three rotations about the centre, one a
+    /// column.
     fn rigid(&self) -> DMatrix<f64> {
         let mut rigid = DMatrix::zeros(FIELDS, RIGID);
         let linear = |k: usize| {

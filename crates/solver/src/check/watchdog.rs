@@ -11,7 +11,8 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
 
-/// Energy that may appear above the limit, over what was put in: there it is a local mode that grows until it saturates, small against a large body.
+/// Energy that may appear above the limit, over what was put in: there it is a local mode that
+/// grows until it saturates, small against a large body.
 const BEYOND_LIMIT: f64 = 1e-4;
 /// Steps between two looks at the kinetic energy.
 const EVERY: u64 = 64;
@@ -27,7 +28,8 @@ pub struct Watchdog {
 impl Watchdog {
     /// For a run whose step is this share of the limit.
     ///
-    /// Leapfrog below the limit keeps an energy close to the true one; for the fastest mode the two differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
+    /// Leapfrog below the limit keeps an energy close to the true one; for the fastest mode the two
+    /// differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
     pub fn new(share_of_limit: f64) -> Self {
         let square = share_of_limit * share_of_limit;
         Self {
@@ -40,7 +42,8 @@ impl Watchdog {
         }
     }
 
-    /// Whether the kinetic energy says that the ledger should be looked at. Cheap; to be asked after every kick.
+    /// Whether the kinetic energy says that the ledger should be looked at. Cheap; to be asked
+    /// after every kick.
     pub fn is_due(&self, state: &State) -> bool {
         if !state.steps.is_multiple_of(EVERY) {
             return false;
@@ -58,7 +61,8 @@ impl Watchdog {
     /// # Errors
     /// Energy is no number, or more has appeared from nowhere than a stable run can show.
     pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
-        // A load that has only just begun has moved nothing yet: what it does in the half step to come counts as well.
+        // A load that has only just begun has moved nothing yet: what it does in the half step to
+        // come counts as well.
         let power_w = loads_power_w(
             &state.loads,
             state.time_s,
@@ -143,7 +147,8 @@ fn contact_culprit(state: &State) -> Option<String> {
     ))
 }
 
-/// The bond with the largest energy and the critical step of its two particles alone, s. Where energies are no numbers: the bond with the smallest step.
+/// The bond with the largest energy and the critical step of its two particles alone, s. Where
+/// energies are no numbers: the bond with the smallest step.
 fn culprit(state: &State) -> Option<(usize, f64)> {
     let own_step = |at: usize| {
         let ends = state.bonds.ends[at].map(|end| end as usize);

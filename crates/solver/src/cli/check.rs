@@ -15,7 +15,8 @@ use crate::stages::ledger::CHECKS;
 use crate::state::State;
 use crate::step::{all_bytes, number_of, step};
 
-/// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may take.
+/// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may
+/// take.
 const TRIAL: (u32, f64) = (2000, 0.5);
 
 /// Says what came of planning the scene, as text or as JSON.

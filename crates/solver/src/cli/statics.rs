@@ -13,7 +13,8 @@ use crate::run::statics::Outlook;
 /// Keys and tables that mean nothing to such a scene.
 const UNUSED: &str = "run.rest, run.time_step, run.safety, run.adaptive, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
 
-/// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state take.
+/// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state
+/// take.
 pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
     let state = &plan.state;
     let outlook =

@@ -32,7 +32,8 @@ pub(super) struct StressArguments {
 /// Tries the cases and prints their table.
 ///
 /// # Errors
-/// An unknown case, interrupted, cases that did not do as predicted: the table is printed all the same.
+/// An unknown case, interrupted, cases that did not do as predicted: the table is printed all the
+/// same.
 pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result<()> {
     let cases = chosen(&options.cases)?;
     let bar = if options.quiet || !std::io::stderr().is_terminal() {

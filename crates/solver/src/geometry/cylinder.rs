@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 use super::{Bounds, Touch, are_finite};
 
-/// A solid cylinder. Features: 0 the round side, 1 and 2 the first and the second end, 3 and 4 their rims.
+/// A solid cylinder. Features: 0 the round side, 1 and 2 the first and the second end, 3 and 4
+/// their rims.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {
     start: Vector3<f64>,

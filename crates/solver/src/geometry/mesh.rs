@@ -1,12 +1,16 @@
 //! A triangulated surface.
 //!
-//! A touch is a point of the surface that is the nearest one of every triangle on which it lies. So a tiled plane is a plane, a mesh of a box is a box, over its
-//! edges and corners too, and in a concave corner each side is touched. Triangles that overlap, or share no vertices where they meet, are no exception.
+//! A touch is a point of the surface that is the nearest one of every triangle on which it lies. So
+//! a tiled plane is a plane, a mesh of a box is a box, over its edges and corners too, and in a
+//! concave corner each side is touched. Triangles that overlap, or share no vertices where they
+//! meet, are no exception.
 //!
-//! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like one face, not like several, and a thin plate with one side.
+//! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like
+//! one face, not like several, and a thin plate with one side.
 //!
-//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex than 1e-7 of the reach, a point may be off by as much,
-//! and nearer than 1e-9 of the reach it is passed over if beyond the vertex the surface comes nearer.
+//! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex
+//! than 1e-7 of the reach, a point may be off by as much, and nearer than 1e-9 of the reach it is
+//! passed over if beyond the vertex the surface comes nearer.
 
 mod features;
 mod inside;
@@ -22,11 +26,13 @@ use features::features;
 use tree::Tree;
 use triangle::{REGIONS, Triangle};
 
-/// Two points are one within this share of the mesh's diagonal, which is what rounding costs, and that share of the reach, which is what thin triangles cost.
+/// Two points are one within this share of the mesh's diagonal, which is what rounding costs, and
+/// that share of the reach, which is what thin triangles cost.
 const SAME: [f64; 2] = [1e-12, 1e-9];
 
-/// In these lengths: how far a nearer point must be away to beat another one, and within what two that are not beaten are one. The second is larger, because
-/// around a vertex there may be a row of triangles of which none beats the next.
+/// In these lengths: how far a nearer point must be away to beat another one, and within what two
+/// that are not beaten are one. The second is larger, because around a vertex there may be a row of
+/// triangles of which none beats the next.
 const FAR: f64 = 4.0;
 const NEAR: f64 = 32.0;
 
@@ -36,9 +42,11 @@ const ALIKE: f64 = 0.99;
 /// A triangle lower than this share of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;
 
-/// A triangulated surface with two sides, which may be open. Pushes towards the side on which the centre is.
+/// A triangulated surface with two sides, which may be open. Pushes towards the side on which the
+/// centre is.
 ///
-/// Features are numbered: flat parts, then straight edges between or around them, then corners. Triangles in one plane are one flat part.
+/// Features are numbered: flat parts, then straight edges between or around them, then corners.
+/// Triangles in one plane are one flat part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// In the order of the tree.
@@ -62,7 +70,8 @@ pub struct Content {
     pub open_edges: usize,
     /// Edges of more than two triangles.
     pub crowded_edges: usize,
-    /// Edges along which not as many triangles run one way as the other. None: the surface is closed and wound one way, so that it has an inside.
+    /// Edges along which not as many triangles run one way as the other. None: the surface is
+    /// closed and wound one way, so that it has an inside.
     pub unpaired_edges: usize,
     /// Flat parts.
     pub flat_parts: u32,
@@ -85,7 +94,8 @@ impl Mesh {
     /// The surface of these triangles, each of three of these vertices, m.
     ///
     /// # Errors
-    /// A vertex that is not finite or does not exist, no triangle with an area, or too many to be numbered.
+    /// A vertex that is not finite or does not exist, no triangle with an area, or too many to be
+    /// numbered.
     pub fn new(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self> {
         check(vertices_m, triangles)?;
         let corners = |t: &[u32; 3]| t.map(|v| Vector3::from(vertices_m[v as usize]));
@@ -177,7 +187,8 @@ impl Mesh {
                     found[end] = touch;
                     end += 1;
                 }
-                // Of points that are one, that in a face is exact; that on an edge is more so than a corner.
+                // Of points that are one, that in a face is exact; that on an edge is more so than
+                // a corner.
                 Some(k)
                     if kind(&touch) < kind(&found[k])
                         && are_near(&touch, &found[k], NEAR * same_m) =>
@@ -197,7 +208,8 @@ impl Mesh {
         }
     }
 
-    /// Gives a touch its feature. One within a flat part is at the foot on its plane, whichever triangle told of it.
+    /// Gives a touch its feature. One within a flat part is at the foot on its plane, whichever
+    /// triangle told of it.
     fn name_feature(&self, touch: &mut Touch, c: &Vector3<f64>, near_m: f64) {
         let triangle = &self.triangles[(touch.feature / REGIONS) as usize];
         let feature = self.feature(touch);
@@ -208,7 +220,8 @@ impl Mesh {
         touch.feature = feature;
     }
 
-    /// The nearest point of triangle `t`. Until the touches are sorted out, a touch has `REGIONS * triangle + region` for its feature.
+    /// The nearest point of triangle `t`. Until the touches are sorted out, a touch has `REGIONS *
+    /// triangle + region` for its feature.
     fn nearest(&self, t: u32, c: &Vector3<f64>) -> Touch {
         let triangle = &self.triangles[t as usize];
         let (point, region) = triangle.nearest(c);

@@ -7,8 +7,8 @@ use super::{Bounds, Touch, are_finite};
 
 /// A solid box.
 ///
-/// A feature is sx + 3 sy + 9 sz, where sx is 0 on the side of the smallest x, 2 on that of the largest, 1 between, and so on: a face has one that is
-/// not 1, an edge two, a corner three.
+/// A feature is sx + 3 sy + 9 sz, where sx is 0 on the side of the smallest x, 2 on that of the
+/// largest, 1 between, and so on: a face has one that is not 1, an edge two, a corner three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidBox {
     low: [f64; 3],

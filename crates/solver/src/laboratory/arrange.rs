@@ -10,8 +10,10 @@ use crate::plan::bodies::place_bodies;
 use crate::plan::test_theory::ON_PINS;
 use crate::state::State;
 
-/// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets a support that moves, the run its end. A scene without a test stays
-/// as it is. The velocity rises evenly during the first period of `lowest_frequency_hz`, the body's in the test, which leaves the lowest mode at rest.
+/// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets a support
+/// that moves, the run its end. A scene without a test stays as it is. The velocity rises evenly
+/// during the first period of `lowest_frequency_hz`, the body's in the test, which leaves the
+/// lowest mode at rest.
 ///
 /// # Errors
 /// A support by the name of one of the test's.
@@ -64,8 +66,9 @@ pub fn support_of(set: &str) -> String {
     format!("test-{set}")
 }
 
-/// A normal_response: moves along the direction of the test, which is one of the axes. Across it the body may become thinner, as if the normal_response slid on ice: what holds
-/// it there as well makes it break at the normal_response.
+/// A normal_response: moves along the direction of the test, which is one of the axes. Across it
+/// the body may become thinner, as if the normal_response slid on ice: what holds it there as well
+/// makes it break at the normal_response.
 fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     let mut holds = [None; 6];
     for (hold, along) in holds.iter_mut().zip(test.direction) {
@@ -76,8 +79,8 @@ fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     holds
 }
 
-/// Lowest frequency of the body that a scene tests, Hz: that of the free body, and for bending what is left of it on two supports at its ends. None: the
-/// scene has no test.
+/// Lowest frequency of the body that a scene tests, Hz: that of the free body, and for bending what
+/// is left of it on two supports at its ends. None: the scene has no test.
 ///
 /// # Errors
 /// The body has no bonds.

@@ -1,4 +1,5 @@
-//! A picture of the crack: the body seen from the side, as it stood at the start, and the bonds that broke.
+//! A picture of the crack: the body seen from the side, as it stood at the start, and the bonds
+//! that broke.
 
 use std::fmt::Write;
 
@@ -163,7 +164,8 @@ fn write_particles(out: &mut String, picture: &CrackPicture<'_>, view: &View) ->
         .iter()
         .filter(|s| front - view.depth(s) < 2.0 * s[3])
         .collect();
-    // Those of a curved front that lie further back are missing less where too few are at the very front.
+    // Those of a curved front that lie further back are missing less where too few are at the very
+    // front.
     if shown.len() < picture.spheres.len().min(200) {
         shown = picture.spheres.iter().collect();
     }
@@ -184,7 +186,8 @@ fn write_particles(out: &mut String, picture: &CrackPicture<'_>, view: &View) ->
     writeln!(out, "</g>")
 }
 
-/// Where the crack may be: dashed lines at both sides; and the mean place of the broken bonds: a triangle below.
+/// Where the crack may be: dashed lines at both sides; and the mean place of the broken bonds: a
+/// triangle below.
 fn write_marks(out: &mut String, picture: &CrackPicture<'_>, view: &View) -> std::fmt::Result {
     let setup = picture.setup;
     let at = |offset: f64| {

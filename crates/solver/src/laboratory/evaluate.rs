@@ -8,7 +8,8 @@ use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::{Setup, Specimen};
 use crate::plan::test_theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 
-/// Shares of the largest load between which the stiffness is the slope of the load: below it pins settle into the surface, above it bonds break.
+/// Shares of the largest load between which the stiffness is the slope of the load: below it pins
+/// settle into the surface, above it bonds break.
 const SLOPE: [f64; 2] = [0.2, 0.6];
 /// Time over which loads are averaged, in periods of the lowest frequency.
 const WINDOW: f64 = 0.05;
@@ -66,7 +67,8 @@ pub struct Crack {
     pub offset_m: f64,
     /// Standard deviation of that, m.
     pub spread_m: f64,
-    /// The crack is where it should be if `offset_m` is no larger than this, m: half the distance of the loading pins of a four-point test.
+    /// The crack is where it should be if `offset_m` is no larger than this, m: half the distance
+    /// of the loading pins of a four-point test.
     pub within_m: f64,
     /// Whether it is.
     pub is_within: bool,
@@ -93,13 +95,15 @@ pub struct TestResult {
     pub dimensions: Vec<Figure>,
     /// Results.
     pub figures: Vec<Figure>,
-    /// What the bonds would need for the body to have the modulus and the strength that the scene names.
+    /// What the bonds would need for the body to have the modulus and the strength that the scene
+    /// names.
     pub calibration: Vec<Figure>,
     /// None: no bond broke.
     pub first_broken: Option<FirstBroken>,
     /// None: no bond broke.
     pub crack: Option<Crack>,
-    /// By how much half the rate changes the figures: (slow - fast)/fast. Empty: it was not checked.
+    /// By how much half the rate changes the figures: (slow - fast)/fast. Empty: it was not
+    /// checked.
     pub half_the_rate_changes: Vec<Figure>,
 }
 
@@ -153,12 +157,14 @@ pub struct Slope {
     pub start_m: f64,
 }
 
-/// The rows of a test by which it is evaluated: means over a twentieth of the lowest period, which leave out what swings faster.
+/// The rows of a test by which it is evaluated: means over a twentieth of the lowest period, which
+/// leave out what swings faster.
 pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
     record.smoothed(WINDOW / lowest_frequency_hz)
 }
 
-/// The slope of the load over a `way`, between 20 % and 60 % of the largest load. By least squares. None: too few rows.
+/// The slope of the load over a `way`, between 20 % and 60 % of the largest load. By least squares.
+/// None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let peak = peak(rows)?;
     let up_to = |share: f64| {
@@ -181,7 +187,8 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     })
 }
 
-/// Travel at which the line fitted to the load over the travel has no load, m: play until everything touches. 0 where there is no line.
+/// Travel at which the line fitted to the load over the travel has no load, m: play until
+/// everything touches. 0 where there is no line.
 pub fn play_m(rows: &[Row]) -> f64 {
     slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
 }
@@ -318,7 +325,8 @@ pub const FAILURE_FORCE: &str = "failure force";
 /// Stress at that force by the formula of the test.
 pub const STRENGTH: &str = "strength";
 
-/// What the bonds would need. Stresses and strains are proportional to modulus and strength of the bonds: one run says the factor.
+/// What the bonds would need. Stresses and strains are proportional to modulus and strength of the
+/// bonds: one run says the factor.
 fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
     let mut found = Vec::new();
     let Some(bonds) = evidence.bonds else {

@@ -1,4 +1,5 @@
-//! What a test shows: its curve, the picture of the crack, and a page with both and all its numbers.
+//! What a test shows: its curve, the picture of the crack, and a page with both and all its
+//! numbers.
 
 use std::fmt::Write;
 
@@ -27,7 +28,8 @@ pub struct TestFiles<'a> {
     pub picture: CrackPicture<'a>,
 }
 
-/// Writes `plots/force-displacement.svg`, `plots/crack.svg`, `force-displacement.csv` and `test.html`.
+/// Writes `plots/force-displacement.svg`, `plots/crack.svg`, `force-displacement.csv` and
+/// `test.html`.
 ///
 /// # Errors
 /// Those of the files.
@@ -45,7 +47,8 @@ pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
 const COLUMNS: &str =
     "time_s,travel_m,displacement_m,load_n,force_n,reaction_n,deflection_m,broken_bonds";
 
-/// What was noted, a row for each interval; the displacement is the travel less `play_m`. Every number reads back as the same bits.
+/// What was noted, a row for each interval; the displacement is the travel less `play_m`. Every
+/// number reads back as the same bits.
 fn curve_csv(record: &Record, play_m: f64) -> String {
     let mut out = format!("{COLUMNS}\n");
     for row in &record.rows {
@@ -68,7 +71,8 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
     out
 }
 
-/// Load over displacement of the rows by which a test is evaluated ([`rows_of`]), with the theory's line where the scene names a modulus.
+/// Load over displacement of the rows by which a test is evaluated ([`rows_of`]), with the theory's
+/// line where the scene names a modulus.
 pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
     let play_m = play_m(rows);
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {

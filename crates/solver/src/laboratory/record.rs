@@ -22,15 +22,17 @@ pub struct Row {
     pub travel_m: f64,
     /// Force of all that loads, along the direction of the test, N.
     pub force_n: f64,
-    /// Force of all other walls and supports against the direction of the test, less what gravity adds to it, N.
+    /// Force of all other walls and supports against the direction of the test, less what gravity
+    /// adds to it, N.
     pub reaction_n: f64,
     /// Deflection or elongation of the body between the places where it is measured, m.
     pub deflection_m: f64,
 }
 
 impl Row {
-    /// What the body carries, N: the mean of the force of what loads and of what holds against it. The two differ by the body's inertia, which the mean
-    /// leaves out as far as its centre of mass lies halfway between them.
+    /// What the body carries, N: the mean of the force of what loads and of what holds against it.
+    /// The two differ by the body's inertia, which the mean leaves out as far as its centre of mass
+    /// lies halfway between them.
     pub fn load_n(&self) -> f64 {
         f64::midpoint(self.force_n, self.reaction_n)
     }
@@ -153,7 +155,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Record {
-    /// Notes a step between a kick and the drift after it. Whether the body is broken: bonds have, and the force has fallen below half of its largest.
+    /// Notes a step between a kick and the drift after it. Whether the body is broken: bonds have,
+    /// and the force has fallen below half of its largest.
     pub fn note(&mut self, setup: &Setup, loading: &Loading, state: &State) -> bool {
         for broken in &state.events.broken {
             self.broken.push(BrokenBond {
@@ -191,7 +194,8 @@ impl Record {
         !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n
     }
 
-    /// Means of the rows over `over_s`, around each: rows are shorter where the time step has become smaller.
+    /// Means of the rows over `over_s`, around each: rows are shorter where the time step has
+    /// become smaller.
     pub fn smoothed(&self, over_s: f64) -> Vec<Row> {
         let rows = &self.rows;
         let around = |row: &Row| {

@@ -53,7 +53,8 @@ impl TestResult {
         broken as f64 / all.max(1) as f64
     }
 
-    /// What is no number in a table: how fast, whether it broke, where it began, where the crack is, what the rate changes. Each with a name.
+    /// What is no number in a table: how fast, whether it broke, where it began, where the crack
+    /// is, what the rate changes. Each with a name.
     pub fn sentences(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let mut say = |name: &str, text: String| found.push((name.to_owned(), text));

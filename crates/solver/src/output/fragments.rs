@@ -70,8 +70,8 @@ pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     write_fragment_tree(&folder.fragment_tree(), rows)
 }
 
-/// What one of the clusters that are or were broke into, for a person: `cluster 3 -> 7, 8 (1204 + 38 particles)`. The largest stand first, and of many only
-/// some are named.
+/// What one of the clusters that are or were broke into, for a person: `cluster 3 -> 7, 8 (1204 +
+/// 38 particles)`. The largest stand first, and of many only some are named.
 pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     let particles = |id: u32| history[id as usize].particles;
     let mut children = split.children.clone();
@@ -94,7 +94,8 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     text
 }
 
-/// Draws the number of fragments over time, if it changes, and their sizes at the end, if there is more than one.
+/// Draws the number of fragments over time, if it changes, and their sizes at the end, if there is
+/// more than one.
 ///
 /// # Errors
 /// Those of the files.
@@ -143,7 +144,8 @@ pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
     points
 }
 
-/// Size, m, and share of all mass in fragments of that size and smaller ones, with a step at every size.
+/// Size, m, and share of all mass in fragments of that size and smaller ones, with a step at every
+/// size.
 pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
     let mut share = 0.0;
     let mut points = Vec::new();

@@ -14,7 +14,8 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::events::REMOVED;
 
-/// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after them the spheres of clumps.
+/// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after
+/// them the spheres of clumps.
 #[derive(Debug, Clone)]
 pub struct FrameOrder {
     particles: Vec<u32>,

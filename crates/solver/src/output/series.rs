@@ -28,7 +28,8 @@ const OTHERS: [&str; 5] = [
     "time_step_s",
 ];
 
-/// Names of all columns after the time, with units, no two alike: energies and errors, force on and work of each wall, measures.
+/// Names of all columns after the time, with units, no two alike: energies and errors, force on and
+/// work of each wall, measures.
 pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, probes: &[Probe]) -> Vec<String> {
     let mut columns: Vec<String> = ENERGIES
         .iter()

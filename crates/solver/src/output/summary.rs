@@ -55,7 +55,8 @@ pub struct Summary {
     pub machine: String,
     /// Number of particles.
     pub particles: usize,
-    /// Number of bonds, broken ones included; where bodies come and go, of those that are there at the end.
+    /// Number of bonds, broken ones included; where bodies come and go, of those that are there at
+    /// the end.
     pub bonds: usize,
     /// What each body weighed at the start, by its name.
     pub bodies: BTreeMap<String, BodyMass>,

@@ -1,18 +1,23 @@
-//! Contacts between two spheres, or a sphere and a wall: a normal law with friction, and rolling friction.
+//! Contacts between two spheres, or a sphere and a wall: a normal law with friction, and rolling
+//! friction.
 //!
-//! With n the unit normal from a to b, d the overlap, v the velocity of b's surface against a's and v_t its part across n, the force on b is
+//! With n the unit normal from a to b, d the overlap, v the velocity of b's surface against a's and
+//! v_t its part across n, the force on b is
 //!
 //!   N n - k_t xi - c_t v_t,   N = elastic(d) - c_n v . n >= 0,   |k_t xi + c_t v_t| <= mu N
 //!
-//! and the moment on b is -k_r theta - c_r w_t, with the relative spin w in place of v. The [normal law](NormalLaw) says what elastic, k_t, c_n and
-//! c_t are, the [rolling friction](RollingFriction) what becomes of the moment.
+//! and the moment on b is -k_r theta - c_r w_t, with the relative spin w in place of v. The [normal
+//! law](NormalLaw) says what elastic, k_t, c_n and c_t are, the [rolling friction](RollingFriction)
+//! what becomes of the moment.
 //!
-//! The springs xi and theta are what a contact remembers. They are summed up from velocities that leapfrog has halfway through a step, in the axes
-//! of the middle of the step (half the turn of the normal, half the mean spin about it), so that the step is the same backwards.
+//! The springs xi and theta are what a contact remembers. They are summed up from velocities that
+//! leapfrog has halfway through a step, in the axes of the middle of the step (half the turn of the
+//! normal, half the mean spin about it), so that the step is the same backwards.
 //!
-//! The books are exact to second order in the time step. The springs' own losses come as energies of the step just made: the mean of the forces at
-//! its two ends times the motion between, less what is stored. Damping comes as forces: half of their power with the velocity before the kick, half with that after it
-//! ([`Damping::power_w`]).
+//! The books are exact to second order in the time step. The springs' own losses come as energies
+//! of the step just made: the mean of the forces at its two ends times the motion between, less
+//! what is stored. Damping comes as forces: half of their power with the velocity before the kick,
+//! half with that after it ([`Damping::power_w`]).
 //!
 //! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that.
 
@@ -58,7 +63,8 @@ pub struct Response<T = f64> {
     pub springs: ContactSprings<T>,
     /// Force on b, N. The first end feels the opposite.
     pub force_on_b: Vec3<T>,
-    /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force come [on top](kinematics::torques).
+    /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force
+    /// come [on top](kinematics::torques).
     pub moment_on_b: Vec3<T>,
     /// Elastic energy.
     pub energy: ContactEnergy<T>,
@@ -79,9 +85,11 @@ pub struct ContactEnergy<T = f64> {
     pub rolling: T,
 }
 
-/// Energy the springs lost in a step, J: sliding, and what a spring loses as the normal load changes.
+/// Energy the springs lost in a step, J: sliding, and what a spring loses as the normal load
+/// changes.
 ///
-/// Not below -1/8 k x^2, with k the stiffness before the step and x the motion in it, and that only in a step that turns a force round.
+/// Not below -1/8 k x^2, with k the stiffness before the step and x the motion in it, and that only
+/// in a step that turns a force round.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lost<T = f64> {
     /// By sliding.
@@ -122,9 +130,11 @@ impl<T: Number> Damping<T> {
         }
     }
 
-    /// Power lost at this [relative velocity](kinematics::relative_velocity), m/s, and spin of b against a, rad/s, where the forces act.
+    /// Power lost at this [relative velocity](kinematics::relative_velocity), m/s, and spin of b
+    /// against a, rad/s, where the forces act.
     ///
-    /// Over a step: half of it with the forces at its beginning, half with those at its end, both with the velocity halfway.
+    /// Over a step: half of it with the forces at its beginning, half with those at its end, both
+    /// with the velocity halfway.
     #[inline(always)]
     pub fn power_w(&self, velocity_m_s: Vec3<T>, spin_rad_s: Vec3<T>) -> DampingPower<T> {
         DampingPower {
@@ -145,8 +155,8 @@ pub struct Damped<T = f64> {
 }
 
 impl<T: Number> Damped<T> {
-    /// Energy that damping took in a step of `dt`, s, that began with `before` and ends so, J: the mean of the two forces times the motion between, as springs'
-    /// losses are booked.
+    /// Energy that damping took in a step of `dt`, s, that began with `before` and ends so, J: the
+    /// mean of the two forces times the motion between, as springs' losses are booked.
     #[inline(always)]
     pub fn lost_j(&self, before: &Self, touch: &ContactKinematics<T>, dt: f64) -> T {
         let force = before.force_n + self.force_n;
@@ -189,11 +199,14 @@ pub trait NormalLaw<T: Number> {
     fn parameters(&self) -> &pair_parameters::PairParameters<T>;
 }
 
-/// The damping c, N s/m, of a force -c v that is computed with the velocity of half a step of `dt`, s, ago and yet takes from an impact what it should: c/(1 + g/2)
-/// with g = c dt/(2 m) and the reduced mass m, kg. With constant stiffness that is of second order in the step, with Hertz's a tenth of the first order is left.
+/// The damping c, N s/m, of a force -c v that is computed with the velocity of half a step of `dt`,
+/// s, ago and yet takes from an impact what it should: c/(1 + g/2) with g = c dt/(2 m) and the
+/// reduced mass m, kg. With constant stiffness that is of second order in the step, with Hertz's a
+/// tenth of the first order is left.
 ///
-/// With c itself, a step takes -ln(1 - 2 g)/2, which is g (1 + g), from the logarithm of the speed, and the ends swing faster by a share of g/2, so that they
-/// touch for that much less time: together an impact loses a share of g/2 too much.
+/// With c itself, a step takes -ln(1 - 2 g)/2, which is g (1 + g), from the logarithm of the speed,
+/// and the ends swing faster by a share of g/2, so that they touch for that much less time:
+/// together an impact loses a share of g/2 too much.
 #[inline(always)]
 fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
     let mass = mass_kg.scale(4.0);
@@ -202,7 +215,8 @@ fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
 
 /// What a contact does after a step of `dt` (s) which the touch and the history before it describe.
 ///
-/// Meant for the inside of a loop over contacts: there is no branch in it, and what the caller does not read is not computed.
+/// Meant for the inside of a loop over contacts: there is no branch in it, and what the caller does
+/// not read is not computed.
 #[inline(always)]
 pub fn response<T: Number>(
     law: &impl NormalLaw<T>,
@@ -290,7 +304,8 @@ pub struct Linearised<T = f64> {
     pub rolling_damping_n_m_s: T,
 }
 
-/// The linearised contact. All its numbers grow with the overlap, so at the largest overlap there will be they are the largest.
+/// The linearised contact. All its numbers grow with the overlap, so at the largest overlap there
+/// will be they are the largest.
 #[inline(always)]
 pub fn linearised<T: Number>(
     law: &impl NormalLaw<T>,

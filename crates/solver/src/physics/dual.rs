@@ -1,4 +1,5 @@
-//! Numbers that carry their derivatives: forward differentiation of any formula that is written for [`Number`], exact to rounding.
+//! Numbers that carry their derivatives: forward differentiation of any formula that is written for
+//! [`Number`], exact to rounding.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -1,10 +1,12 @@
-//! Formulas that are worked out for one bond or contact or for several at once are written for any [`Number`]: an `f64`, or one `f64` for each of them.
+//! Formulas that are worked out for one bond or contact or for several at once are written for any
+//! [`Number`]: an `f64`, or one `f64` for each of them.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 
-/// What a formula needs of its numbers. Every operation rounds as that of `f64` does, so several at once give the same bits as one by one.
+/// What a formula needs of its numbers. Every operation rounds as that of `f64` does, so several at
+/// once give the same bits as one by one.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -188,7 +190,8 @@ impl<T: Number> Rotation<T> {
         t * w + axis.cross(t) + vector
     }
 
-    /// The rotation after which `before` becomes this one, in space: this times the conjugate of `before`.
+    /// The rotation after which `before` becomes this one, in space: this times the conjugate of
+    /// `before`.
     #[inline(always)]
     pub fn relative_to(self, before: Self) -> Self {
         let (Self(b, wb), Self(a, wa)) = (self, before);

@@ -1,4 +1,5 @@
-//! Numbers that look random and depend on nothing but names: no state has to be kept, and they are the same in whatever order they are asked for.
+//! Numbers that look random and depend on nothing but names: no state has to be kept, and they are
+//! the same in whatever order they are asked for.
 
 /// A hash of a seed and words, in their order.
 pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {

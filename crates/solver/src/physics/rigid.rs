@@ -5,7 +5,8 @@ use crate::physics::number::{Number, Vec3};
 /// Square of the half angle, below which it is summed as a series, exact to rounding.
 const SMALL: f64 = 0.01;
 
-/// The orientation `turned` (unit quaternion x, y, z, w) after the rotation vector `turn` (rad, in space): the exponential of half of it, from the left.
+/// The orientation `turned` (unit quaternion x, y, z, w) after the rotation vector `turn` (rad, in
+/// space): the exponential of half of it, from the left.
 ///
 /// The norm is set right to first order, so that it does not drift.
 #[inline(always)]
@@ -76,7 +77,8 @@ fn small_angle<T: Number>(square: T) -> (T, T) {
     )
 }
 
-/// 1 less a quotient times the rest of a series. A product, as a division takes several times as long.
+/// 1 less a quotient times the rest of a series. A product, as a division takes several times as
+/// long.
 #[inline(always)]
 fn less<T: Number>(square: T, divisor: f64, rest: T) -> T {
     (-(square.scale(1.0 / divisor) * rest)).plus(1.0)

@@ -1,8 +1,12 @@
 //! Free rotation of a rigid body.
 //!
-//! The kinetic energy is split into parts that each turn the body about one axis, exactly, in a symmetric order (Reich 1994; Dullweber, Leimkuhler and McLachlan 1997). The step is of second order and reversible, and the error of the energy stays bounded. The angular momentum in space is never written, so it stays the same to the last bit.
+//! The kinetic energy is split into parts that each turn the body about one axis, exactly, in a
+//! symmetric order (Reich 1994; Dullweber, Leimkuhler and McLachlan 1997). The step is of second
+//! order and reversible, and the error of the energy stays bounded. The angular momentum in space
+//! is never written, so it stays the same to the last bit.
 //!
-//! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into space.
+//! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into
+//! space.
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
@@ -13,11 +17,18 @@ const EDGE: f64 = 0.193_183_327_503_783_6;
 
 /// Turns a body freely for a time.
 ///
-/// `orientation` is the unit quaternion x, y, z, w from principal axes to space, `angular_momentum_world` in space, kg m^2/s, `moments` the principal moments, all positive, kg m^2, and `dt` the time, s, which may be negative.
+/// `orientation` is the unit quaternion x, y, z, w from principal axes to space,
+/// `angular_momentum_world` in space, kg m^2/s, `moments` the principal moments, all positive, kg
+/// m^2, and `dt` the time, s, which may be negative.
 ///
-/// The kinetic energy is |L|^2 / (2 M), with M the middle moment, and L_k^2 / 2 (1 / I_k - 1 / M) for the other two axes. The first part turns the body about its angular momentum and leaves the others alone, so that it can be taken at any time. The other two alternate, the axis of the least moment first and last (five turns, McLachlan 1995). A body with two equal moments turns exactly, and one with nearly equal ones nearly so.
+/// The kinetic energy is |L|^2 / (2 M), with M the middle moment, and L_k^2 / 2 (1 / I_k - 1 / M)
+/// for the other two axes. The first part turns the body about its angular momentum and leaves the
+/// others alone, so that it can be taken at any time. The other two alternate, the axis of the
+/// least moment first and last (five turns, McLachlan 1995). A body with two equal moments turns
+/// exactly, and one with nearly equal ones nearly so.
 ///
-/// The energy is right to 1e-5 with 50 steps or more in the time 2 pi I / |L|, with I the least moment.
+/// The energy is right to 1e-5 with 50 steps or more in the time 2 pi I / |L|, with I the least
+/// moment.
 pub fn drift(
     orientation: &mut [f64; 4],
     angular_momentum_world: [f64; 3],
@@ -43,7 +54,8 @@ pub fn drift(
     *orientation = turn(q, about);
 }
 
-/// The spin of a body in space, rad/s, from its orientation (unit quaternion x, y, z, w), its angular momentum in space, kg m^2/s, and its principal moments, kg m^2.
+/// The spin of a body in space, rad/s, from its orientation (unit quaternion x, y, z, w), its
+/// angular momentum in space, kg m^2/s, and its principal moments, kg m^2.
 pub fn spin_rad_s(
     orientation: &[f64; 4],
     angular_momentum_world: [f64; 3],
@@ -53,7 +65,8 @@ pub fn spin_rad_s(
     rotated(orientation, [0, 1, 2].map(|k| l[k] / moments[k]))
 }
 
-/// The kinetic energy of the rotation, J, from the orientation (unit quaternion x, y, z, w), the angular momentum in space, kg m^2/s, and the principal moments, kg m^2.
+/// The kinetic energy of the rotation, J, from the orientation (unit quaternion x, y, z, w), the
+/// angular momentum in space, kg m^2/s, and the principal moments, kg m^2.
 pub fn kinetic_j(
     orientation: &[f64; 4],
     angular_momentum_world: [f64; 3],
@@ -63,7 +76,8 @@ pub fn kinetic_j(
     0.5 * (l[0] * l[0] / moments[0] + l[1] * l[1] / moments[1] + l[2] * l[2] / moments[2])
 }
 
-/// Turns a body about one of its axes for a time, s, times a rate per angular momentum, 1/(kg m^2), and the angular momentum in the body the other way.
+/// Turns a body about one of its axes for a time, s, times a rate per angular momentum, 1/(kg m^2),
+/// and the angular momentum in the body the other way.
 #[inline(always)]
 fn spin_about(axis: usize, q: &mut [f64; 4], l: &mut [f64; 3], time_rate: f64) {
     let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -26,15 +26,18 @@ use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
 
-/// Largest share of a radius by which a coordinate may be rounded: a strain of a thousandth is known to a thousandth then.
+/// Largest share of a radius by which a coordinate may be rounded: a strain of a thousandth is
+/// known to a thousandth then.
 const ROUNDING: f64 = 1e-6;
-/// A length in a file is taken as that of the bond at rest where it stands if the two differ by less than this part.
+/// A length in a file is taken as that of the bond at rest where it stands if the two differ by
+/// less than this part.
 const SAME_LENGTH: f64 = 1e-9;
 
 /// Particles and bonds of all bodies of a scene, where they start.
 ///
 /// # Errors
-/// Bonds without a kind; no density; a bond without length; masses or stiffnesses beyond all numbers.
+/// Bonds without a kind; no density; a bond without length; masses or stiffnesses beyond all
+/// numbers.
 pub fn place_bodies(
     scene: &Scene,
     mut read: BTreeMap<String, Body>,
@@ -98,7 +101,8 @@ pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
     matches!(start, Some(StartAs::Clump(_))) && !scene.replacement.contains_key(name)
 }
 
-/// The same message said of a body of the scene and, where it comes from a file, of that one of its `files` that says so.
+/// The same message said of a body of the scene and, where it comes from a file, of that one of its
+/// `files` that says so.
 fn within(
     error: Diagnostic,
     scene: &Scene,
@@ -208,7 +212,8 @@ fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Bod
     Ok(mass_kg / volume_m3)
 }
 
-/// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold them.
+/// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold
+/// them.
 fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> {
     let inert = [
         particles.motions[i].inverse_mass,

@@ -1,4 +1,5 @@
-//! Templates of rigid clumps, from the bodies of a scene, and the clumps that stand in it at the start.
+//! Templates of rigid clumps, from the bodies of a scene, and the clumps that stand in it at the
+//! start.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -38,7 +39,8 @@ pub(super) fn unused_bonds(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<
         .collect()
 }
 
-/// Templates, in the order of their names, from bodies that have been read. `ball_m`: see [`ball_m`].
+/// Templates, in the order of their names, from bodies that have been read. `ball_m`: see
+/// [`ball_m`].
 ///
 /// # Errors
 /// As those of bodies that stand in the scene.
@@ -52,7 +54,8 @@ pub(super) fn templates(
     for name in names {
         if let Some(body) = read.remove(name) {
             let mut template = template(scene, name, &body)?;
-            // Which spheres are outer ones takes longest to find, and bodies of one file have the same.
+            // Which spheres are outer ones takes longest to find, and bodies of one file have the
+            // same.
             let same = |other: &&Arc<Template>| {
                 other.scale == template.scale && other.spheres == template.spheres
             };
@@ -66,8 +69,9 @@ pub(super) fn templates(
     Ok(templates)
 }
 
-/// Radius, m, of a ball for which all that clumps can meet has room where it touches them: see [`outer_layer`]. 0 where the scene has walls of triangles, whose
-/// edges may be as sharp as knives.
+/// Radius, m, of a ball for which all that clumps can meet has room where it touches them: see
+/// [`outer_layer`]. 0 where the scene has walls of triangles, whose edges may be as sharp as
+/// knives.
 pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     let radii = read.values().flat_map(|body| &body.radii).copied();
     let smallest_m = radii.fold(f64::INFINITY, f64::min);
@@ -165,7 +169,8 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     })
 }
 
-/// Clumps that stand in the scene at the start: bodies that start as clumps and come through no inlet.
+/// Clumps that stand in the scene at the start: bodies that start as clumps and come through no
+/// inlet.
 pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump> {
     let by_inlets: BTreeSet<&String> = scene
         .inlets
@@ -193,7 +198,8 @@ pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump>
         .collect()
 }
 
-/// Whether the scene says how all clumps and what comes of them meet each other and the other bodies.
+/// Whether the scene says how all clumps and what comes of them meet each other and the other
+/// bodies.
 ///
 /// # Errors
 /// Names the materials of which it says nothing.

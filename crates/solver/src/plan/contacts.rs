@@ -1,4 +1,5 @@
-//! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of particles may.
+//! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of
+//! particles may.
 
 use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
 use dem_io::{Diagnostic, Result};
@@ -13,11 +14,13 @@ use crate::state::bodies::{PlacedBody, called};
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
 
-/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise or things are fast; and the largest such share.
+/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise
+/// or things are fast; and the largest such share.
 const SKIN: [f64; 2] = [0.1, 0.5];
 /// Steps for which a list of near pairs is to do at the speed of the first impacts.
 const STEPS_PER_LIST: f64 = 30.0;
-/// Ends that overlap at the start by less than this share of the smaller radius only touch: files round.
+/// Ends that overlap at the start by less than this share of the smaller radius only touch: files
+/// round.
 pub(super) const ROUNDING: f64 = 1e-6;
 /// Materials that a byte can tell apart, and one that stands for none.
 const MOST_MATERIALS: usize = 255;
@@ -132,7 +135,8 @@ pub(super) fn are_needed(scene: &Scene) -> bool {
 /// Puts contacts into a state whose clusters are known.
 ///
 /// # Errors
-/// A pair of materials that may meet without a word on how; particles of different clusters that overlap, unless they may.
+/// A pair of materials that may meet without a word on how; particles of different clusters that
+/// overlap, unless they may.
 pub(super) fn place_contacts(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -201,7 +205,8 @@ fn is_alone(state: &State, clusters: &Clusters) -> bool {
     clusters.living().count() <= 1 && !breaks && state.rules.inlets.is_empty()
 }
 
-/// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may move in some steps, both.
+/// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may
+/// move in some steps, both.
 pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
     let (step_s, largest_m) = (state.time_step_s, state.largest_radius_m());
     if let (Some(contacts), None) = (&mut state.contacts, scene.search.skin) {

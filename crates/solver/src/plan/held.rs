@@ -1,4 +1,5 @@
-//! Whether supports hold every piece: what they leave free to move as a whole has no equilibrium of its own.
+//! Whether supports hold every piece: what they leave free to move as a whole has no equilibrium of
+//! its own.
 
 use dem_io::{Diagnostic, Result};
 use nalgebra::{Matrix6, SymmetricEigen, Vector3, Vector6};
@@ -8,10 +9,12 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
 
-/// Smallest share of the best held rigid motion with which another counts as held: some 1e-6 in lengths.
+/// Smallest share of the best held rigid motion with which another counts as held: some 1e-6 in
+/// lengths.
 const HELD: f64 = 1e-12;
 
-/// Refuses a state of which a piece can move as a whole: a body without bonds, a particle without any, a body that supports hold too little.
+/// Refuses a state of which a piece can move as a whole: a body without bonds, a particle without
+/// any, a body that supports hold too little.
 ///
 /// # Errors
 /// The first such piece, with how many of its six rigid motions are free.

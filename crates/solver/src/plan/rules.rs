@@ -251,7 +251,8 @@ fn is_apart(a: &Bounds, b: &Bounds) -> bool {
     (0..3).any(|k| common.low[k] > common.high[k])
 }
 
-/// About how many bodies per second can leave the region of an inlet. None: they do not move of themselves.
+/// About how many bodies per second can leave the region of an inlet. None: they do not move of
+/// themselves.
 fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
     let speed = Vector3::from(inlet.velocity_m_s).norm();
     let reaches = inlet.templates.iter();

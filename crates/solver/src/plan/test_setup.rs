@@ -1,4 +1,5 @@
-//! What stands where in a test: the dimensions that its formulas need, and the particles whose way is measured.
+//! What stands where in a test: the dimensions that its formulas need, and the particles whose way
+//! is measured.
 
 use dem_io::scene::{Scene, Test, TestKind, Wall, WallShape};
 use dem_io::units::significant;
@@ -14,7 +15,8 @@ const SPOT: f64 = 0.125;
 const GAUGE: f64 = 0.5;
 /// Larger over smaller size of a disc across its axis, at most.
 const ROUND: f64 = 1.25;
-/// A disc has split in two if the crack is no further from the loaded diameter than this share of it, on average.
+/// A disc has split in two if the crack is no further from the loaded diameter than this share of
+/// it, on average.
 const NEAR_DIAMETER: f64 = 0.1;
 
 /// What is tested.
@@ -45,13 +47,15 @@ pub struct Setup {
     pub specimen: Specimen,
     /// Unit vector in which the load moves. Length 3.
     pub direction: [f64; 3],
-    /// Unit vector along which the place of the crack is told: along a beam or bar, across the loaded diameter of a disc. Length 3.
+    /// Unit vector along which the place of the crack is told: along a beam or bar, across the
+    /// loaded diameter of a disc. Length 3.
     pub along: [f64; 3],
     /// Middle of the body, and of the span of a beam, m. Length 3.
     pub middle_m: [f64; 3],
     /// The crack is where it should be if it is no further from the middle than this on average, m.
     pub crack_within_m: f64,
-    /// Particles whose displacement, less that of `resting`, is the body's deflection or elongation. Empty: not measured.
+    /// Particles whose displacement, less that of `resting`, is the body's deflection or
+    /// elongation. Empty: not measured.
     pub moving: Vec<u32>,
     /// The others.
     pub resting: Vec<u32>,
@@ -61,10 +65,12 @@ pub struct Setup {
     pub mean_radius_m: f64,
 }
 
-/// Looks at walls and body. `particles`: those of the tested body, in a state before the first step. `volume_m3`: of the body's shape, if known.
+/// Looks at walls and body. `particles`: those of the tested body, in a state before the first
+/// step. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
-/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is nowhere between them; a disc that is not round.
+/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is
+/// nowhere between them; a disc that is not round.
 pub fn setup(
     scene: &Scene,
     test: &Test,
@@ -242,7 +248,8 @@ fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
 
-/// Refuses walls that load by moving away from the body. Of an STL it is not known where it would meet the body.
+/// Refuses walls that load by moving away from the body. Of an STL it is not known where it would
+/// meet the body.
 fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
     for name in &test.moves {
         let Some(wall) = scene.walls.get(name) else {
@@ -348,8 +355,8 @@ fn bar(
     }
 }
 
-/// Chooses the particles whose way is measured: of a beam those at its middle height where it is loaded and where it is supported, of a bar two
-/// slices at the ends of its middle half.
+/// Chooses the particles whose way is measured: of a beam those at its middle height where it is
+/// loaded and where it is supported, of a bar two slices at the ends of its middle half.
 fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
     let middle = Vector3::from(setup.middle_m);
     let [along, direction] = [setup.along, setup.direction].map(Vector3::from);

@@ -1,6 +1,7 @@
 //! Closed forms of the tests: beams by Euler, Bernoulli and Timoshenko, the disc, the bar.
 
-/// A beam of rectangular section on two supports, loaded halfway between them by one pin or, symmetrically, by two.
+/// A beam of rectangular section on two supports, loaded halfway between them by one pin or,
+/// symmetrically, by two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
     /// Distance of the supports, m. The thesis calls it the length of the sample.
@@ -16,7 +17,8 @@ pub struct Beam {
 /// Shear coefficient of a rectangle: 5/6, from the energy of the parabolic shear stress.
 pub const KAPPA: f64 = 5.0 / 6.0;
 
-/// Shear coefficient of a rectangle by Cowper 1966, [doi:10.1115/1.3625046](https://doi.org/10.1115/1.3625046).
+/// Shear coefficient of a rectangle by Cowper 1966,
+/// [doi:10.1115/1.3625046](https://doi.org/10.1115/1.3625046).
 pub fn kappa_cowper(poisson_ratio: f64) -> f64 {
     10.0 * (1.0 + poisson_ratio) / (12.0 + 11.0 * poisson_ratio)
 }
@@ -32,13 +34,15 @@ impl Beam {
         0.5 * (self.span_m - self.load_distance_m)
     }
 
-    /// Stiffness in bending of a body of modulus 1 Pa: force over the deflection at the loading pins, m. Platzer 2022, eq. 18.
+    /// Stiffness in bending of a body of modulus 1 Pa: force over the deflection at the loading
+    /// pins, m. Platzer 2022, eq. 18.
     pub fn bending_shape_m(&self) -> f64 {
         let (span, load) = (self.span_m, self.load_distance_m);
         48.0 * self.second_moment_m4() / ((span - load).powi(2) * (span + 2.0 * load))
     }
 
-    /// Deflection at the loading pins under a force on all of them together, m, without shear. Platzer 2022, eq. 18; F L^3/(48 E I) for one pin.
+    /// Deflection at the loading pins under a force on all of them together, m, without shear.
+    /// Platzer 2022, eq. 18; F L^3/(48 E I) for one pin.
     pub fn deflection_m(&self, force_n: f64, young_modulus_pa: f64) -> f64 {
         force_n / (young_modulus_pa * self.bending_shape_m())
     }
@@ -74,7 +78,8 @@ impl Beam {
         young_modulus_pa * self.bending_shape_m() / (1.0 + shear)
     }
 
-    /// Largest bending stress under a force on all loading pins together, Pa. Platzer 2022, eq. 19; 3 F L/(2 b h^2) for one pin.
+    /// Largest bending stress under a force on all loading pins together, Pa. Platzer 2022, eq. 19;
+    /// 3 F L/(2 b h^2) for one pin.
     pub fn stress_pa(&self, force_n: f64) -> f64 {
         1.5 * force_n * (self.span_m - self.load_distance_m)
             / (self.width_m * self.height_m * self.height_m)
@@ -86,7 +91,8 @@ impl Beam {
     }
 }
 
-/// Tension across the loaded diameter of a disc, Pa: 2 F/(pi D t). Brazilian test; ISRM 1978, ASTM D3967.
+/// Tension across the loaded diameter of a disc, Pa: 2 F/(pi D t). Brazilian test; ISRM 1978, ASTM
+/// D3967.
 pub fn disc_stress_pa(force_n: f64, diameter_m: f64, thickness_m: f64) -> f64 {
     2.0 * force_n / (std::f64::consts::PI * diameter_m * thickness_m)
 }
@@ -96,5 +102,6 @@ pub fn bar_stress_pa(force_n: f64, area_m2: f64) -> f64 {
     force_n / area_m2
 }
 
-/// First frequency of a beam on two supports at its ends over that of the same free beam: (pi/4.7300)^2.
+/// First frequency of a beam on two supports at its ends over that of the same free beam:
+/// (pi/4.7300)^2.
 pub const ON_PINS: f64 = 0.441_133_4;

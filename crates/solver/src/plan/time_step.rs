@@ -1,4 +1,5 @@
-//! The time step of a run: the exact limit, what is chosen, and the estimates that others use beside it.
+//! The time step of a run: the exact limit, what is chosen, and the estimates that others use
+//! beside it.
 
 use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
 use dem_io::{Diagnostic, Result};
@@ -19,10 +20,13 @@ use crate::state::events::TopologyChange;
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
-/// Fraction of its own limit with which an impact is followed, at most, at the usual safety; as much more or less at another: a sphere that bounces keeps its
-/// energy to some 3e-3 of it then, and to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a contact does not.
+/// Fraction of its own limit with which an impact is followed, at most, at the usual safety; as
+/// much more or less at another: a sphere that bounces keeps its energy to some 3e-3 of it then,
+/// and to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a
+/// contact does not.
 const SHARE_OF_IMPACT: f64 = 0.25;
-/// The same where a linear law is among the contacts: its force begins with a corner. Restitution is within 1 % then, and within 4 % at twice the step.
+/// The same where a linear law is among the contacts: its force begins with a corner. Restitution
+/// is within 1 % then, and within 4 % at twice the step.
 const SHARE_OF_LINEAR_IMPACT: f64 = 0.125;
 
 /// Fraction of the smallest radius that a particle may move in a step.
@@ -47,7 +51,8 @@ pub struct StepChoice {
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) [Platzer 15], s; infinite without bonds.
     pub thesis_s: f64,
-    /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen by, unless it is adaptive.
+    /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
+    /// by, unless it is adaptive.
     pub replaced: Outlook,
 }
 
@@ -90,8 +95,8 @@ impl Outlook {
         } else {
             f64::INFINITY
         };
-        // A contact that is pressed now is on its way: an adaptive step must not rise before its end.
-        // What is pressed from the start on is followed like an impact, too.
+        // A contact that is pressed now is on its way: an adaptive step must not rise before its
+        // end. What is pressed from the start on is followed like an impact, too.
         let keeps = run.start_overlap == StartOverlap::Keep;
         let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
@@ -149,7 +154,8 @@ impl StepChoice {
     }
 }
 
-/// Chooses the step of a scene: the one given, or `safety` times the limit, made a little smaller so that the end time is met.
+/// Chooses the step of a scene: the one given, or `safety` times the limit, made a little smaller
+/// so that the end time is met.
 ///
 /// # Errors
 /// A given step above the limit, unless any step is allowed.
@@ -217,8 +223,8 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
     })
 }
 
-/// One body of each template as it comes: a clump, or a bonded cluster of an inlet whose bodies are bonded. They stand where they do not touch. None: there are
-/// no templates.
+/// One body of each template as it comes: a clump, or a bonded cluster of an inlet whose bodies are
+/// bonded. They stand where they do not touch. None: there are no templates.
 pub fn arriving(state: &State) -> Option<State> {
     coming(state, false)
 }
@@ -320,7 +326,8 @@ pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
     of_bodies.chain(of_templates).fold(f64::INFINITY, f64::min)
 }
 
-/// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all bonds [Platzer 15].
+/// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all
+/// bonds [Platzer 15].
 fn thesis_s(state: &State) -> f64 {
     let motions = &state.particles.motions;
     let bonds = &state.bonds;
@@ -332,8 +339,9 @@ fn thesis_s(state: &State) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A speed that no impact will exceed until bonds or loads drive something faster, m/s: of particles and walls against each other at the start, and
-/// what a fall through the whole scene adds. 0 where nothing can touch.
+/// A speed that no impact will exceed until bonds or loads drive something faster, m/s: of
+/// particles and walls against each other at the start, and what a fall through the whole scene
+/// adds. 0 where nothing can touch.
 fn impact_speed(scene: &Scene, state: &State) -> f64 {
     if state.contacts.is_none() {
         return 0.0;
@@ -401,7 +409,8 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
     }
 }
 
-/// Largest step with which an impact at this speed, m/s, is followed as well as `safety` asks, s; infinite where nothing can touch.
+/// Largest step with which an impact at this speed, m/s, is followed as well as `safety` asks, s;
+/// infinite where nothing can touch.
 pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
     share_of_impact(state, safety) * safe_step(k, c)
@@ -427,7 +436,8 @@ fn deepest(bounds: &Bounds, down: &Vector3<f64>) -> f64 {
     depths.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall, m.
+/// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall,
+/// m.
 fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
     let regions =
         (state.rules.inlets.iter()).map(|inlet| state.rules.regions[inlet.region].bounds());

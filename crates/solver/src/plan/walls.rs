@@ -22,10 +22,12 @@ use self::surface::{Sizes, oddities, question_size};
 /// Fraction of a belt's speed that may be off its plane: what rounding of written numbers costs.
 const OFF_PLANE: f64 = 1e-6;
 
-/// The walls of a scene, in the order of their names. What is odd about them but harmless goes to `notes`.
+/// The walls of a scene, in the order of their names. What is odd about them but harmless goes to
+/// `notes`.
 ///
 /// # Errors
-/// A file that is no surface; a pair of materials that may meet without a word on how; a belt that leaves its plane; particles in walls, unless they may.
+/// A file that is no surface; a pair of materials that may meet without a word on how; a belt that
+/// leaves its plane; particles in walls, unless they may.
 pub(super) fn place_walls(
     scene: &Scene,
     kinds: &Kinds<'_>,

@@ -155,7 +155,8 @@ pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before; one that is adaptive goes on as it was. Says what has changed.
+/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before;
+/// one that is adaptive goes on as it was. Says what has changed.
 pub(super) fn change_step(
     state: &mut State,
     choice: &StepChoice,
@@ -174,7 +175,8 @@ pub(super) fn change_step(
     (step_s != before_s).then(|| change(before_s, step_s))
 }
 
-/// Who is near whom is asked anew before the next step: what was listed is for steps of the present size.
+/// Who is near whom is asked anew before the next step: what was listed is for steps of the present
+/// size.
 pub(super) fn look_anew_for_near(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
         contacts.skin_left_m = -1.0;

@@ -10,12 +10,14 @@ use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::clusters::fragments;
 
-/// Besides the frames, fragments are written when there are more by one in so many: of few every one shows, and the rows written for all
-/// splits together are at most one more than this times the fragments at the end.
+/// Besides the frames, fragments are written when there are more by one in so many: of few every
+/// one shows, and the rows written for all splits together are at most one more than this times the
+/// fragments at the end.
 const GROWTH: u64 = 20;
 
 impl Progress {
-    /// Whether so many more fragments are there than when they were written last that they are to be written again.
+    /// Whether so many more fragments are there than when they were written last that they are to
+    /// be written again.
     pub(super) fn has_new_fragments(&self, state: &State) -> bool {
         let Some(clusters) = &state.clusters else {
             return false;

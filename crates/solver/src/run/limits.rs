@@ -1,4 +1,5 @@
-//! The limit of the time step while a run goes on: it falls as bonds stretch, as contacts are pressed, as particles become fast.
+//! The limit of the time step while a run goes on: it falls as bonds stretch, as contacts are
+//! pressed, as particles become fast.
 
 use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
@@ -18,21 +19,24 @@ use crate::state::particles::Pose;
 
 /// Steps between two looks at the strains of the bonds.
 const STRAIN_EVERY: u64 = 64;
-/// The limit of the step is asked for again when the largest strain has grown by this since: a bond that is longer has longer levers and is
-/// stiffer across.
+/// The limit of the step is asked for again when the largest strain has grown by this since: a bond
+/// that is longer has longer levers and is stiffer across.
 const MORE_STRAIN: f64 = 0.02;
-/// Steps between two looks at the contacts: a collision takes more. All other looks are at multiples of it, too.
+/// Steps between two looks at the contacts: a collision takes more. All other looks are at
+/// multiples of it, too.
 pub(super) const LOOKS_EVERY: u64 = 8;
 /// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
 const STIFFER: f64 = 1.2;
-/// The step is looked at again when bodies are faster by this factor, on the mean of their mass, than the impacts that it allows for.
+/// The step is looked at again when bodies are faster by this factor, on the mean of their mass,
+/// than the impacts that it allows for.
 const FASTER: f64 = 1.2;
 
-/// An adaptive step is looked at again after so many steps for each iteration that the last look took, so that looking takes less than a hundredth of the
-/// time; and after this many at least.
+/// An adaptive step is looked at again after so many steps for each iteration that the last look
+/// took, so that looking takes less than a hundredth of the time; and after this many at least.
 const STEPS_PER_ITERATION: u64 = 256;
 const LOOK_EVERY: u64 = 512;
-/// It becomes larger where it can by this factor: a step that is never quite the same keeps energy less well.
+/// It becomes larger where it can by this factor: a step that is never quite the same keeps energy
+/// less well.
 const LARGER: f64 = 1.2;
 /// And smaller, where impacts alone ask for it, from this factor on.
 const SMALLER: f64 = 1.05;
@@ -41,7 +45,8 @@ const SMALLER: f64 = 1.05;
 #[derive(Debug)]
 pub(super) struct Limits<'a> {
     smallest_radius_m: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg; none where bodies may come or clumps become clusters.
+    /// Largest radius, m, and largest inverse mass, 1/kg; none where bodies may come or clumps
+    /// become clusters.
     extremes: Option<[f64; 2]>,
     /// None: the scene names a step, which is kept.
     safety: Option<f64>,
@@ -74,11 +79,12 @@ impl<'a> Limits<'a> {
         }
     }
 
-    /// Looks whether the limit has fallen, after a step, and takes a smaller step if it has; an adaptive step becomes larger, too. `replaced`: clumps have just
-    /// become clusters.
+    /// Looks whether the limit has fallen, after a step, and takes a smaller step if it has; an
+    /// adaptive step becomes larger, too. `replaced`: clumps have just become clusters.
     ///
     /// # Errors
-    /// A particle moves so far in a step that contacts would miss it, and the scene names the step; those of the files.
+    /// A particle moves so far in a step that contacts would miss it, and the scene names the step;
+    /// those of the files.
     pub(super) fn follow(
         &mut self,
         state: &mut State,
@@ -145,7 +151,8 @@ impl<'a> Limits<'a> {
                 may_be_less = true;
             }
         }
-        // Mostly the step still is small enough: what was found last says so at once, a bound near the step in a fraction of the time that the limit itself takes.
+        // Mostly the step still is small enough: what was found last says so at once, a bound near
+        // the step in a fraction of the time that the limit itself takes.
         let needed_s = state.time_step_s / self.safety.unwrap_or(1.0);
         let rates = may_be_less.then(|| contact_rates(state));
         if let Some(rates) = rates
@@ -165,7 +172,8 @@ impl<'a> Limits<'a> {
             }
         }
         if let (true, Some(safety)) = (look_at_contacts, self.safety) {
-            // Loads or supports may have made bodies faster than was foreseen. Not the fastest particle: a bond that breaks lets a few snap back.
+            // Loads or supports may have made bodies faster than was foreseen. Not the fastest
+            // particle: a bond that breaks lets a few snap back.
             let p = &state.particles;
             let kinetic_j = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
@@ -244,8 +252,10 @@ fn extremes(state: &State) -> Option<[f64; 2]> {
     ])
 }
 
-/// A step that is stable by what was found last, s, with bonds that are longer since and contacts of these [rates](contact_rates). Either with all contacts that there are on top of
-/// it, which is never too long; or as if all bonds and contacts had become as much stiffer as the stiffest particle's contacts are by their sum.
+/// A step that is stable by what was found last, s, with bonds that are longer since and contacts
+/// of these [rates](contact_rates). Either with all contacts that there are on top of it, which is
+/// never too long; or as if all bonds and contacts had become as much stiffer as the stiffest
+/// particle's contacts are by their sum.
 fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
     // Stiffness across a bond grows with the square of its levers.
     let longer = (1.0 + progress.strain) / (1.0 + progress.bound_strain);
@@ -289,7 +299,8 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
     ))
 }
 
-/// A particle that has gone through a wall, or two that are pressed into each other so far that they would go through each other, as a reason to stop.
+/// A particle that has gone through a wall, or two that are pressed into each other so far that
+/// they would go through each other, as a reason to stop.
 pub(super) fn went_through(
     state: &State,
     scene: &Scene,

@@ -35,7 +35,8 @@ pub struct Progress {
     pub(super) bound: Bound,
     /// Largest strain of a bond at that time.
     pub(super) bound_strain: f64,
-    /// Upper bounds of the eigenvalues of the contacts at that time, 1/s2 and 1/s; 0 where they are not known.
+    /// Upper bounds of the eigenvalues of the contacts at that time, 1/s2 and 1/s; 0 where they are
+    /// not known.
     pub(super) bound_rates: [f64; 2],
     /// The largest since.
     pub(super) strain: f64,
@@ -63,7 +64,8 @@ pub struct Progress {
     pub(super) seen: Seen,
 }
 
-/// When the last load, support or wall has changed for the last time, s; infinite where a wall moves on and on.
+/// When the last load, support or wall has changed for the last time, s; infinite where a wall
+/// moves on and on.
 fn last_change_s(state: &State) -> f64 {
     let loads = state.loads.iter().map(|load| &load.factor);
     let supports = state.supports.iter().map(|support| &support.factor);
@@ -211,7 +213,8 @@ impl Progress {
         }
     }
 
-    /// Largest errors so far of energy, momentum and angular momentum, over the largest energy and momenta until now.
+    /// Largest errors so far of energy, momentum and angular momentum, over the largest energy and
+    /// momenta until now.
     pub(super) fn largest_errors(&self, balance: &Balance) -> [f64; 3] {
         let [energy, momentum, angular_momentum] = self.largest_errors;
         let [of_momentum, of_angular_momentum] = balance.momentum_scales;

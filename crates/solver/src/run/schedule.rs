@@ -8,7 +8,8 @@ use crate::state::State;
 /// Rows of the time series unless asked otherwise.
 const ROWS: f64 = 1000.0;
 
-/// Particles and bonds of a scene in which a row costs time worth saving: as much as about four steps.
+/// Particles and bonds of a scene in which a row costs time worth saving: as much as about four
+/// steps.
 const LARGE: usize = 20_000;
 /// Steps between two rows of a large scene, at least, unless asked otherwise.
 const ROW_STEPS: f64 = 200.0;

@@ -1,4 +1,5 @@
-//! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say is read again when it goes on.
+//! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say
+//! is read again when it goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -160,8 +161,8 @@ impl Snapshot {
         })
     }
 
-    /// Whether a scene is the one of the run, but for what may change on the way: when it ends, how it steps, what it writes, and where the files of
-    /// its bodies are.
+    /// Whether a scene is the one of the run, but for what may change on the way: when it ends, how
+    /// it steps, what it writes, and where the files of its bodies are.
     ///
     /// # Errors
     /// Says what has changed.
@@ -276,7 +277,8 @@ fn other_bodies() -> Diagnostic {
     )
 }
 
-/// A hash (FNV-1a) of what a state is made of: particles and bonds as planned, before the first step.
+/// A hash (FNV-1a) of what a state is made of: particles and bonds as planned, before the first
+/// step.
 pub fn fingerprint(state: &State) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |word: u64| {

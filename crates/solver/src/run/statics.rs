@@ -1,10 +1,13 @@
-//! Equilibrium without steps: where bonded bodies on supports come to rest under the loads that act at the end of a run, found by Newton's method.
+//! Equilibrium without steps: where bonded bodies on supports come to rest under the loads that act
+//! at the end of a run, found by Newton's method.
 //!
-//! Bonds, loads, gravity and supports are those of a run that steps, so at rest both give the same. What depends on motion (masses but for their weight, damping, time steps) means nothing
-//! here, and what touches, breaks, comes or goes is refused: run.integrator = "leapfrog" is for these.
+//! Bonds, loads, gravity and supports are those of a run that steps, so at rest both give the same.
+//! What depends on motion (masses but for their weight, damping, time steps) means nothing here,
+//! and what touches, breaks, comes or goes is refused: run.integrator = "leapfrog" is for these.
 //!
-//! A support that holds one or two of the three turns of a particle holds the sum of its small turns about those axes. Where the particle turns far about the others as well, that depends on its
-//! way, which here is that of the Newton steps.
+//! A support that holds one or two of the three turns of a particle holds the sum of its small
+//! turns about those axes. Where the particle turns far about the others as well, that depends on
+//! its way, which here is that of the Newton steps.
 
 pub mod factor;
 pub mod freedoms;
@@ -40,7 +43,8 @@ use crate::check::laws::strain_warning;
 use self::newton::{loads, six};
 use self::record::{AtRest, equilibrium_summary};
 
-/// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and then with how far it has come, in 0..1.
+/// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and
+/// then with how far it has come, in 0..1.
 ///
 /// # Errors
 /// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory,
@@ -97,7 +101,8 @@ pub fn run(
     Ok(summary)
 }
 
-/// Makes of a state whose poses are in equilibrium one that has rested there for one long step: at `end_s`, without velocities, with the reactions of its supports.
+/// Makes of a state whose poses are in equilibrium one that has rested there for one long step: at
+/// `end_s`, without velocities, with the reactions of its supports.
 pub fn come_to_rest(state: &mut State, end_s: f64, steps: u64) {
     let load = loads(state, end_s);
     for motion in &mut state.particles.motions {
@@ -169,7 +174,8 @@ fn moments(state: &State) -> [f64; 3] {
     })
 }
 
-/// Energies at rest. Works and errors depend on the way there, which nobody went: they are no numbers.
+/// Energies at rest. Works and errors depend on the way there, which nobody went: they are no
+/// numbers.
 fn balance(state: &State, start_moments: [f64; 3]) -> Balance {
     let elastic = elastic_energy(state);
     let now = moments(state);

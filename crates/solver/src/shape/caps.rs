@@ -1,6 +1,8 @@
-//! The arrangement of circles that other balls cut on a sphere: which caps of it they hide and which arcs of the circles stay free.
+//! The arrangement of circles that other balls cut on a sphere: which caps of it they hide and
+//! which arcs of the circles stay free.
 //!
-//! Two circles are always compared in the same order and cross in the same points for both, so that rounding never tears the edge of what stays free.
+//! Two circles are always compared in the same order and cross in the same points for both, so that
+//! rounding never tears the edge of what stays free.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +57,8 @@ struct Crossing {
     half: [f64; 2],
 }
 
-/// What the ball of radius `other_m` with its centre at `offset_m` hides of the sphere of radius `radius_m` around the origin, m.
+/// What the ball of radius `other_m` with its centre at `offset_m` hides of the sphere of radius
+/// `radius_m` around the origin, m.
 ///
 /// A ball in the same place hides the sphere if it is larger, or if it is as large and `rules`.
 pub(crate) fn hidden(radius_m: f64, offset_m: Vector3<f64>, other_m: f64, rules: bool) -> Hidden {
@@ -95,7 +98,8 @@ impl Cap {
     }
 }
 
-/// How the circles of two caps lie; the first is the one with the smaller circle, as the points of crossing are sharpest there.
+/// How the circles of two caps lie; the first is the one with the smaller circle, as the points of
+/// crossing are sharpest there.
 fn meet(a: &Cap, b: &Cap) -> Meeting {
     let across = a.axis.cross(&b.axis);
     let sine = across.norm();
@@ -142,7 +146,8 @@ impl Crossing {
     }
 }
 
-/// Puts the caps into order, the largest first, and removes those inside others, of equal ones all but the first. False if two caps together hide the sphere.
+/// Puts the caps into order, the largest first, and removes those inside others, of equal ones all
+/// but the first. False if two caps together hide the sphere.
 pub(crate) fn prune(caps: &mut Vec<Cap>) -> bool {
     caps.sort_by(|a, b| a.cosine.total_cmp(&b.cosine));
     let mut kept: Vec<Cap> = Vec::with_capacity(caps.len());
@@ -169,7 +174,8 @@ pub(crate) fn prune(caps: &mut Vec<Cap>) -> bool {
     true
 }
 
-/// Puts into `free` the arcs of a circle that lie in no other cap, of caps after [`prune`]. An arc over the angle 0 comes as two.
+/// Puts into `free` the arcs of a circle that lie in no other cap, of caps after [`prune`]. An arc
+/// over the angle 0 comes as two.
 pub(crate) fn free_arcs(caps: &[Cap], circle: usize, free: &mut Vec<Arc>) {
     free.clear();
     free.push([0.0, TAU]);

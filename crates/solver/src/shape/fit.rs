@@ -11,13 +11,19 @@ const ON_A_LINE: f64 = 1e-14;
 /// A pair of points, and its weight.
 type Pair = (Vector3<f64>, Vector3<f64>, f64);
 
-/// The rotation, unit quaternion x, y, z, w with w not negative, that carries the points `from` onto the points `to` with the least weighted sum of squared distances.
+/// The rotation, unit quaternion x, y, z, w with w not negative, that carries the points `from`
+/// onto the points `to` with the least weighted sum of squared distances.
 ///
-/// Both sets hold one point each per entry, in any one unit, and are centred by the caller: nothing is shifted here. `weights`, none negative, are masses or ones. Entries without partners are left out. Numbers that are not finite give no rotation: 0, 0, 0, 1.
+/// Both sets hold one point each per entry, in any one unit, and are centred by the caller: nothing
+/// is shifted here. `weights`, none negative, are masses or ones. Entries without partners are left
+/// out. Numbers that are not finite give no rotation: 0, 0, 0, 1.
 ///
-/// Never a reflection. Where many rotations are as good (points on one line, or no points), it is the one with the smallest turn as a rule.
+/// Never a reflection. Where many rotations are as good (points on one line, or no points), it is
+/// the one with the smallest turn as a rule.
 ///
-/// Horn (1987) gives the start: the eigenvector of a symmetric 4 x 4 matrix. Newton steps on the distances themselves then bring it to rounding, and a last turn about the long axis does so for points near a line.
+/// Horn (1987) gives the start: the eigenvector of a symmetric 4 x 4 matrix. Newton steps on the
+/// distances themselves then bring it to rounding, and a last turn about the long axis does so for
+/// points near a line.
 pub fn best_rotation(from: &[[f64; 3]], to: &[[f64; 3]], weights: &[f64]) -> [f64; 4] {
     let pairs = || {
         let points = from.iter().zip(to).zip(weights);
@@ -76,7 +82,8 @@ fn horn(pairs: impl Iterator<Item = Pair>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(Quaternion::from(chosen))
 }
 
-/// The small rotation that brings the turned points to rest against the others, where it is determined.
+/// The small rotation that brings the turned points to rest against the others, where it is
+/// determined.
 fn newton(turn: &UnitQuaternion<f64>, pairs: impl Iterator<Item = Pair>) -> UnitQuaternion<f64> {
     let mut torque = Vector3::zeros();
     let mut stiffness = Matrix3::zeros();

@@ -1,6 +1,11 @@
 //! Integrals over the union of spheres, by its surface.
 //!
-//! By the divergence theorem, the integrals of 1, x and x x over the union are integrals of polynomials over the free part of each sphere. On the unit sphere, a spherical harmonic Y of degree l has the Laplacian -l (l + 1) Y, so that its integral over a part of the sphere is -1 / (l (l + 1)) times that of its normal derivative along the edge: arcs of circles, with closed forms. This leaves the area (l = 0). Its one-form is singular at one point, which is put far from all circles; each arc gives the turn of its stereographic image less its own curvature.
+//! By the divergence theorem, the integrals of 1, x and x x over the union are integrals of
+//! polynomials over the free part of each sphere. On the unit sphere, a spherical harmonic Y of
+//! degree l has the Laplacian -l (l + 1) Y, so that its integral over a part of the sphere is -1 /
+//! (l (l + 1)) times that of its normal derivative along the edge: arcs of circles, with closed
+//! forms. This leaves the area (l = 0). Its one-form is singular at one point, which is put far
+//! from all circles; each arc gives the turn of its stereographic image less its own curvature.
 //!
 //! All is continuous in the arcs: an arc lost or kept by rounding changes the result by rounding.
 
@@ -108,7 +113,8 @@ impl Patch {
     }
 }
 
-/// A point of the unit sphere far from the edges of the part outside all caps, and whether it lies in that part.
+/// A point of the unit sphere far from the edges of the part outside all caps, and whether it lies
+/// in that part.
 fn far_point(caps: &[Cap]) -> (Vector3<f64>, bool) {
     let Some(largest) = caps.first() else {
         return (Vector3::z(), true);
@@ -160,7 +166,8 @@ impl Edge {
         }
     }
 
-    /// Adds an arc of at most half a turn; `sight` is the point opposite the centre of the stereographic image.
+    /// Adds an arc of at most half a turn; `sight` is the point opposite the centre of the
+    /// stereographic image.
     fn add(&mut self, cap: &Cap, [from, to]: Arc, sight: &Vector3<f64>, c: &Vector3<f64>) {
         let half = 0.5 * (to - from);
         let (sin_mid, cos_mid) = (0.5 * (from + to)).sin_cos();
@@ -205,7 +212,8 @@ impl Edge {
     }
 }
 
-/// Half the turn of the stereographic image of an arc, rad: the angle between its tangent at the start and its chord.
+/// Half the turn of the stereographic image of an arc, rad: the angle between its tangent at the
+/// start and its chord.
 fn stereographic_turn(
     start: &Vector3<f64>,
     tangent: &Vector3<f64>,
@@ -223,7 +231,8 @@ fn stereographic_turn(
 mod tests {
     use super::*;
 
-    /// The integral of the normal over a closed surface is zero, and that of x n^T the volume times one.
+    /// The integral of the normal over a closed surface is zero, and that of x n^T the volume times
+    /// one.
     #[test]
     fn surface_is_closed() {
         let mut state = 1_u64;

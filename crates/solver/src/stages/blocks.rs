@@ -1,5 +1,5 @@
-//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row, computed lane by lane, and added to the particles
-//! in the order of the bonds.
+//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row,
+//! computed lane by lane, and added to the particles in the order of the bonds.
 
 use std::ops::Range;
 
@@ -54,8 +54,9 @@ impl BondGroup {
         Self::new(numbers, &bonds.ends, 0..some.len())
     }
 
-    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are particles of a partition. `wrenches` are those of the
-    /// partition. Torques are of both ends; the force is on the second, the first feels the opposite.
+    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are
+    /// particles of a partition. `wrenches` are those of the partition. Torques are of both ends;
+    /// the force is on the second, the first feels the opposite.
     #[inline(always)]
     pub(super) fn add<T: Lanes>(
         &self,
@@ -126,7 +127,8 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
 )]
 pub(super) fn fetch_soon<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64 processor has it.
+    // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64
+    // processor has it.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());
@@ -138,8 +140,8 @@ pub(super) fn fetch_soon<T>(value: &T) {
 /// Bonds between those that are computed and those whose particles are fetched into the cache.
 const AHEAD: usize = 64;
 
-/// Asks for the particles at the second ends of the bonds that come soon after those of a block: in a large body they come from far away in memory,
-/// while first ends follow one another.
+/// Asks for the particles at the second ends of the bonds that come soon after those of a block: in
+/// a large body they come from far away in memory, while first ends follow one another.
 #[inline(always)]
 pub(super) fn fetch_second_ends(
     bonds: &Bonds,
@@ -157,7 +159,8 @@ pub(super) fn fetch_second_ends(
     }
 }
 
-/// Works on all partitions, on as many threads as there are; each has the wrenches of its own particles.
+/// Works on all partitions, on as many threads as there are; each has the wrenches of its own
+/// particles.
 pub(super) fn for_each_partition(
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],

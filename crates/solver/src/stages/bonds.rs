@@ -112,7 +112,8 @@ const NEARLY: f64 = 1.0 - 1e-9;
 /// 1, and some more for the rounding of differences from which weak bonds are found.
 const ROUNDED_UP: f64 = 1.0 + 1e-14;
 
-/// Sets the wrenches to the forces of the bonds. `partitions` cover all particles; their `failing` lists the bonds of the total formulation that have reached their strength.
+/// Sets the wrenches to the forces of the bonds. `partitions` cover all particles; their `failing`
+/// lists the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
@@ -335,7 +336,8 @@ fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Rotatio
     Rotation(Vec3(x, y, z), w)
 }
 
-/// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps some that nearly have.
+/// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps
+/// some that nearly have.
 #[inline(always)]
 fn list_failing(
     bonds: &Bonds,

@@ -1,4 +1,5 @@
-//! Bonds that have reached their strength break: checked once more by themselves, with the rate of their elongation where it strengthens them.
+//! Bonds that have reached their strength break: checked once more by themselves, with the rate of
+//! their elongation where it strengthens them.
 
 use dem_io::scene::RateOf;
 use nalgebra::Vector3;
@@ -122,10 +123,12 @@ fn leave_out_broken(state: &mut State) {
     }
 }
 
-/// Breaks the bonds that the partitions list, if they fail, and adds them to `broken`, in the order of the bonds.
+/// Breaks the bonds that the partitions list, if they fail, and adds them to `broken`, in the order
+/// of the bonds.
 ///
-/// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its force is taken back from what moves them on.
-/// Returns how many bonds were looked at whose strength depends on the rate of strain.
+/// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its
+/// force is taken back from what moves them on. Returns how many bonds were looked at whose
+/// strength depends on the rate of strain.
 pub fn break_bonds(
     bonds: &mut Bonds,
     particles: &mut Particles,
@@ -145,7 +148,8 @@ pub fn break_bonds(
         rule.strengthening_from_1_s.is_some()
     };
     let rates = failing.iter().filter(by_rate).count();
-    // All are looked at before the first is taken away: a break changes the velocities of its ends, and rates of strain come from velocities.
+    // All are looked at before the first is taken away: a break changes the velocities of its ends,
+    // and rates of strain come from velocities.
     let failing: Vec<(usize, BondForces, Cause)> = failing
         .into_iter()
         .filter_map(|at| {

@@ -1,4 +1,5 @@
-//! Rigid clumps in the time step: what acts on their spheres acts on them, and their spheres go where they go.
+//! Rigid clumps in the time step: what acts on their spheres acts on them, and their spheres go
+//! where they go.
 
 use nalgebra::Vector3;
 
@@ -78,7 +79,8 @@ pub(super) fn awake(clumps: &Clumps) -> usize {
     clumps.all.iter().filter(|clump| !clump.asleep).count()
 }
 
-/// Takes down which spheres of clumps are near something, after pairs and walls have been looked through. `near`: particles that are, in any order, some twice.
+/// Takes down which spheres of clumps are near something, after pairs and walls have been looked
+/// through. `near`: particles that are, in any order, some twice.
 pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iterator<Item = u32>) {
     let free = particles.free as u32;
     let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
@@ -114,7 +116,8 @@ pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
     }
 }
 
-/// Sums up what acts on the spheres of each clump, and the energy that this takes from its motion in a step of `dt`, s. Nothing is left on the spheres.
+/// Sums up what acts on the spheres of each clump, and the energy that this takes from its motion
+/// in a step of `dt`, s. Nothing is left on the spheres.
 pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
     let Clumps {
         templates,
@@ -144,7 +147,8 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
     }
 }
 
-/// Velocities and angular momenta changed by what acts on the clumps and by gravity, over the time `kick_s`.
+/// Velocities and angular momenta changed by what acts on the clumps and by gravity, over the time
+/// `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
     for clump in all.iter_mut().filter(|clump| !clump.asleep) {
@@ -156,8 +160,8 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     }
 }
 
-/// Places and orientations after moving on for `time_step_s`, of clumps and of those of their spheres that are near something. Returns a speed that no sphere
-/// exceeds, m/s.
+/// Places and orientations after moving on for `time_step_s`, of clumps and of those of their
+/// spheres that are near something. Returns a speed that no sphere exceeds, m/s.
 pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -> f64 {
     let Clumps {
         templates,
@@ -200,7 +204,8 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
     fastest
 }
 
-/// Velocities and angular momenta at the time of the places, between a kick and the drift after it. One for each clump.
+/// Velocities and angular momenta at the time of the places, between a kick and the drift after it.
+/// One for each clump.
 pub fn synchronous(clumps: &Clumps, gravity_m_s2: [f64; 3], time_step_s: f64) -> Vec<Clump> {
     let mut now = clumps.clone();
     kick(&mut now, gravity_m_s2, -0.5 * time_step_s);

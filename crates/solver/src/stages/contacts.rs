@@ -143,11 +143,13 @@ pub fn count_rolling(state: &mut State) -> usize {
     partitions.map(|partition| partition.rolled).sum()
 }
 
-/// Contacts between those that are computed and those whose second particles are fetched into the cache.
+/// Contacts between those that are computed and those whose second particles are fetched into the
+/// cache.
 const SOON: usize = 16;
 
-/// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes down what each contact remembers: after a step of `dt`, s, in
-/// which the particles moved as their motions say.
+/// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes
+/// down what each contact remembers: after a step of `dt`, s, in which the particles moved as their
+/// motions say.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
     let checks_all = contacts.close_skin_left_m <= 0.0;
     if checks_all {
@@ -194,7 +196,8 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for each particle; those of one number do not touch each other.
+/// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for
+/// each particle; those of one number do not touch each other.
 pub fn list_contacts(
     contacts: &mut Contacts,
     clusters: &[u32],
@@ -354,7 +357,8 @@ impl PartitionWork<'_> {
         }
     }
 
-    /// The contacts of one kind: those of the border first, so that each particle meets its contacts in their order.
+    /// The contacts of one kind: those of the border first, so that each particle meets its
+    /// contacts in their order.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
     fn of_kind<T: Lanes>(
@@ -457,11 +461,13 @@ struct ContactOutput {
     forces: Forces,
     /// A bit for each, from the lowest on: whether the two overlap, or did in the step before.
     touched: u8,
-    /// The same: whether the two are pressed into each other by more than the radius of the smaller one.
+    /// The same: whether the two are pressed into each other by more than the radius of the smaller
+    /// one.
     excessive_overlap: u8,
 }
 
-/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth that means nothing.
+/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth
+/// that means nothing.
 struct Forces {
     on_b: [[f64; 4]; MOST],
     torques: [[[f64; 4]; MOST]; 2],

@@ -133,7 +133,8 @@ impl LaneWork for PartitionWork<'_> {
     }
 }
 
-/// Damping forces of the bonds from `first` on, one for each lane: on the second ends, N, and torques on both, N m.
+/// Damping forces of the bonds from `first` on, one for each lane: on the second ends, N, and
+/// torques on both, N m.
 #[inline(always)]
 fn forces<T: Lanes>(
     proof: T::Proof,

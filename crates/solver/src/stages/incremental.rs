@@ -59,7 +59,8 @@ pub fn compute_incremental_bonds(state: &mut State) -> usize {
         .sum()
 }
 
-/// Brings the histories up to the present places, after a drift of `time_step_s` with these motions.
+/// Brings the histories up to the present places, after a drift of `time_step_s` with these
+/// motions.
 pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
     let (poses, motions) = (&particles.poses, &particles.motions);
     let mut histories = std::mem::take(&mut bonds.histories);
@@ -86,7 +87,8 @@ pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: 
     bonds.histories = histories;
 }
 
-/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their strength to the partitions' lists.
+/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their
+/// strength to the partitions' lists.
 pub fn add_incremental_wrenches(
     bonds: &Bonds,
     poses: &[Pose],

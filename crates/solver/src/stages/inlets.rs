@@ -85,8 +85,8 @@ fn is_due(inlet: &Inlet, time_s: f64) -> bool {
     }
 }
 
-/// The next body of an inlet, where there is place for it: a random place of the region at which the sphere around it touches no sphere of another body, and
-/// none of its spheres a wall.
+/// The next body of an inlet, where there is place for it: a random place of the region at which
+/// the sphere around it touches no sphere of another body, and none of its spheres a wall.
 fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
     let seed = state.rules.seed;
     let number = u64::from(inlet.progress.bodies);

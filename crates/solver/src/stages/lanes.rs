@@ -31,7 +31,8 @@ pub(super) trait Lanes: Number {
     /// For each lane a bit, from the lowest on: whether it is above that of the other.
     fn above(self, other: Self) -> u8;
 
-    /// The opposite of [`Lanes::columns`]: row by row what stands lane by lane. Only the first `COUNT` rows have a meaning.
+    /// The opposite of [`Lanes::columns`]: row by row what stands lane by lane. Only the first
+    /// `COUNT` rows have a meaning.
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST];
 }
 

@@ -1,7 +1,8 @@
 //! Ledgers of energy and momentum: what went in and out, against what is there.
 //!
-//! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning, half at its end. So the ledger is as exact
-//! as the step: its error falls with the square of the time step.
+//! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning,
+//! half at its end. So the ledger is as exact as the step: its error falls with the square of the
+//! time step.
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::stages::clumps::synchronous;
@@ -57,7 +58,8 @@ pub fn advance_time(state: &mut State) -> usize {
     0
 }
 
-/// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest law of the scene, J; 0 where nothing can touch.
+/// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest
+/// law of the scene, J; 0 where nothing can touch.
 fn pressed_by_a_millionth_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -149,7 +151,8 @@ pub struct Balance {
     pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub released_j: f64,
-    /// That bodies brought which came, less what those took along that went, and what clumps and clusters gained as they took each other's place; less the motion that bodies had when they
+    /// That bodies brought which came, less what those took along that went, and what clumps and
+    /// clusters gained as they took each other's place; less the motion that bodies had when they
     /// fell asleep, J.
     pub brought_j: f64,
     /// What is there less what should be, J.
@@ -158,7 +161,8 @@ pub struct Balance {
     pub energy_error: f64,
     /// That largest energy or work, J.
     pub energy_scale_j: f64,
-    /// Momentum that is there less what should be, over the largest sum of its parts' magnitudes so far.
+    /// Momentum that is there less what should be, over the largest sum of its parts' magnitudes so
+    /// far.
     pub momentum_error: f64,
     /// The same for angular momentum about the initial centre of mass.
     pub angular_momentum_error: f64,
@@ -177,7 +181,8 @@ impl Balance {
     }
 }
 
-/// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to come (1).
+/// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to
+/// come (1).
 fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
     push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
 }
@@ -210,7 +215,8 @@ pub fn before_kick(state: &mut State) {
     }
 }
 
-/// Books the kick that has just been done: work of supports, work of the half step to come, impulses.
+/// Books the kick that has just been done: work of supports, work of the half step to come,
+/// impulses.
 pub fn after_kick(state: &mut State) {
     let pending = powers(state);
     let half_s = 0.5 * state.time_step_s;

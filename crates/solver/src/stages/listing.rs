@@ -1,4 +1,5 @@
-//! The lists of what is near what: particles at walls, pairs of particles, and the spheres of clumps that are in either.
+//! The lists of what is near what: particles at walls, pairs of particles, and the spheres of
+//! clumps that are in either.
 //!
 //! Bodies that sleep are in none of them; those that something moving is near to wake first.
 
@@ -72,7 +73,8 @@ pub fn renew_lists(state: &mut State) -> usize {
         list_awake(state);
         listed += state.particles.len();
         if skin_left_m >= 0.0 {
-            // The run from which this one goes on woke nobody here, and makes its next lists when this room is used up.
+            // The run from which this one goes on woke nobody here, and makes its next lists when
+            // this room is used up.
             leave_out_sleepers(state);
             if let Some(contacts) = &mut state.contacts {
                 contacts.skin_left_m = skin_left_m;
@@ -100,7 +102,8 @@ fn list_awake(state: &mut State) {
     let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
         return;
     };
-    // Room for two steps at least: who is first seen when it overlaps already would be taken for the piece of a body, and relax.
+    // Room for two steps at least: who is first seen when it overlaps already would be taken for
+    // the piece of a body, and relax.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
     list_near(&mut state.walls, p, skin_m);
     if contacts.alone {

@@ -1,6 +1,7 @@
 //! Kick and drift: forces change velocities, velocities change places.
 //!
-//! Velocities stand halfway between two steps (leapfrog), which is kick-drift-kick with the second kick of a step and the first of the next in one.
+//! Velocities stand halfway between two steps (leapfrog), which is kick-drift-kick with the second
+//! kick of a step and the first of the next in one.
 
 use rayon::prelude::*;
 
@@ -100,7 +101,8 @@ pub fn drift_particles(state: &mut State) -> usize {
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
 
-/// Velocities of the particles that move by themselves, changed by the wrenches, by those that resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
+/// Velocities of the particles that move by themselves, changed by the wrenches, by those that
+/// resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
 pub fn kick(
     particles: &mut Particles,
     resisting: [&[Wrench]; 2],
@@ -140,7 +142,8 @@ pub fn kick(
         });
 }
 
-/// Places and orientations of the particles that move by themselves after moving on for `time_step_s`. Returns the largest speed of a particle, m/s.
+/// Places and orientations of the particles that move by themselves after moving on for
+/// `time_step_s`. Returns the largest speed of a particle, m/s.
 pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
     let Particles {
         poses,
@@ -221,7 +224,8 @@ fn move_one(pose: &mut Pose, motion: &Motion, time_step_s: f64) -> f64 {
     square
 }
 
-/// The same of as many particles as there are lanes. None, and nothing is moved: one of them turns by more than a little.
+/// The same of as many particles as there are lanes. None, and nothing is moved: one of them turns
+/// by more than a little.
 #[inline(always)]
 fn move_on<T: Lanes>(
     proof: T::Proof,
@@ -256,8 +260,9 @@ fn move_on<T: Lanes>(
     Some(vx * vx + vy * vy + vz * vz)
 }
 
-/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each component of force and torque, against the motion.
-/// `total` is what moves the particle: its wrench, with gravity.
+/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each
+/// component of force and torque, against the motion. `total` is what moves the particle: its
+/// wrench, with gravity.
 pub fn add_particle_damping(
     particles: &Particles,
     gravity_m_s2: [f64; 3],

@@ -1,7 +1,8 @@
-//! Which particles may touch soon: pairs of different clusters that are closer than a skin, found with a grid of cells and listed until one of them
-//! may have crossed half the skin.
+//! Which particles may touch soon: pairs of different clusters that are closer than a skin, found
+//! with a grid of cells and listed until one of them may have crossed half the skin.
 //!
-//! Particles far from every other cluster are not put into the grid: of a body that flies alone, none is.
+//! Particles far from every other cluster are not put into the grid: of a body that flies alone,
+//! none is.
 
 use rayon::prelude::*;
 
@@ -14,7 +15,8 @@ const SMALL: u32 = 16;
 /// Cells per particle at most: a wide, empty scene gets larger cells.
 const CELLS_PER_PARTICLE: usize = 4;
 
-/// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the smaller index first, sorted. `clusters`: one for each particle.
+/// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
+/// smaller index first, sorted. `clusters`: one for each particle.
 pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
     let active = near_others(poses, clusters, skin_m);
     let Some(grid) = Grid::new(poses, clusters, &active, skin_m) else {
@@ -172,7 +174,8 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// Adds the pairs of a particle with those of other clusters that have a larger index and are near it, in no order.
+    /// Adds the pairs of a particle with those of other clusters that have a larger index and are
+    /// near it, in no order.
     fn add_above(&self, i: u32, pose: &Pose, cluster: u32, skin_m: f64, pairs: &mut Vec<[u32; 2]>) {
         let [x, y, z] = self.cell(pose);
         let around = |at: usize, k: usize| at.saturating_sub(1)..(at + 2).min(self.counts[k]);

@@ -58,7 +58,8 @@ pub(super) fn leaving(state: &mut State) -> Vec<u32> {
     leaving
 }
 
-/// Books mass, momenta and energy of what leaves: kinetic energy at the moment of the places, and elastic energy of bonds.
+/// Books mass, momenta and energy of what leaves: kinetic energy at the moment of the places, and
+/// elastic energy of bonds.
 fn book_leaving(state: &mut State, leaving: &[u32]) {
     let gravity = state.gravity_m_s2;
     let leaves = |id: u32| leaving.binary_search(&id).is_ok();

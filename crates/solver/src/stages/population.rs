@@ -1,6 +1,8 @@
-//! Bodies that come, go, or change what they are: everything that one step asks for happens at once, and everything that counts particles is counted anew.
+//! Bodies that come, go, or change what they are: everything that one step asks for happens at
+//! once, and everything that counts particles is counted anew.
 //!
-//! Between a kick and the drift after it: places are those of the moment, velocities stand half a step later.
+//! Between a kick and the drift after it: places are those of the moment, velocities stand half a
+//! step later.
 
 use std::sync::Arc;
 
@@ -132,7 +134,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         history[id as usize].ended_s = Some(state.time_s);
     }
 
-    // Those that followed still do, under their new numbers; which they are is looked for in the next step.
+    // Those that followed still do, under their new numbers; which they are is looked for in the
+    // next step.
     renumber(&mut near, &particles);
     near.retain(|&sphere| sphere as usize >= new.free);
     near.sort_unstable();
@@ -203,7 +206,8 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
     new.len() as u32 - 1
 }
 
-/// All spheres of a clump, as particles that move with it (Platzer 2022, 4.5.4.1): x = c + R s, v = v_c + w x (R s).
+/// All spheres of a clump, as particles that move with it (Platzer 2022, 4.5.4.1): x = c + R s, v =
+/// v_c + w x (R s).
 fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
     for (sphere, sub) in template.spheres.iter().enumerate() {
         let pose = template.pose(sphere, clump);
@@ -219,7 +223,8 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
     new.free += template.spheres.len();
 }
 
-/// Bonds of particles that are still there, and those of the clusters born. Returns how they are counted now.
+/// Bonds of particles that are still there, and those of the clusters born. Returns how they are
+/// counted now.
 fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -> Vec<u32> {
     let free = state.particles.free as u32;
     // Those of clumps and of what has gone are beyond.
@@ -264,7 +269,8 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -
     bonds
 }
 
-/// Everything else that counts particles and bonds. `old_radii_m`: of the particles before; `is_new`: the material of those that have come.
+/// Everything else that counts particles and bonds. `old_radii_m`: of the particles before;
+/// `is_new`: the material of those that have come.
 fn count_anew(
     state: &mut State,
     particles: &[u32],

@@ -1,7 +1,9 @@
-//! Clusters that become rigid clumps again: whole ones and fragments that have left a region and have come to rest within themselves. Not in Platzer 2022.
+//! Clusters that become rigid clumps again: whole ones and fragments that have left a region and
+//! have come to rest within themselves. Not in Platzer 2022.
 //!
-//! What is between the particles is lost or frozen: motion against each other is lost; the strain of a fragment is kept in its template and comes back if the
-//! fragment becomes a cluster again; that of a whole body is lost, as it takes the shape of its file. All of it is booked.
+//! What is between the particles is lost or frozen: motion against each other is lost; the strain
+//! of a fragment is kept in its template and comes back if the fragment becomes a cluster again;
+//! that of a whole body is lost, as it takes the shape of its file. All of it is booked.
 
 use std::sync::Arc;
 
@@ -106,7 +108,8 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     Some((apply_topology_change(state, changes), happened))
 }
 
-/// The template of the body that a cluster comes from, and its instance. None: it never was a clump.
+/// The template of the body that a cluster comes from, and its instance. None: it never was a
+/// clump.
 fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
     let history = &state.clusters.as_ref()?.history;
     let mut id = id;
@@ -118,7 +121,8 @@ fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
     }
 }
 
-/// The template and the instance of the body that a cluster comes from, if the cluster is large enough to be a clump again and has left the region.
+/// The template and the instance of the body that a cluster comes from, if the cluster is large
+/// enough to be a clump again and has left the region.
 fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
     let members = state.clusters.as_ref()?.members(id);
     let p = &state.particles;
@@ -147,7 +151,8 @@ fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], sta
     all - 0.5 * (fragment.mass_kg * velocity.norm_squared() + turning)
 }
 
-/// The clump that takes the place of a cluster; adds its template where it is not that of the whole body.
+/// The clump that takes the place of a cluster; adds its template where it is not that of the whole
+/// body.
 fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     let p = &state.particles;
     let of = |i: &u32| *i as usize;

@@ -1,6 +1,8 @@
-//! Bodies at rest fall asleep together with all that they touch, and wake together when something that moves comes near.
+//! Bodies at rest fall asleep together with all that they touch, and wake together when something
+//! that moves comes near.
 //!
-//! Who sleeps is decided from places, motions and contacts alone, never from what happens to be listed: a run that goes on from a checkpoint decides the same.
+//! Who sleeps is decided from places, motions and contacts alone, never from what happens to be
+//! listed: a run that goes on from a checkpoint decides the same.
 
 use nalgebra::Vector3;
 
@@ -48,7 +50,8 @@ pub const SLEEP: Stage = Stage {
 /// Steps between two looks at who is slow.
 const EVERY: u64 = 100;
 
-/// Lets those bodies fall asleep that have been slow for long enough and touch none that has not, between a kick and the drift after it.
+/// Lets those bodies fall asleep that have been slow for long enough and touch none that has not,
+/// between a kick and the drift after it.
 pub fn update_sleep(state: &mut State) -> usize {
     if let Some(sleep) = &mut state.sleep {
         let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
@@ -110,7 +113,8 @@ fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
     speeds
 }
 
-/// Which of the clusters that may sleep can: nothing holds, loads or moves them, and all that they touch or are near to can as well. Their numbers, rising.
+/// Which of the clusters that may sleep can: nothing holds, loads or moves them, and all that they
+/// touch or are near to can as well. Their numbers, rising.
 fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
@@ -174,7 +178,8 @@ fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>)
     }
 }
 
-/// Whether a wall moves in the step before or in the one that begins at this time and takes so long, s.
+/// Whether a wall moves in the step before or in the one that begins at this time and takes so
+/// long, s.
 fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
     has_moved(wall) || will_move(wall, time_s, time_step_s)
 }
@@ -259,7 +264,8 @@ fn power_w(wrench: &Wrench, velocity_m_s: &[f64; 3], spin_rad_s: &[f64; 3]) -> f
         .sum()
 }
 
-/// Clusters that sleep and are near a particle that is awake, by the list of pairs, or near a wall that moves.
+/// Clusters that sleep and are near a particle that is awake, by the list of pairs, or near a wall
+/// that moves.
 pub fn disturbed(state: &State) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
@@ -332,8 +338,8 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     count_sleepers(state);
 }
 
-/// Wakes the bodies that are about to go or to become others, with all that sleep with them, and puts what is kept of the rest back into the lists, where it
-/// is counted anew.
+/// Wakes the bodies that are about to go or to become others, with all that sleep with them, and
+/// puts what is kept of the rest back into the lists, where it is counted anew.
 pub fn prepare_change(state: &mut State, changes: &TopologyChange) {
     let Some(sleep) = &state.sleep else {
         return;
@@ -438,7 +444,8 @@ fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
     }
 }
 
-/// Everything that follows from who sleeps: which particles and clumps, how the work is divided, and on what gravity acts in the books.
+/// Everything that follows from who sleeps: which particles and clumps, how the work is divided,
+/// and on what gravity acts in the books.
 pub fn count_sleepers(state: &mut State) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;

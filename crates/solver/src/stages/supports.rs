@@ -63,9 +63,10 @@ pub fn remember(supports: &mut [SetSupport], motions: &[Motion]) {
     }
 }
 
-/// Gives held freedoms the velocities that are prescribed for the drift from `time_s` to `time_s + time_step_s`, and notes the reactions
-/// that this takes in a kick that makes up for half of the step before and half of the one to come, `steps_s`. The bonds that are `broken` acted in
-/// the first half only.
+/// Gives held freedoms the velocities that are prescribed for the drift from `time_s` to `time_s +
+/// time_step_s`, and notes the reactions that this takes in a kick that makes up for half of the
+/// step before and half of the one to come, `steps_s`. The bonds that are `broken` acted in the
+/// first half only.
 pub fn hold(
     supports: &mut [SetSupport],
     particles: &mut Particles,
@@ -169,16 +170,19 @@ fn of_broken(broken: &[Break], particle: u32) -> [f64; 6] {
     sum
 }
 
-/// Velocity of a held freedom at the moment of a kick: what the part of the kick that belongs to the step before leaves of the change.
+/// Velocity of a held freedom at the moment of a kick: what the part of the kick that belongs to
+/// the step before leaves of the change.
 ///
-/// At the first step that is the velocity before it: a support that moves from the start does so after that moment, with a blow.
+/// At the first step that is the velocity before it: a support that moves from the start does so
+/// after that moment, with a blow.
 pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
     let [before_s, after_s] = steps_s;
     before + (after - before) * before_s / (before_s + after_s)
 }
 
-/// Work of the reactions in the half steps before and after a kick, J: their powers, and what kinetic energy changes by beyond that, as velocities
-/// may be prescribed to jump. So a blow is booked with what it does, not with the velocity after it.
+/// Work of the reactions in the half steps before and after a kick, J: their powers, and what
+/// kinetic energy changes by beyond that, as velocities may be prescribed to jump. So a blow is
+/// booked with what it does, not with the velocity after it.
 pub fn reactions_work_j(
     supports: &[SetSupport],
     particles: &Particles,

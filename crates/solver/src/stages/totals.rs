@@ -13,7 +13,8 @@ use crate::state::supports::Phase;
 use crate::state::supports::SetSupport;
 use rayon::prelude::*;
 
-/// Velocities and spins at the time of the poses, between a kick and the drift after it. One per particle.
+/// Velocities and spins at the time of the poses, between a kick and the drift after it. One per
+/// particle.
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
     let half_s = 0.5 * state.time_step_s;
@@ -99,7 +100,8 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
     }
 }
 
-/// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of their parts.
+/// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of
+/// their parts.
 pub fn momenta(
     particles: &Particles,
     clumps: &Clumps,
@@ -136,7 +138,8 @@ pub fn momenta(
             clump.angular_momentum,
             about_m,
         );
-        // Of its parts on either side of its centre as well, as a bonded body has it: else a clump that flies straight has none but rounding.
+        // Of its parts on either side of its centre as well, as a bonded body has it: else a clump
+        // that flies straight has none but rounding.
         let gyration_m = (0.5 * template.moments_kg_m2.iter().sum::<f64>() / mass).sqrt();
         parts[7] += gyration_m * parts[6];
         for (sum, part) in sums.iter_mut().zip(parts) {

@@ -60,7 +60,8 @@ pub fn plan_wall_motions(state: &mut State) -> usize {
 
 /// Particles handled by one task.
 const CHUNK: usize = 256;
-/// A contact that moves on to another flat part of a wall keeps what it remembers if the normal turns by less than that of this cosine.
+/// A contact that moves on to another flat part of a wall keeps what it remembers if the normal
+/// turns by less than that of this cosine.
 const SAME_WAY: f64 = 0.9;
 /// Fraction of what is missing that a servo makes good in a step.
 const SERVO: f64 = 0.1;
@@ -101,7 +102,8 @@ pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
     }
 }
 
-/// Adds what walls do to the wrenches after a step of `dt`, s; and notes what that does to the walls.
+/// Adds what walls do to the wrenches after a step of `dt`, s; and notes what that does to the
+/// walls.
 pub fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
@@ -238,7 +240,8 @@ fn meet(
     }
 }
 
-/// Whether a particle touches a solid from the other side than a step before: it went through one that is thinner than itself.
+/// Whether a particle touches a solid from the other side than a step before: it went through one
+/// that is thinner than itself.
 fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
     let normal = Vector3::from(touch.normal);
     before
@@ -246,8 +249,9 @@ fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
         .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
 }
 
-/// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat part to the next, that of a feature which it
-/// touches no more and whose normal was about the same.
+/// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat
+/// part to the next, that of a feature which it touches no more and whose normal was about the
+/// same.
 fn remembered<'a>(
     before: &'a [WallContact],
     touches: &[Touch],
@@ -383,7 +387,8 @@ pub fn push_at_rest(
     push
 }
 
-/// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it overlaps by `overlap_m`.
+/// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it
+/// overlaps by `overlap_m`.
 pub fn wall_contact(
     particles: &Particles,
     i: usize,
@@ -523,7 +528,8 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
             largest_velocity_m_s,
             factor,
         } => {
-            // Without damping, which follows from the wall's own velocity: in a circle the two would drive each other.
+            // Without damping, which follows from the wall's own velocity: in a circle the two
+            // would drive each other.
             let elastic = |k: usize| wall.push.force_n[k] - wall.damping.force_n[k];
             let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
             let missing = factor_at(factor, time_s) * force_n - pushed;

@@ -44,7 +44,8 @@ impl PlacedBody {
     }
 }
 
-/// Bodies as they are counted now, with those that have come; without those of which nothing is left.
+/// Bodies as they are counted now, with those that have come; without those of which nothing is
+/// left.
 pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbering) {
     bodies.retain_mut(|body| {
         for particle in body.particles.iter_mut().filter(|p| **p != REMOVED) {

@@ -37,7 +37,8 @@ pub const BLOCK: usize = 4;
 /// One number of each bond of a block.
 pub type Column = [f64; BLOCK];
 
-/// Bonds that follow one another: what their forces come from, number by number side by side, so that a loop over them reads whole vectors.
+/// Bonds that follow one another: what their forces come from, number by number side by side, so
+/// that a loop over them reads whole vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct BondBlock {
@@ -49,7 +50,8 @@ pub struct BondBlock {
     pub normal: Column,
     /// Across the bond, N/m.
     pub shear: Column,
-    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in every model.
+    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in
+    /// every model.
     pub radii_m: Column,
 }
 
@@ -98,7 +100,8 @@ pub struct Bonds {
     pub blocks: Vec<BondBlock>,
     /// Factor on the strengths. Empty: 1 for all.
     pub strength_factors: Vec<f64>,
-    /// Damping along, across, torsion, bending: N s/m, N s/m, N m s/rad, N m s/rad. Empty: none is damped.
+    /// Damping along, across, torsion, bending: N s/m, N s/m, N m s/rad, N m s/rad. Empty: none is
+    /// damped.
     pub damping: Vec<[f64; 4]>,
     /// What incremental bonds carry. Empty: none is incremental.
     #[serde(with = "histories")]
@@ -106,7 +109,8 @@ pub struct Bonds {
     /// Kinds of bonds.
     #[serde(skip)]
     pub rules: Vec<BondRule>,
-    /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the material only.
+    /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the
+    /// material only.
     pub torsion_per_bending: Vec<f64>,
     /// Ends of rule_runs of bonds that follow the same rule, and the rule.
     pub rule_runs: Vec<(usize, usize)>,
@@ -130,7 +134,8 @@ impl Bonds {
         self.blocks.reserve_exact(blocks - self.blocks.len());
     }
 
-    /// Adds a bond that follows the rule of this number. Bonds are to be added in the order that [`Bonds`] names.
+    /// Adds a bond that follows the rule of this number. Bonds are to be added in the order that
+    /// [`Bonds`] names.
     pub fn push(
         &mut self,
         ends: [u32; 2],
@@ -166,7 +171,8 @@ impl Bonds {
         }
     }
 
-    /// Adds a copy of bond `at` of others that follow the same rules, between these ends, with its strength times a factor.
+    /// Adds a copy of bond `at` of others that follow the same rules, between these ends, with its
+    /// strength times a factor.
     pub fn push_copy(&mut self, other: &Self, at: usize, ends: [u32; 2], factor: f64) {
         let rule = other.rule_of(at);
         let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
@@ -233,7 +239,8 @@ impl Bonds {
         total::bond_forces(&stiffness, &self.direction(at), &ends)
     }
 
-    /// How what bond `at`, which is not broken, does to its ends changes as they move and turn, by the total formulation.
+    /// How what bond `at`, which is not broken, does to its ends changes as they move and turn, by
+    /// the total formulation.
     pub fn tangent(&self, at: usize, poses: &[Pose]) -> BondTangent {
         let ends = self.ends[at].map(|end| poses[end as usize].end());
         bond_tangent(&self.stiffness(at), &self.direction(at), &ends)

@@ -76,7 +76,8 @@ pub struct Template {
     pub reach_m: f64,
     /// All its spheres.
     pub spheres: Vec<SubSphere>,
-    /// Those that can be touched: numbers in `spheres`, rising. Only these are in the scene while it is a clump.
+    /// Those that can be touched: numbers in `spheres`, rising. Only these are in the scene while
+    /// it is a clump.
     pub outer: Vec<u32>,
     /// Radius of a contact sphere of the clump over that of the sphere.
     pub scale: f64,
@@ -92,7 +93,8 @@ pub struct Template {
     pub bonds_of_file: Vec<u32>,
 }
 
-/// A rigid clump. Velocity and angular momentum stand half a step before or after its place, as those of particles do.
+/// A rigid clump. Velocity and angular momentum stand half a step before or after its place, as
+/// those of particles do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clump {
     /// Which template.
@@ -117,7 +119,8 @@ pub struct Clump {
     pub first: u32,
     /// Which of [`Clumps::near`] are its own: from the first of these numbers to before the second.
     pub near: [u32; 2],
-    /// Energy that contacts have taken from its motion so far, J: the sum over all times at which they slowed it down.
+    /// Energy that contacts have taken from its motion so far, J: the sum over all times at which
+    /// they slowed it down.
     pub impact_energy_j: f64,
     /// Whether it sleeps: it is not stepped then, and nothing is near it.
     pub asleep: bool,
@@ -130,14 +133,16 @@ pub struct Clumps {
     pub templates: Vec<Arc<Template>>,
     /// Those that are there.
     pub all: Vec<Clump>,
-    /// Their spheres that are near a wall or a particle, rising, as particles are counted: only these follow in every step. The others do when somebody asks.
+    /// Their spheres that are near a wall or a particle, rising, as particles are counted: only
+    /// these follow in every step. The others do when somebody asks.
     pub near: Vec<u32>,
     /// What their outer spheres are for, m: see [`crate::shape::outer_layer::outer_layer`].
     pub ball_m: f64,
 }
 
 impl Template {
-    /// The clump's sphere of this number while the clump stands so: place, radius, and how it is turned. The radius is not scaled.
+    /// The clump's sphere of this number while the clump stands so: place, radius, and how it is
+    /// turned. The radius is not scaled.
     pub fn pose(&self, sphere: usize, clump: &Clump) -> Pose {
         let sphere = &self.spheres[sphere];
         let turned = rotation(clump.turned);
@@ -155,7 +160,8 @@ impl Template {
         first..first + self.outer.len()
     }
 
-    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): what contacts are told of each of its spheres.
+    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): what contacts are told
+    /// of each of its spheres.
     pub fn inert(&self) -> [f64; 2] {
         let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
         [1.0 / self.mass_kg, 1.0 / mean]
@@ -208,7 +214,8 @@ impl Clumps {
         after.checked_sub(1)
     }
 
-    /// Takes spheres, rising, as those that are near something, and tells each clump which are its own.
+    /// Takes spheres, rising, as those that are near something, and tells each clump which are its
+    /// own.
     pub fn set_near(&mut self, near: Vec<u32>) {
         for clump in &mut self.all {
             let Range { start, end } =

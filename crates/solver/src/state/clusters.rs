@@ -1,10 +1,12 @@
 //! Clusters: particles joined by bonds that are not broken (Platzer 2022, section 4.2).
 //!
-//! Stands for the thesis' algorithms 2 (detection) and 3 (triggers, in [`triggers`]). Algorithm 2 is not taken as printed: it reads the first partner of a bond
-//! twice, and a bond between two clusters found so far adds a particle to one of them instead of joining the two. Here sets are disjoint by construction
-//! (union-find).
+//! Stands for the thesis' algorithms 2 (detection) and 3 (triggers, in [`triggers`]). Algorithm 2
+//! is not taken as printed: it reads the first partner of a bond twice, and a bond between two
+//! clusters found so far adds a particle to one of them instead of joining the two. Here sets are
+//! disjoint by construction (union-find).
 //!
-//! Only clusters with a bond broken since are searched, at a cost that grows with their particles and bonds alone.
+//! Only clusters with a bond broken since are searched, at a cost that grows with their particles
+//! and bonds alone.
 
 pub mod fragments;
 pub mod triggers;
@@ -42,8 +44,9 @@ pub struct Split {
 
 /// The clusters of a scene.
 ///
-/// A number stands for the same particles as long as the run lasts and is never used again: a cluster found whole keeps its number, one found in pieces ends, and
-/// every piece, the largest as well, gets a new one.
+/// A number stands for the same particles as long as the run lasts and is never used again: a
+/// cluster found whole keeps its number, one found in pieces ends, and every piece, the largest as
+/// well, gets a new one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clusters {
     /// The cluster of each particle.
@@ -81,7 +84,8 @@ impl Clusters {
         clusters
     }
 
-    /// Finds the clusters of particles that have come since, for a scene of now so many particles with these bonds in all. New bonds join new particles only.
+    /// Finds the clusters of particles that have come since, for a scene of now so many particles
+    /// with these bonds in all. New bonds join new particles only.
     pub fn extend(&mut self, time_s: f64, particles: usize, bonds: &Bonds) {
         let known = self.of_particle.len();
         self.first_bonds = first_bonds(bonds, particles);
@@ -93,7 +97,8 @@ impl Clusters {
         self.number(None, time_s, known..particles);
     }
 
-    /// The clusters as they were when these two were taken from them, with the same bonds. None if the two do not belong together.
+    /// The clusters as they were when these two were taken from them, with the same bonds. None if
+    /// the two do not belong together.
     pub fn resumed(of_particle: Vec<u32>, history: Vec<Cluster>, bonds: &Bonds) -> Option<Self> {
         let mut counts = vec![0_u32; history.len()];
         for id in &of_particle {
@@ -152,7 +157,8 @@ impl Clusters {
         ids
     }
 
-    /// Searches the clusters with these numbers, each once; those that have ended are left alone. Returns the ones found in pieces, in order.
+    /// Searches the clusters with these numbers, each once; those that have ended are left alone.
+    /// Returns the ones found in pieces, in order.
     pub fn update(&mut self, time_s: f64, damaged: &[u32], bonds: &Bonds) -> Vec<Split> {
         let mut ids = damaged.to_vec();
         ids.sort_unstable();
@@ -188,7 +194,8 @@ impl Clusters {
         }
     }
 
-    /// Makes a cluster of each set in `members[range]`, and sets them apart again. Makes none if they are one set and have a parent: that is whole.
+    /// Makes a cluster of each set in `members[range]`, and sets them apart again. Makes none if
+    /// they are one set and have a parent: that is whole.
     fn number(
         &mut self,
         parent: Option<u32>,

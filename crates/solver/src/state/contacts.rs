@@ -1,4 +1,5 @@
-//! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of contacts are.
+//! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of
+//! contacts are.
 
 use std::ops::Range;
 
@@ -29,7 +30,8 @@ pub enum Rolling {
 }
 
 impl ContactKind {
-    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m; 0 where there is no overlap.
+    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m; 0 where there
+    /// is no overlap.
     pub fn normal_n_m(&self, overlap_m: f64, radius_m: f64) -> f64 {
         let overlap_m = overlap_m.max(0.0);
         match &self.law {
@@ -48,14 +50,15 @@ pub struct ContactKind {
     pub rolling: Rolling,
 }
 
-/// What a contact remembers. Two cache lines, of which contacts without rolling friction use the first.
+/// What a contact remembers. Two cache lines, of which contacts without rolling friction use the
+/// first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct ContactHistory {
     /// Tangential spring x, y, z and the overlap of the law, m.
     pub tangential: [f64; 4],
-    /// Damping force on the second end x, y, z, N, and the overlap at which the law begins, m, which is 0 but for pairs that
-    /// [parted overlapping](crate::physics::contact::relaxation).
+    /// Damping force on the second end x, y, z, N, and the overlap at which the law begins, m,
+    /// which is 0 but for pairs that [parted overlapping](crate::physics::contact::relaxation).
     pub damping: [f64; 4],
     /// Rolling spring x, y, z, rad, and nothing.
     pub rolling: [f64; 4],
@@ -109,7 +112,8 @@ impl ContactHistory {
 pub struct Contacts {
     /// Kinds of contacts.
     pub kinds: Vec<ContactKind>,
-    /// For each material and each other the number of the kind: row by row, length materials squared.
+    /// For each material and each other the number of the kind: row by row, length materials
+    /// squared.
     pub kind_of: Vec<u8>,
     /// Material of each particle.
     pub materials: Vec<u8>,
@@ -131,21 +135,25 @@ pub struct Contacts {
     pub close_m: f64,
     /// What every particle may move before all are looked at again, m: that is due at 0.
     pub close_skin_left_m: f64,
-    /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No pairs are looked for.
+    /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No
+    /// pairs are looked for.
     pub alone: bool,
     /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
     pub relaxes: bool,
     /// A pair that parted overlapping is ordinary below this share of its reduced radius.
     pub least_overlap: f64,
-    /// Energy that friction and that damping took so far, booked at the first particle of each pair, J.
+    /// Energy that friction and that damping took so far, booked at the first particle of each
+    /// pair, J.
     pub lost_j: Vec<[f64; 2]>,
     /// The same of particles that are no more, J.
     pub lost_by_gone_j: [f64; 2],
-    /// The first pair that is pressed into each other by more than the radius of the smaller one, of this step.
+    /// The first pair that is pressed into each other by more than the radius of the smaller one,
+    /// of this step.
     pub excessive_overlap: Option<[u32; 2]>,
 }
 
-/// Contacts that one thread works on at a time: those of its particles with others of a larger index; and copies of those with smaller ones.
+/// Contacts that one thread works on at a time: those of its particles with others of a larger
+/// index; and copies of those with smaller ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPartition {
     /// Its particles.
@@ -156,7 +164,8 @@ pub struct ContactPartition {
     pub border: Vec<u32>,
     /// What those remembered before this step.
     pub border_histories: Vec<ContactHistory>,
-    /// For each kind the contacts that were close when all were looked at, or at the look before: numbers in `border`, and in all.
+    /// For each kind the contacts that were close when all were looked at, or at the look before:
+    /// numbers in `border`, and in all.
     pub close: Vec<[Vec<u32>; 2]>,
     /// Which of its contacts were close when all were looked at: a bit for each, eight to a byte.
     pub was_close: Vec<u8>,
@@ -180,8 +189,9 @@ impl Contacts {
         usize::from(self.kind_of[a * count + b])
     }
 
-    /// Takes a new list of pairs; pairs that were listed before keep what they remember. The overlap of one that is listed for the first time is the
-    /// origin of its law: there was nothing between the two before, be it a bond or nothing at all.
+    /// Takes a new list of pairs; pairs that were listed before keep what they remember. The
+    /// overlap of one that is listed for the first time is the origin of its law: there was nothing
+    /// between the two before, be it a bond or nothing at all.
     pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64) {
         let mut before = self.pairs.iter().zip(&self.histories).peekable();
         let histories = pairs

@@ -61,7 +61,8 @@ pub struct Break {
     pub cause: Cause,
     /// Elastic energy that it held, J.
     pub released_j: f64,
-    /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted until the break.
+    /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted
+    /// until the break.
     pub ends: [(u32, [f64; 6]); 2],
 }
 

@@ -23,7 +23,8 @@ pub struct EnergyLedger {
     pub(crate) fallen_j: f64,
     /// Largest energy and work seen, J.
     pub(crate) scale_j: f64,
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
+    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
+    /// millionth: less is rounding, J.
     pub(crate) floor_j: f64,
     /// The centre of mass at the start, about which moments are taken, m.
     pub(crate) about_m: [f64; 3],
@@ -51,7 +52,8 @@ pub(crate) struct Work {
 }
 
 impl EnergyLedger {
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a millionth: less is rounding, J.
+    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
+    /// millionth: less is rounding, J.
     pub fn floor_j(&self) -> f64 {
         self.floor_j
     }
@@ -61,7 +63,8 @@ impl EnergyLedger {
         self.mass_kg
     }
 
-    /// What a run could have in energy at most: that of the start, what loads, supports, walls and gravity gave, J.
+    /// What a run could have in energy at most: that of the start, what loads, supports, walls and
+    /// gravity gave, J.
     pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
@@ -81,8 +84,10 @@ impl EnergyLedger {
         self.work.add(&pending, 1.0);
     }
 
-    /// Books something that comes (1) or goes (-1) between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
-    /// angular momentum that it has after the kick, and with this energy at the moment of the places, that in gravity left out, J.
+    /// Books something that comes (1) or goes (-1) between a kick and the drift after it: of this
+    /// mass, kg, at this place, m, with the velocity, m/s, and own angular momentum that it has
+    /// after the kick, and with this energy at the moment of the places, that in gravity left out,
+    /// J.
     pub fn bring(
         &mut self,
         sign: f64,
@@ -108,8 +113,9 @@ impl EnergyLedger {
         self.brought_j += energy_j;
     }
 
-    /// Books something that stops where it is, between a kick and the drift after it: of this mass, kg, at this place, m, with the velocity, m/s, and own
-    /// angular momentum that it has after the kick, and with this kinetic energy at the moment of the places, J.
+    /// Books something that stops where it is, between a kick and the drift after it: of this mass,
+    /// kg, at this place, m, with the velocity, m/s, and own angular momentum that it has after the
+    /// kick, and with this kinetic energy at the moment of the places, J.
     pub fn stop(
         &mut self,
         [mass_kg, kinetic_j]: [f64; 2],
@@ -158,7 +164,8 @@ pub(crate) fn walls_work_j(walls: &[Wall]) -> f64 {
     walls.iter().map(|wall| wall.work_j).sum()
 }
 
-/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity, m/s, and own angular momentum; and their magnitudes.
+/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity,
+/// m/s, and own angular momentum; and their magnitudes.
 pub(crate) fn momenta_of(
     mass_kg: f64,
     place_m: [f64; 3],

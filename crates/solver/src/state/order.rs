@@ -1,4 +1,5 @@
-//! An order of particles in which near ones stand near each other, by halving: cut across the longest side of their box, sort each half likewise.
+//! An order of particles in which near ones stand near each other, by halving: cut across the
+//! longest side of their box, sort each half likewise.
 
 /// Particles that are not divided further.
 const FEW: usize = 8;

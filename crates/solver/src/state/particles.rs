@@ -53,7 +53,8 @@ impl Pose {
     }
 }
 
-/// How a particle moves, half a step after its pose (leapfrog), and how easily that changes. One cache line.
+/// How a particle moves, half a step after its pose (leapfrog), and how easily that changes. One
+/// cache line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct Motion {
@@ -104,7 +105,8 @@ impl Wrench {
     }
 }
 
-/// All particles of a scene. Those of a body stand together, near ones near each other; those that clumps carry come last.
+/// All particles of a scene. Those of a body stand together, near ones near each other; those that
+/// clumps carry come last.
 #[derive(Debug, Clone, Default)]
 pub struct Particles {
     /// Where they are.

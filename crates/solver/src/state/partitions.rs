@@ -1,7 +1,9 @@
 //! Which particles and bonds each thread works on.
 //!
-//! A partition is a range of particles. It computes every bond that has an end in its range, in the order of the bonds; bonds across the border
-//! of two partitions are computed by both. Bonds that are broken or of bodies that sleep belong to none. So no two threads write to the same place, and every sum keeps its order for any number of partitions.
+//! A partition is a range of particles. It computes every bond that has an end in its range, in the
+//! order of the bonds; bonds across the border of two partitions are computed by both. Bonds that
+//! are broken or of bodies that sleep belong to none. So no two threads write to the same place,
+//! and every sum keeps its order for any number of partitions.
 
 use std::ops::Range;
 
@@ -81,7 +83,8 @@ impl Partition {
     }
 }
 
-/// Divides particles and bonds into `count` partitions with about the same number of bonds each; fewer where there are not enough particles.
+/// Divides particles and bonds into `count` partitions with about the same number of bonds each;
+/// fewer where there are not enough particles.
 pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
     divide_awake(bonds, particles, count, &[])
 }
@@ -140,7 +143,8 @@ fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Gives the partitions their bonds once more, without those that have broken since and those of bodies that sleep.
+/// Gives the partitions their bonds once more, without those that have broken since and those of
+/// bodies that sleep.
 pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
     let particles = partitions
         .last()
@@ -152,7 +156,8 @@ pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool])
     add_batches(bonds, partitions, &first_bond, asleep);
 }
 
-/// For each particle the first of the bonds that it is the first end of; and at the end the number of bonds. Length particles + 1.
+/// For each particle the first of the bonds that it is the first end of; and at the end the number
+/// of bonds. Length particles + 1.
 pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     let mut first_bond = vec![0_usize; particles + 1];
     for &[a, _] in &bonds.ends {

@@ -75,7 +75,8 @@ impl Region {
         }
     }
 
-    /// A point of it for numbers in (0, 1), or none where they lead beside it: ask again with others.
+    /// A point of it for numbers in (0, 1), or none where they lead beside it: ask again with
+    /// others.
     pub fn point(&self, [u, v, w]: [f64; 3]) -> Option<[f64; 3]> {
         let Bounds { low, high } = self.bounds();
         let share = [u, v, w];
@@ -88,7 +89,8 @@ fn is_in(bounds: &Bounds, point: [f64; 3]) -> bool {
     (0..3).all(|k| (bounds.low[k]..=bounds.high[k]).contains(&point[k]))
 }
 
-/// How often a closed surface winds around a point: 1 inside, 0 outside (solid angles by van Oosterom and Strackee 1983).
+/// How often a closed surface winds around a point: 1 inside, 0 outside (solid angles by van
+/// Oosterom and Strackee 1983).
 fn turns(triangles: &[[[f64; 3]; 3]], point: &Vector3<f64>) -> f64 {
     let mut angle = 0.0;
     for corners in triangles {

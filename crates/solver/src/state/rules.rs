@@ -1,4 +1,5 @@
-//! When bodies come, go, and become others: what the scene says of regions, replacement, inlets and outlets, and how far that has come.
+//! When bodies come, go, and become others: what the scene says of regions, replacement, inlets and
+//! outlets, and how far that has come.
 
 use std::collections::BTreeMap;
 
@@ -135,11 +136,14 @@ pub struct Rules {
     pub regions: Vec<Region>,
     /// For each template, when its clumps become clusters. None: never.
     pub triggers: Vec<Option<Trigger>>,
-    /// For each template of the scene, when clusters that come from it become clumps again. None: never.
+    /// For each template of the scene, when clusters that come from it become clumps again. None:
+    /// never.
     pub restores: Vec<Option<Restore>>,
-    /// For each cluster that was a clump, the template of the scene that it comes from, and its [instance](super::clumps::Clump::instance).
+    /// For each cluster that was a clump, the template of the scene that it comes from, and its
+    /// [instance](super::clumps::Clump::instance).
     pub base_of_cluster: BTreeMap<u32, (u32, u32)>,
-    /// For each template that is a fragment, after those of the scene: the template of the scene that it comes from.
+    /// For each template that is a fragment, after those of the scene: the template of the scene
+    /// that it comes from.
     pub base_of_fragment: Vec<u32>,
     /// Clusters that became clumps again so far.
     pub restored: u32,
@@ -155,7 +159,8 @@ pub struct Rules {
     pub instances: u32,
     /// Clumps that have become clusters so far.
     pub replaced: u32,
-    /// Bonds that were there times steps, and those that were left out because their bodies were clumps.
+    /// Bonds that were there times steps, and those that were left out because their bodies were
+    /// clumps.
     pub bond_steps: [u64; 2],
 }
 
@@ -164,12 +169,14 @@ pub struct Rules {
 pub struct Start {
     /// As bonded clusters; else as clumps.
     pub bonded: bool,
-    /// How the scene turns the body: unit quaternion x, y, z, w, from the axes of its file to space.
+    /// How the scene turns the body: unit quaternion x, y, z, w, from the axes of its file to
+    /// space.
     pub turned: [f64; 4],
 }
 
 impl Rules {
-    /// Takes a new template of a fragment of the template `base` of the scene. It is replaced as that is, but not by the time, which has come already.
+    /// Takes a new template of a fragment of the template `base` of the scene. It is replaced as
+    /// that is, but not by the time, which has come already.
     pub fn add_fragment(&mut self, base: usize) {
         let trigger = self.triggers[base].clone().map(|trigger| Trigger {
             time_s: None,

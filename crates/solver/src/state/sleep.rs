@@ -12,7 +12,8 @@ pub struct Sleep {
     pub speed_m_s: f64,
     /// It has been as slow for so long, s.
     pub after_s: f64,
-    /// For each cluster whether it sleeps, and since when it has been slow, s (infinite: it is not). Clusters beyond the end are awake and not slow.
+    /// For each cluster whether it sleeps, and since when it has been slow, s (infinite: it is
+    /// not). Clusters beyond the end are awake and not slow.
     pub of_cluster: Vec<ClusterSleep>,
     /// Contacts between particles that sleep, by pair. They are in no list of contacts.
     pub pairs: Vec<FrozenContact>,

@@ -47,7 +47,8 @@ pub struct Held {
     pub particle: u32,
     /// Velocity and spin before the kick. Length 6.
     pub before: [f64; 6],
-    /// What the support exerts in the half steps before and after the kick, N and N m: the first is that at the time of the poses; they differ
-    /// where a bond of the particle has just broken. Length 6 each.
+    /// What the support exerts in the half steps before and after the kick, N and N m: the first is
+    /// that at the time of the poses; they differ where a bond of the particle has just broken.
+    /// Length 6 each.
     pub reactions: [[f64; 6]; 2],
 }

@@ -90,7 +90,8 @@ impl Wall {
         Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
     }
 
-    /// Force, N, and torque about the pivot, N m, on all particles that touch it, be they awake or asleep.
+    /// Force, N, and torque about the pivot, N m, on all particles that touch it, be they awake or
+    /// asleep.
     pub fn whole_push(&self) -> [[f64; 3]; 2] {
         let (awake, asleep) = (&self.push, &self.slept_on);
         let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);

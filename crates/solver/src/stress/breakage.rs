@@ -14,8 +14,9 @@ const DENSITY: f64 = 2500.0;
 /// Strain of the bonds at the start: 10 kPa, and their strength is 1 Pa.
 const STRAIN: f64 = 1e-5;
 
-/// Blocks that spin, whose bonds all fail at the start. Each sphere flies on as it was: two that flew apart on a circle never come nearer, so relaxation
-/// leaves them nothing to push with. Without relaxation they explode, and the run is stopped.
+/// Blocks that spin, whose bonds all fail at the start. Each sphere flies on as it was: two that
+/// flew apart on a circle never come nearer, so relaxation leaves them nothing to push with.
+/// Without relaxation they explode, and the run is stopped.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -54,7 +55,8 @@ pub fn shatter() -> Result<Vec<Member>> {
     )])
 }
 
-/// A body that spins at 1000 rad/s and all of whose bonds fail at once: kinetic energy, momenta and pieces are known.
+/// A body that spins at 1000 rad/s and all of whose bonds fail at once: kinetic energy, momenta and
+/// pieces are known.
 fn breaks(what: String, body: Body, end_time: &str) -> Member {
     let spin_rad_s = 1e3;
     let kinetic_j = kinetic_j(&body, spin_rad_s);

@@ -18,7 +18,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// Its members with what is predicted of each, from closed forms and from plans; where one run is predicted from another, that other is run.
+    /// Its members with what is predicted of each, from closed forms and from plans; where one run
+    /// is predicted from another, that other is run.
     ///
     /// # Errors
     /// A scene that cannot be planned although it should; interrupted.

@@ -1,4 +1,5 @@
-//! Families of pairs, rows and impacts over orders of magnitude: ratios, sizes, moduli, coordinates, short bonds.
+//! Families of pairs, rows and impacts over orders of magnitude: ratios, sizes, moduli,
+//! coordinates, short bonds.
 
 use dem_io::Result;
 
@@ -10,7 +11,8 @@ use crate::physics::bond::stiffness::BondModel;
 
 const TIMOSHENKO: (BondModel, &str) = (BondModel::Timoshenko, "timoshenko");
 
-/// Three equal spheres, the second bond so much thinner than the first that it is stiffness_ratio by the ratio.
+/// Three equal spheres, the second bond so much thinner than the first that it is stiffness_ratio
+/// by the ratio.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -51,8 +53,8 @@ pub fn mass_ratios() -> Result<Vec<Member>> {
     Ok(members)
 }
 
-/// A pair and an impact of spheres of 0.1 m far from the origin, where a coordinate is rounded to 1e-10 m; and of 1 um so far that nothing would be left of a
-/// radius.
+/// A pair and an impact of spheres of 0.1 m far from the origin, where a coordinate is rounded to
+/// 1e-10 m; and of 1 um so far that nothing would be left of a radius.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -131,7 +133,8 @@ pub fn moduli() -> Result<Vec<Member>> {
     Ok(members)
 }
 
-/// Spheres almost at one place. The limit is the program's, as its linearisation must not step over such a bond; the swing is in closed form.
+/// Spheres almost at one place. The limit is the program's, as its linearisation must not step over
+/// such a bond; the swing is in closed form.
 ///
 /// # Errors
 /// None: these are bodies.

@@ -1,20 +1,26 @@
-//! A sphere that hits a wall or another sphere head-on: overlap, duration and rebound in closed form.
+//! A sphere that hits a wall or another sphere head-on: overlap, duration and rebound in closed
+//! form.
 //!
-//! Hertz: F = 4/3 E* sqrt(R*) d^(3/2) stops a reduced mass m* at the overlap (15 m* v^2 / (16 E* sqrt(R*)))^(2/5) and lets it go after 2.943 275 times
-//! that over v (Johnson 1985, Contact Mechanics, section 11.4). The restitution asked for is that of the speeds.
+//! Hertz: F = 4/3 E* sqrt(R*) d^(3/2) stops a reduced mass m* at the overlap (15 m* v^2 / (16 E*
+//! sqrt(R*)))^(2/5) and lets it go after 2.943 275 times that over v (Johnson 1985, Contact
+//! Mechanics, section 11.4). The restitution asked for is that of the speeds.
 
 use std::f64::consts::PI;
 
 use super::prediction::{Member, Prediction, Shown, Way};
 use super::trial::Trial;
 
-/// Duration of an elastic impact times speed over largest overlap: 2 sqrt(pi) Gamma(7/5) / Gamma(9/10).
+/// Duration of an elastic impact times speed over largest overlap: 2 sqrt(pi) Gamma(7/5) /
+/// Gamma(9/10).
 const DURATION: f64 = 2.943_275_4;
-/// How well speeds are met, over that of the impact: with some ten steps to an impact, the loss hangs on the moment within a step at which the ends meet.
+/// How well speeds are met, over that of the impact: with some ten steps to an impact, the loss
+/// hangs on the moment within a step at which the ends meet.
 const SPEED: f64 = 1e-2;
-/// The same without damping: the step of an impact keeps its energy to some 3e-3, so its speeds to half of that.
+/// The same without damping: the step of an impact keeps its energy to some 3e-3, so its speeds to
+/// half of that.
 const ELASTIC_SPEED: f64 = 2e-3;
-/// How well overlaps and durations are met: with a quarter of the largest step, w dt = 0.5, leapfrog's frequency is off by (w dt)^2 / 24.
+/// How well overlaps and durations are met: with a quarter of the largest step, w dt = 0.5,
+/// leapfrog's frequency is off by (w dt)^2 / 24.
 const TIME: f64 = 0.01;
 
 /// What is hit.
@@ -70,7 +76,8 @@ impl Impact {
         }
     }
 
-    /// Fraction of the relative velocity that each of the two loses and gains, times (1 + e): m* over the mass of the first, and over that of the second.
+    /// Fraction of the relative velocity that each of the two loses and gains, times (1 + e): m*
+    /// over the mass of the first, and over that of the second.
     fn shares(&self) -> [f64; 2] {
         match self.target {
             Target::Plane | Target::Sheet => [1.0, 0.0],
@@ -110,7 +117,8 @@ impl Impact {
         self.gap * self.radius_m / self.closing_m_s()
     }
 
-    /// When it is looked at, s: some time after the two have parted, also where damping makes that take longer.
+    /// When it is looked at, s: some time after the two have parted, also where damping makes that
+    /// take longer.
     fn end_s(&self) -> f64 {
         self.touched_s() + 3.0 * self.duration_s()
     }
@@ -166,7 +174,8 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         }
     }
 
-    /// It comes back with the restitution asked for; an elastic one also after the time of Hertz, and from a wall at rest from the depth of Hertz.
+    /// It comes back with the restitution asked for; an elastic one also after the time of Hertz,
+    /// and from a wall at rest from the depth of Hertz.
     pub fn member(&self, what: String) -> Member {
         let closing = self.closing_m_s();
         let shares = self.shares();
@@ -214,7 +223,8 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         }
     }
 
-    /// It is stopped, or with `is_refused` not even begun, with these words. `time_step`: of `[run]`.
+    /// It is stopped, or with `is_refused` not even begun, with these words. `time_step`: of
+    /// `[run]`.
     pub fn ended_by(&self, what: String, trial: Trial, is_refused: bool, words: &[&str]) -> Member {
         let words = words.iter().map(|word| (*word).to_owned()).collect();
         Member {
@@ -264,7 +274,8 @@ pub fn impacts() -> Vec<Member> {
         };
         members.push(ball.member(format!("on a sphere, restitution {restitution}")));
     }
-    // A little more or less way before the impact: nothing may depend on when the two are first seen to be near.
+    // A little more or less way before the impact: nothing may depend on when the two are first
+    // seen to be near.
     for n in 0..36 {
         let gap = 1.03 + f64::from(n) * 0.002;
         let gel = Impact {
@@ -303,7 +314,8 @@ pub fn impacts() -> Vec<Member> {
     members
 }
 
-/// A sheet that a sphere would jump over with the step asked for, which is refused; by force, the run is stopped. With its own step it comes back.
+/// A sheet that a sphere would jump over with the step asked for, which is refused; by force, the
+/// run is stopped. With its own step it comes back.
 pub fn at_mesh() -> Vec<Member> {
     let mut members = Vec::new();
     for restitution in [1.0, 0.5] {

@@ -1,7 +1,9 @@
-//! The largest stable step as it is seen: the one below which a small disturbance stays small, and above which it grows.
+//! The largest stable step as it is seen: the one below which a small disturbance stays small, and
+//! above which it grows.
 //!
-//! Neither the program's limit nor its watchdog has a say in it: the scene's state is stepped as it is, and its energy is looked at. Both sides of
-//! the map, five bond models by damping from none to ten times the critical one, have to agree within a hundredth.
+//! Neither the program's limit nor its watchdog has a say in it: the scene's state is stepped as it
+//! is, and its energy is looked at. Both sides of the map, five bond models by damping from none to
+//! ten times the critical one, have to agree within a hundredth.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,21 +17,23 @@ use crate::step::step;
 
 /// How near the largest stable and the smallest unstable step come to each other, over the step.
 const RESOLUTION: f64 = 0.002;
-/// Energy over that of the start at which a disturbance has grown: a thousandfold amplitude. So small a disturbance is still linear then.
+/// Energy over that of the start at which a disturbance has grown: a thousandfold amplitude. So
+/// small a disturbance is still linear then.
 const GROWN: f64 = 1e6;
 /// Strain of the bonds at the start.
 const DISTURBANCE: f64 = 1e-8;
-/// Steps after which what has not grown is taken for stable. Slowest to grow is a mode with damping alone: by 2 `RESOLUTION` a step where the step is longer than
-/// the limit by `RESOLUTION`. With a thousandth of the disturbance in it, the whole has grown a thousandfold when it has grown a millionfold, after
-/// ln(1e6) / (2 `RESOLUTION`) = 3450 steps.
+/// Steps after which what has not grown is taken for stable. Slowest to grow is a mode with damping
+/// alone: by 2 `RESOLUTION` a step where the step is longer than the limit by `RESOLUTION`. With a
+/// thousandth of the disturbance in it, the whole has grown a thousandfold when it has grown a
+/// millionfold, after ln(1e6) / (2 `RESOLUTION`) = 3450 steps.
 const STEPS: usize = 3500;
 /// Steps between two looks at the energy.
 const EVERY: usize = 25;
 /// By how much predicted and observed limits may differ.
 const AGREEMENT: f64 = 0.01;
 
-/// Largest stable step of a scene, s, within `RESOLUTION`, from half the program's limit to twice that; not a number where all of those steps are stable,
-/// or none.
+/// Largest stable step of a scene, s, within `RESOLUTION`, from half the program's limit to twice
+/// that; not a number where all of those steps are stable, or none.
 ///
 /// # Errors
 /// Interrupted; a scene that is refused.
@@ -81,7 +85,8 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: five models in both formulations, damped by nothing, lightly, critically and far beyond; other kinds of damping beside.
+/// The map: five models in both formulations, damped by nothing, lightly, critically and far
+/// beyond; other kinds of damping beside.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -163,8 +168,10 @@ pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
     })
 }
 
-/// A block of `side` spheres each way on a cubic grid, about 1 mm in radius, no two alike, bonded to their neighbours along the edges and the diagonals of
-/// the faces of the grid; neighbours overlap as spheres do that touch at r/(1 + overlap). Bonds are stretched by `strain`, each second one pressed.
+/// A block of `side` spheres each way on a cubic grid, about 1 mm in radius, no two alike, bonded
+/// to their neighbours along the edges and the diagonals of the faces of the grid; neighbours
+/// overlap as spheres do that touch at r/(1 + overlap). Bonds are stretched by `strain`, each
+/// second one pressed.
 ///
 /// # Errors
 /// None, as the body is one.

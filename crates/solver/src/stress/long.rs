@@ -18,12 +18,14 @@ const DAY: f64 = 86_400.0;
 /// s
 const HOUR: f64 = 3600.0;
 
-/// Of what rests, s: the same for an hour and for a day, as friction holds bodies where they came to rest, step by step.
+/// Of what rests, s: the same for an hour and for a day, as friction holds bodies where they came
+/// to rest, step by step.
 const REST_STEP_S: f64 = 0.05;
 
-/// Two bonded spheres of 1 mm turn about the middle between them. Undamped, they swing about the stretch at which the bond holds them on their circle, to twice that;
-/// damped, they come to it, but for what damping carries: it goes by velocities half a step old, which on a circle point outwards by w dt / 2, and so takes the share
-/// c dt / m of what the bond would have to hold.
+/// Two bonded spheres of 1 mm turn about the middle between them. Undamped, they swing about the
+/// stretch at which the bond holds them on their circle, to twice that; damped, they come to it,
+/// but for what damping carries: it goes by velocities half a step old, which on a circle point
+/// outwards by w dt / 2, and so takes the share c dt / m of what the bond would have to hold.
 ///
 /// # Errors
 /// None.
@@ -81,7 +83,8 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
                 2.0 * turn.powi(2) * at_rest_j,
             )
         } else {
-            // A swing of twice the stretch is off by its share of the length, and a row of the time series can miss its top.
+            // A swing of twice the stretch is off by its share of the length, and a row of the time
+            // series can miss its top.
             Shown::measure(
                 "elastic_energy",
                 "J",
@@ -104,8 +107,9 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
     Ok(vec![member(0.0), member(0.1)])
 }
 
-/// Large soft spheres under their weight for a day, so that a step is some milliseconds: one, which stands as deep as Hertz says; and a tetrahedron on a slope, bonded and
-/// as a clump, which friction holds. Where that stands after a day is predicted from where it stands after an hour.
+/// Large soft spheres under their weight for a day, so that a step is some milliseconds: one, which
+/// stands as deep as Hertz says; and a tetrahedron on a slope, bonded and as a clump, which
+/// friction holds. Where that stands after a day is predicted from where it stands after an hour.
 ///
 /// # Errors
 /// Interrupted.

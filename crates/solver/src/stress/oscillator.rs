@@ -1,7 +1,9 @@
-//! Spheres on a line that swing along it: their places in closed form, also as leapfrog steps them, which leaves nothing but rounding.
+//! Spheres on a line that swing along it: their places in closed form, also as leapfrog steps them,
+//! which leaves nothing but rounding.
 //!
-//! A bond answers to stretch along a line linearly. Kick-drift-kick turns x'' = -w^2 x from rest into x_n = x_0 cos(n theta) with
-//! sin(theta / 2) = w dt / 2 exactly (Hairer, Lubich, Wanner 2003, Acta Numerica 12).
+//! A bond answers to stretch along a line linearly. Kick-drift-kick turns x'' = -w^2 x from rest
+//! into x_n = x_0 cos(n theta) with sin(theta / 2) = w dt / 2 exactly (Hairer, Lubich, Wanner 2003,
+//! Acta Numerica 12).
 
 use std::f64::consts::PI;
 
@@ -12,7 +14,8 @@ use super::trial::Trial;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 
-/// Spheres that touch along x, the first at `at_m`, joined by bonds, of which the last is stretched.
+/// Spheres that touch along x, the first at `at_m`, joined by bonds, of which the last is
+/// stretched.
 #[derive(Debug, Clone)]
 pub struct Row {
     /// Radii, m: of two spheres or three.
@@ -86,8 +89,8 @@ impl Row {
         self.share * bonds.map(of_bond).fold(f64::INFINITY, f64::min)
     }
 
-    /// Modes of the rule_runs of the bonds: square of the circular frequency, 1/s2, and what the last stretched bond puts into each stretch by it,
-    /// over that stretch.
+    /// Modes of the rule_runs of the bonds: square of the circular frequency, 1/s2, and what the
+    /// last stretched bond puts into each stretch by it, over that stretch.
     fn modes(&self) -> Vec<(f64, Vec<f64>)> {
         let m = |sphere: usize| self.mass_kg(sphere);
         let k = |bond: usize| self.normal_n_m(bond);
@@ -134,7 +137,8 @@ impl Row {
             })
             .collect();
         let moved_m = self.moved_m(&gained_m);
-        // Every step rounds every coordinate once, by half a unit in the last place at most, and moves what was rounded before to and fro.
+        // Every step rounds every coordinate once, by half a unit in the last place at most, and
+        // moves what was rounded before to and fro.
         let extent_m = self.at_m.abs() + self.distances_m.iter().sum::<f64>();
         let rounding_m = steps * f64::EPSILON * extent_m;
         let names = ["first_moved", "second_moved", "third_moved"];
@@ -149,7 +153,8 @@ impl Row {
         })
     }
 
-    /// How far each sphere has moved once the rule_runs are longer by this, m: the centre of mass stays.
+    /// How far each sphere has moved once the rule_runs are longer by this, m: the centre of mass
+    /// stays.
     fn moved_m(&self, gained_m: &[f64]) -> Vec<f64> {
         let mut moved = vec![0.0];
         for gained in gained_m {

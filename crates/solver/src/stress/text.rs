@@ -25,7 +25,8 @@ pub fn row(result: &CaseResult) -> String {
     )
 }
 
-/// What was predicted and observed: in the run that is farthest off, and how many were refused and stopped.
+/// What was predicted and observed: in the run that is farthest off, and how many were refused and
+/// stopped.
 fn cells(result: &CaseResult) -> [String; 2] {
     let ends = |m: &&Judged| matches!(m.predicted, Prediction::Ends(_));
     let ended: Vec<&Judged> = result.members.iter().filter(ends).collect();

@@ -24,7 +24,8 @@ pub struct Trial {
     pub bodies: Vec<(&'static str, Body)>,
     /// Surfaces, by the names of their files (`.stl`): their text.
     pub surfaces: Vec<(&'static str, String)>,
-    /// As `--force-step`: the scene's time step is taken even if it is above the largest stable one.
+    /// As `--force-step`: the scene's time step is taken even if it is above the largest stable
+    /// one.
     pub force_step: bool,
 }
 

@@ -16,7 +16,8 @@ use super::trial::Outcome;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Observation {
-    /// The run ended, and showed these values: those of the prediction, in its order; none where an end was not predicted.
+    /// The run ended, and showed these values: those of the prediction, in its order; none where an
+    /// end was not predicted.
     Ended(Vec<f64>),
     /// It was refused before it started: what was said.
     Refused(String),
@@ -33,7 +34,8 @@ pub struct Judged {
     pub predicted: Prediction,
     /// What was seen.
     pub observed: Observation,
-    /// How far the worst value is off, in tolerances; 0 for what was refused or stopped as predicted.
+    /// How far the worst value is off, in tolerances; 0 for what was refused or stopped as
+    /// predicted.
     pub deviation: f64,
     /// What is wrong; None: it did as predicted.
     pub wrong: Option<String>,

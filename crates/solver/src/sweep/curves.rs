@@ -8,7 +8,8 @@ use dem_io::results::{Axis, Line, MOST_LINES, Plot};
 use super::rows::SweepTable;
 use crate::interpolation::interpolated;
 
-/// The curve of the test whose results stand in this folder: points (displacement in m, load in N), rising in the first.
+/// The curve of the test whose results stand in this folder: points (displacement in m, load in N),
+/// rising in the first.
 ///
 /// # Errors
 /// Why there is none, in words.
@@ -39,8 +40,9 @@ pub fn largest_n(curve: &[[f64; 2]]) -> f64 {
     curve.iter().map(|[_, force]| *force).fold(0.0, f64::max)
 }
 
-/// The area between two curves over the area under the second, from no displacement to where the later of the two has its largest load.
-/// Lines join the points; beyond its last point a curve keeps its last load.
+/// The area between two curves over the area under the second, from no displacement to where the
+/// later of the two has its largest load. Lines join the points; beyond its last point a curve
+/// keeps its last load.
 pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
     let at_peak = |points: &[[f64; 2]]| {
         let peak = points.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
@@ -110,12 +112,14 @@ mod tests {
         assert!(distance(&same, &line) < 1e-15);
         let stiffer = [[0.0, 0.0], [2.0, 4.4]];
         assert!((distance(&stiffer, &line) - 0.1).abs() < 1e-15);
-        // It breaks at half the displacement: the other half of the area, three quarters of it, is between them, but for the fall.
+        // It breaks at half the displacement: the other half of the area, three quarters of it, is
+        // between them, but for the fall.
         let weaker = [[0.0, 0.0], [1.0, 2.0], [1.0 + 1e-9, 0.0], [1.1, 0.0]];
         assert!((distance(&weaker, &line) - 0.75).abs() < 1e-8);
         // And the other way round: the area under the weaker one is 1, that between them 3.
         assert!((distance(&line, &weaker) - 3.0).abs() < 1e-8);
-        // Two lines that cross at half the way: two triangles of a quarter each, under the second one of a half.
+        // Two lines that cross at half the way: two triangles of a quarter each, under the second
+        // one of a half.
         let [up, down] = [[[0.0, 0.0], [1.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
         assert!((distance(&up, &down) - 1.0).abs() < 1e-15);
     }

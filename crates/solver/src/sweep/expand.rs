@@ -121,7 +121,8 @@ fn choice(combine: Combine, lengths: &[usize], index: usize) -> Vec<usize> {
     choice
 }
 
-/// What the runs have in common that differ along one axis only. Runs of a study that is paired all differ along each.
+/// What the runs have in common that differ along one axis only. Runs of a study that is paired all
+/// differ along each.
 pub fn group(study: &Study, run: &Run, along: usize) -> Vec<usize> {
     match study.combine {
         Combine::Paired => Vec::new(),

@@ -1,4 +1,5 @@
-//! The folder of a sweep: `study.json` (what it is of), `runs/0001-1` (each process), and what comes of all.
+//! The folder of a sweep: `study.json` (what it is of), `runs/0001-1` (each process), and what
+//! comes of all.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -43,10 +44,12 @@ pub enum Earlier {
 }
 
 impl SweepFolder {
-    /// Makes the folder `path`, or takes the one that is there. `scene_text` is that of the scene's file.
+    /// Makes the folder `path`, or takes the one that is there. `scene_text` is that of the scene's
+    /// file.
     ///
     /// # Errors
-    /// An earlier sweep by `earlier`, or other files are in it; another sweep is writing into it; it cannot be written to.
+    /// An earlier sweep by `earlier`, or other files are in it; another sweep is writing into it;
+    /// it cannot be written to.
     pub fn create(path: &Path, earlier: Earlier, study: &Study, scene_text: &str) -> Result<Self> {
         let place = path.display().to_string();
         let is_sweep = is_identity(&path.join(IDENTITY));
@@ -241,7 +244,8 @@ fn identity(study: &Study, scene_text: &str) -> Value {
     })
 }
 
-/// Takes the lock of a folder, which the system releases when the program ends. Some network disks know none: that is no reason not to run.
+/// Takes the lock of a folder, which the system releases when the program ends. Some network disks
+/// know none: that is no reason not to run.
 fn lock(folder: &Path) -> Result<Option<File>> {
     let path = folder.join(LOCK);
     let file = File::options()

@@ -18,10 +18,12 @@ impl Point {
     }
 }
 
-/// Which points are on the front. From the smallest error upwards, a point is on it if it is clearly faster than all that are on it already. Errors count with
-/// two digits; of points with the same error that are as fast as the fastest of them, within their spread, the first is taken.
+/// Which points are on the front. From the smallest error upwards, a point is on it if it is
+/// clearly faster than all that are on it already. Errors count with two digits; of points with the
+/// same error that are as fast as the fastest of them, within their spread, the first is taken.
 ///
-/// So chance does not decide where run times hardly differ: of two runs that are equally fast the more exact one is wanted, of two that are equal the first.
+/// So chance does not decide where run times hardly differ: of two runs that are equally fast the
+/// more exact one is wanted, of two that are equal the first.
 pub fn front(points: &[Point]) -> Vec<bool> {
     let errors: Vec<f64> = points.iter().map(|point| two_digits(point.error)).collect();
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -66,8 +68,9 @@ mod tests {
     }
 
     proptest! {
-        /// Of two members the less exact is clearly faster; the most exact error has one; and whoever is not on it has a member, or an equal of one that is as
-        /// fast, that is as exact and not clearly slower.
+        /// Of two members the less exact is clearly faster; the most exact error has one; and
+        /// whoever is not on it has a member, or an equal of one that is as fast, that is as exact
+        /// and not clearly slower.
         #[test]
         fn each_step_towards_exactness_costs_time(points in points()) {
             let is_on = front(&points);
@@ -90,7 +93,8 @@ mod tests {
             }
         }
 
-        /// Run times that are the same or lie apart by more than twice the noise and their spread: the front stays.
+        /// Run times that are the same or lie apart by more than twice the noise and their spread:
+        /// the front stays.
         #[test]
         fn noise_within_the_spread_does_not_change_it(
             ranks in prop::collection::vec((0..8u32, 0..8i32), 1..30),

@@ -16,7 +16,8 @@ use serde_json::Value;
 use super::expand::Run;
 use super::outcome::Outcome;
 
-/// Runs that are done more than once are repeated until so much time has been measured, s, or so often: short ones scatter most.
+/// Runs that are done more than once are repeated until so much time has been measured, s, or so
+/// often: short ones scatter most.
 const MEASURED_S: f64 = 0.5;
 const MOST_REPEATS: u32 = 25;
 /// How often processes are looked after. What they take is measured by themselves.
@@ -71,7 +72,8 @@ impl Job {
     }
 }
 
-/// All processes. Each run is done once before any is done again, there and back, so that a machine that becomes slower favours none.
+/// All processes. Each run is done once before any is done again, there and back, so that a machine
+/// that becomes slower favours none.
 pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
     let mut jobs = Vec::new();
     for repeat in 1..=repeats {
@@ -85,7 +87,8 @@ pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
     jobs
 }
 
-/// Further repeats of runs that are short, from the outcomes of all [`jobs`] of each run. None of a run of which one has not come to its end.
+/// Further repeats of runs that are short, from the outcomes of all [`jobs`] of each run. None of a
+/// run of which one has not come to its end.
 pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
     if repeats == 1 {
         return Vec::new();
@@ -192,7 +195,8 @@ impl Drop for Started {
     }
 }
 
-/// Does the jobs, so many at a time. One that fails leaves its complaint; the others go on. `tell` is called with the number that are done.
+/// Does the jobs, so many at a time. One that fails leaves its complaint; the others go on. `tell`
+/// is called with the number that are done.
 ///
 /// # Errors
 /// Interrupted; the program cannot be started.

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use dem_io::scene::study::Pieces;
 
-/// What chance alone exceeds in one of twenty cases, times the root of 1/n + 1/m (Kolmogorov and Smirnov).
+/// What chance alone exceeds in one of twenty cases, times the root of 1/n + 1/m (Kolmogorov and
+/// Smirnov).
 const ONE_OF_TWENTY: f64 = 1.358;
-/// Values that differ by less than this share are the same: the mass of a clump and that of its cluster are sums in another order.
+/// Values that differ by less than this share are the same: the mass of a clump and that of its
+/// cluster are sums in another order.
 const SAME: f64 = 1e-9;
 
 /// The masses, kg, of the pieces of the run whose results stand in this folder.
@@ -52,8 +54,9 @@ pub fn masses_kg(pieces: Pieces, results: &Path) -> Result<Vec<f64>, String> {
     }
 }
 
-/// The largest difference of two cumulative distributions (Kolmogorov and Smirnov), of values that count as much as `weight` says: 1 for a distribution by
-/// number, the value itself for one by mass.
+/// The largest difference of two cumulative distributions (Kolmogorov and Smirnov), of values that
+/// count as much as `weight` says: 1 for a distribution by number, the value itself for one by
+/// mass.
 pub fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
     let sums = [a, b].map(|all| all.iter().map(|x| weight(*x)).sum::<f64>());
     let mut all: Vec<(f64, f64)> = (a.iter().map(|x| (*x, weight(*x) / sums[0])))
@@ -73,7 +76,8 @@ pub fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
     largest
 }
 
-/// The distance by number that two samples of so many values of one distribution exceed in one of twenty cases.
+/// The distance by number that two samples of so many values of one distribution exceed in one of
+/// twenty cases.
 pub fn by_chance(a: usize, b: usize) -> f64 {
     ONE_OF_TWENTY * (1.0 / a as f64 + 1.0 / b as f64).sqrt()
 }

@@ -11,7 +11,8 @@ use super::rows::{Order, Row};
 /// Fewest runs for an order.
 const FEWEST: usize = 3;
 
-/// Of each measure, along each axis with sizes. Errors below the uncertainty of their reference say nothing and are left out.
+/// Of each measure, along each axis with sizes. Errors below the uncertainty of their reference say
+/// nothing and are left out.
 pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
     let mut found = Vec::new();
     for (measure, of) in study.measures.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Error against run time as SVG: both axes logarithmic, series told apart by colour and shape, the front filled and joined.
+//! Error against run time as SVG: both axes logarithmic, series told apart by colour and shape, the
+//! front filled and joined.
 
 use std::fmt::Write;
 use std::fs::File;

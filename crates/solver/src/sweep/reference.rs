@@ -1,4 +1,5 @@
-//! What a value is compared with where nothing says what it should be: the finest run, or what the runs come to at size 0.
+//! What a value is compared with where nothing says what it should be: the finest run, or what the
+//! runs come to at size 0.
 
 /// What values tend to as their size goes to 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +14,8 @@ pub struct Extrapolated {
     pub doubt: Option<Doubtful>,
 }
 
-/// What speaks against an extrapolation. The value is that of the finest size then, and the uncertainty three times what the finest three differ by.
+/// What speaks against an extrapolation. The value is that of the finest size then, and the
+/// uncertainty three times what the finest three differ by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Doubtful {
     /// The values go up and down.
@@ -36,7 +38,8 @@ impl Doubtful {
 
 /// Orders that are looked for.
 const ORDERS: [f64; 2] = [0.05, 20.0];
-/// Safety factors of the grid convergence index (Roache 1994): for three sizes, and where a fourth does not confirm the order.
+/// Safety factors of the grid convergence index (Roache 1994): for three sizes, and where a fourth
+/// does not confirm the order.
 const SAFETY: f64 = 1.25;
 const UNCONFIRMED: f64 = 3.0;
 /// Differences that are rounding, as a share of the value.
@@ -44,9 +47,10 @@ const ROUNDING: f64 = 1e-14;
 /// Least uncertainty as a share of what was extrapolated.
 const LEAST: f64 = 0.02;
 
-/// Richardson extrapolation f = f0 + C h^p through the three finest of `points` (size, value). With four sizes the uncertainty follows from how far
-/// the extrapolations of the finest and the next finest three differ, but is no more than three times what was extrapolated; with three it is the grid
-/// convergence index. None: fewer than three sizes.
+/// Richardson extrapolation f = f0 + C h^p through the three finest of `points` (size, value). With
+/// four sizes the uncertainty follows from how far the extrapolations of the finest and the next
+/// finest three differ, but is no more than three times what was extrapolated; with three it is the
+/// grid convergence index. None: fewer than three sizes.
 pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     let mut points = points.to_vec();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -115,7 +119,8 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
     }
 }
 
-/// Slope of log(error) over log(size): by how much the error falls with the size. None: fewer than two different sizes with an error.
+/// Slope of log(error) over log(size): by how much the error falls with the size. None: fewer than
+/// two different sizes with an error.
 pub fn observed_order(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<[f64; 2]> = points
         .iter()

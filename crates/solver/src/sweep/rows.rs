@@ -71,7 +71,8 @@ pub struct Row {
     pub times_s: Vec<f64>,
     /// Their median, s.
     pub time_s: Option<f64>,
-    /// Differences of run times up to this mean nothing, s: the width of the range in which the median lies with a probability of 95 %, or 10 % of the median.
+    /// Differences of run times up to this mean nothing, s: the width of the range in which the
+    /// median lies with a probability of 95 %, or 10 % of the median.
     pub spread_s: Option<f64>,
     /// Steps.
     pub steps: Option<u64>,
@@ -104,7 +105,8 @@ pub struct Judged {
 }
 
 impl Row {
-    /// How coarse its value of an axis is: its step itself where the axis is the relative one, as a run has a least number of steps.
+    /// How coarse its value of an axis is: its step itself where the axis is the relative one, as a
+    /// run has a least number of steps.
     pub fn size(&self, study: &Study, along: usize) -> Option<f64> {
         let axis = &study.axes[along];
         match axis.name.as_str() {

@@ -37,7 +37,8 @@ impl Scale {
         ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Values with a line of the grid: those with a number, at most about `most`, or the finer ones.
+    /// Values with a line of the grid: those with a number, at most about `most`, or the finer
+    /// ones.
     pub(super) fn lines(&self, fine: bool, most: usize) -> Vec<f64> {
         let digits = |digits: &[u32], every: i32| -> Vec<f64> {
             let decades = self.low.floor() as i32..=self.high.floor() as i32;

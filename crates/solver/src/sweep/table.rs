@@ -1,4 +1,5 @@
-//! The table of a sweep: of every run its time, its values and its errors, and which are on the fronts.
+//! The table of a sweep: of every run its time, its values and its errors, and which are on the
+//! fronts.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +16,8 @@ use super::rows::{AxisColumn, Judged, MeasureColumn, Row, SweepTable};
 const LEAST_SPREAD: f64 = 0.1;
 
 impl SweepTable {
-    /// `outcomes`: of each run those of its repeats. `values`: what each measure is compared with, where the study says so as a number.
+    /// `outcomes`: of each run those of its repeats. `values`: what each measure is compared with,
+    /// where the study says so as a number.
     pub fn new(
         study: &Study,
         runs: &[Run],
@@ -180,8 +182,9 @@ fn median(rising: &[f64]) -> Option<f64> {
     }
 }
 
-/// Width of the range in which the median of many more repeats lies with a probability of 95 %, whatever the distribution of the times: between the values
-/// whose ranks are half their number -+ the root of it. All of it up to five. Of rising times.
+/// Width of the range in which the median of many more repeats lies with a probability of 95 %,
+/// whatever the distribution of the times: between the values whose ranks are half their number -+
+/// the root of it. All of it up to five. Of rising times.
 fn range_of_median(rising: &[f64]) -> f64 {
     let count = rising.len() as f64;
     let below = (0.5 * count - 0.98 * count.sqrt()).max(0.0) as usize;

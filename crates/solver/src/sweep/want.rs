@@ -61,7 +61,8 @@ impl Want {
     }
 }
 
-/// The fastest run whose errors are as small as wanted. Of those that are as fast within their spread, the most exact.
+/// The fastest run whose errors are as small as wanted. Of those that are as fast within their
+/// spread, the most exact.
 ///
 /// # Errors
 /// None is as exact; times are of several machines.

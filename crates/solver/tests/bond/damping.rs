@@ -1,4 +1,5 @@
-//! Damping of bonds: conserves what it must, dissipates, and leaves the largest step that an independent implementation found.
+//! Damping of bonds: conserves what it must, dissipates, and leaves the largest step that an
+//! independent implementation found.
 
 use crate::vector;
 use dem_run::physics::bond::damping::{
@@ -124,7 +125,8 @@ fn the_thesis_damps_with_its_equations_7_and_9() {
     assert!((d.bending / (1.5 * bending) - 1.0).abs() < 1e-14);
 }
 
-/// One relative coordinate of two equal spheres, let go at a small deflection, after this many damped periods: Runge-Kutta of fourth order.
+/// One relative coordinate of two equal spheres, let go at a small deflection, after this many
+/// damped periods: Runge-Kutta of fourth order.
 fn after_periods(
     periods: u32,
     frequency_rad_s: f64,
@@ -193,7 +195,8 @@ fn two_spheres_swing_with_the_logarithmic_decrement_of_eta() {
     }
 }
 
-/// Largest step of a free chain of eleven steel spheres as a share of the undamped one, damped with these eta, for eqs. 9 and 10 and for each mode's own stiffness.
+/// Largest step of a free chain of eleven steel spheres as a share of the undamped one, damped with
+/// these eta, for eqs. 9 and 10 and for each mode's own stiffness.
 const ETAS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.6];
 const LIMITS: [(BondModel, f64, [f64; 5], [f64; 5]); 4] = [
     (
@@ -270,8 +273,8 @@ const LIMITS: [(BondModel, f64, [f64; 5], [f64; 5]); 4] = [
     ),
 ];
 
-/// Matrix that takes velocities of the chain to forces against them, each row and column divided by the root of its mass.
-/// With stiffnesses in place of the coefficients it is the stiffness matrix.
+/// Matrix that takes velocities of the chain to forces against them, each row and column divided by
+/// the root of its mass. With stiffnesses in place of the coefficients it is the stiffness matrix.
 fn matrix_of_chain(coefficients: &DampingCoefficients, levers_m: &[f64; 2]) -> DMatrix<f64> {
     let spheres = 11;
     let root = |row: usize| if row % 6 < 3 { MASS_KG } else { INERTIA_KG_M2 }.sqrt();
@@ -302,7 +305,8 @@ fn matrix_of_chain(coefficients: &DampingCoefficients, levers_m: &[f64; 2]) -> D
     matrix
 }
 
-/// Largest dt for which v += dt (-K x - C v), x += dt v does not grow: 4 - 2 dt C - dt^2 K must have no negative eigenvalue.
+/// Largest dt for which v += dt (-K x - C v), x += dt v does not grow: 4 - 2 dt C - dt^2 K must
+/// have no negative eigenvalue.
 fn exact_limit(k: &DMatrix<f64>, c: &DMatrix<f64>, above: f64) -> f64 {
     let four = DMatrix::from_diagonal_element(k.nrows(), k.nrows(), 4.0);
     let (mut low, mut high) = (0.0, above);

@@ -1,4 +1,5 @@
-//! The incremental formulation: does not depend on names, is objective, bends a cantilever as an independent implementation does, and keeps energy.
+//! The incremental formulation: does not depend on names, is objective, bends a cantilever as an
+//! independent implementation does, and keeps energy.
 
 use crate::{MODELS, vector};
 use dem_run::physics::bond::incremental::{History, Step, advance, bond_forces};
@@ -129,7 +130,8 @@ proptest! {
     }
 }
 
-/// What a loaded bond remembers, in axes that turn with it, after it went round as a rigid body in this many steps.
+/// What a loaded bond remembers, in axes that turn with it, after it went round as a rigid body in
+/// this many steps.
 fn error_after_turning(steps: u32) -> f64 {
     let k = stiffness(
         BondModel::Timoshenko,
@@ -196,7 +198,8 @@ const SPHERES: usize = 11;
 const RADIUS_M: f64 = 0.2;
 const MASS_KG: f64 = 7850.0 * 4.0 / 3.0 * PI * RADIUS_M * RADIUS_M * RADIUS_M;
 const INERTIA_KG_M2: f64 = 0.4 * MASS_KG * RADIUS_M * RADIUS_M;
-/// Largest stable step of the bar in the Timoshenko model, 2 over its largest frequency, of which an independent implementation gives these digits.
+/// Largest stable step of the bar in the Timoshenko model, 2 over its largest frequency, of which
+/// an independent implementation gives these digits.
 const CRITICAL_STEP_S: f64 = 6.536982689455117e-5;
 
 impl Bar {
@@ -276,10 +279,12 @@ impl Bar {
     }
 }
 
-/// Tip of the bar held at one end and pushed across at the other, brought to rest by damping that slows everything alike.
+/// Tip of the bar held at one end and pushed across at the other, brought to rest by damping that
+/// slows everything alike.
 fn tip_of_cantilever(model: BondModel) -> f64 {
     let mut bar = Bar::at_rest(model, Formulation::Incremental);
-    // Below every model's critical step; the damping is critical for the slowest mode, of about 123 rad/s.
+    // Below every model's critical step; the damping is critical for the slowest mode, of about 123
+    // rad/s.
     let (step, slowing) = (0.5 * 4.74e-5, 2.0 * 123.0);
     let load = 1e5 * Vector3::y();
     for _ in 0..40_000 {

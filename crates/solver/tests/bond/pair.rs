@@ -1,4 +1,5 @@
-//! Frequencies of two bonded spheres against an independent implementation, and in limits that can be written down.
+//! Frequencies of two bonded spheres against an independent implementation, and in limits that can
+//! be written down.
 
 use dem_run::physics::bond::pair::{Frequencies, frequencies};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};

@@ -4,14 +4,16 @@ use dem_run::physics::bond::scatter::strength_factor;
 
 const BONDS: u64 = 100_000;
 
-/// Factors of many bonds of one body, in the order in which a packing numbers them: neighbours in space, so close numbers.
+/// Factors of many bonds of one body, in the order in which a packing numbers them: neighbours in
+/// space, so close numbers.
 fn factors(seed: u64, body: u64, modulus: f64) -> Vec<f64> {
     (0..BONDS)
         .map(|bond| strength_factor(seed, body, [bond / 7, bond / 7 + 1 + bond % 7], modulus))
         .collect()
 }
 
-/// Largest distance between the shares found and the distribution, times the root of their number (Kolmogorov and Smirnov).
+/// Largest distance between the shares found and the distribution, times the root of their number
+/// (Kolmogorov and Smirnov).
 fn misfit(mut values: Vec<f64>, share_below: impl Fn(f64) -> f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let count = values.len() as f64;

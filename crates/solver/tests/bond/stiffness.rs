@@ -65,7 +65,8 @@ fn a_given_kappa_is_the_ratio_of_normal_to_shear_stiffness() {
     assert_near(k.normal / k.shear, 2.0);
 }
 
-/// A cantilever of bonds end to end under a force F at its tip: each bond shears by F / k_s and bends by the moment at its middle.
+/// A cantilever of bonds end to end under a force F at its tip: each bond shears by F / k_s and
+/// bends by the moment at its middle.
 fn tip_of_cantilever(model: BondModel, bonds: u32) -> f64 {
     let shape = bar_of(bonds);
     let k = stiffness(model, &shape, STEEL_PA, NU);

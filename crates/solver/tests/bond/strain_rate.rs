@@ -1,11 +1,13 @@
-//! The dynamic increase factor at rates where its logarithm is a whole number, and where its branches meet.
+//! The dynamic increase factor at rates where its logarithm is a whole number, and where its
+//! branches meet.
 
 use dem_run::physics::bond::strain_rate::{
     THESIS_FROM_1_S, dynamic_increase_factor, elongation_rate,
 };
 use nalgebra::Vector3;
 
-/// Worked by hand from eq. 20 with its parentheses: lg = -5, -3, -1, 0, 1, and 50/s, where lg = 1.6989700043360187.
+/// Worked by hand from eq. 20 with its parentheses: lg = -5, -3, -1, 0, 1, and 50/s, where lg =
+/// 1.6989700043360187.
 #[test]
 fn the_factor_is_that_of_equation_20() {
     let cases = [
@@ -46,7 +48,8 @@ fn it_is_continuous_and_constant_beyond_its_ends() {
     assert_eq!(factors[10_000], dynamic_increase_factor(50.0, 0.0));
 }
 
-/// The parabola of the second branch has its lowest point inside it: lg = -1.235 / (2 * 0.7325), where it is 1.6 - 1.235^2 / (4 * 0.7325).
+/// The parabola of the second branch has its lowest point inside it: lg = -1.235 / (2 * 0.7325),
+/// where it is 1.6 - 1.235^2 / (4 * 0.7325).
 #[test]
 fn the_printed_fit_dips_above_a_tenth_per_second() {
     let found = dynamic_increase_factor(0.143_544, 0.0);

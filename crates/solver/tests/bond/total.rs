@@ -1,4 +1,5 @@
-//! The total formulation: its forces are the gradient of its energy, and nothing but deformation gives a force.
+//! The total formulation: its forces are the gradient of its energy, and nothing but deformation
+//! gives a force.
 
 use crate::{MODELS, vector};
 use dem_run::physics::bond::stiffness::{BondShape, Stiffness, stiffness};
@@ -168,7 +169,8 @@ fn each_mode_has_its_stiffness() {
         let twisted = forces_when(none, [none, small * along]);
         near(-twisted.torques[1].x / small, k.torsion);
         near(twisted.torques[0].x / small, k.torsion);
-        // Both ends turned against each other about the contact point in the middle: bending without shear.
+        // Both ends turned against each other about the contact point in the middle: bending
+        // without shear.
         let turn = 0.5 * small * Vector3::z();
         let bent = forces_when(none, [-turn, turn]);
         near(-bent.torques[1].z / small, k.bending);

@@ -62,7 +62,8 @@ pub(crate) fn same(a: &State, b: &State) -> bool {
         all.map(|w| (w.touching.clone(), w.push, w.friction_j, w.damping_j))
             .collect::<Vec<_>>()
     };
-    // Spheres of clumps that are near nothing follow when somebody asks; which are near depends on when it was looked for last.
+    // Spheres of clumps that are near nothing follow when somebody asks; which are near depends on
+    // when it was looked for last.
     let poses = |s: &State| {
         let mut particles = s.particles.clone();
         place_all(&s.clumps, &mut particles);

@@ -8,7 +8,8 @@ use dem_run::step::{advance, interact};
 
 use crate::{HEAD, lump, planned};
 
-/// Lumps that come through an inlet, fall, become clusters on the way, bounce on a plate, roll off it and go.
+/// Lumps that come through an inlet, fall, become clusters on the way, bounce on a plate, roll off
+/// it and go.
 pub(crate) fn feed(restitution: f64, outlet: &str) -> String {
     let head = HEAD
         .replace("1e9,", "1e7, damping = { viscous = 0.1 },")
@@ -99,7 +100,8 @@ fn counted(books: &Books) -> [usize; 3] {
 fn what_comes_and_goes_is_booked_and_errors_fall_with_the_square_of_the_step() {
     // They leave below the plate, in flight.
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
-    // Bodies bounce otherwise with each step, which scatters the error of one run: means over three.
+    // Bodies bounce otherwise with each step, which scatters the error of one run: means over
+    // three.
     let errors = [4e-6, 2e-6, 1e-6].map(|step_s| {
         let of_seed = |seed: u32| {
             let text = text.replace("run.seed = 3", &format!("run.seed = {seed}"));
@@ -157,7 +159,8 @@ fn what_goes_while_it_touches_a_wall_takes_its_elastic_energy_along() {
     );
 }
 
-/// A lump whose contact spheres are larger than its own is replaced when it hits a plate, and one on another lump: contacts end, and their energy with them.
+/// A lump whose contact spheres are larger than its own is replaced when it hits a plate, and one
+/// on another lump: contacts end, and their energy with them.
 #[test]
 fn what_shrinks_while_it_touches_books_what_contacts_lose() {
     let fed = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.5] }");
@@ -173,8 +176,9 @@ fn what_shrinks_while_it_touches_books_what_contacts_lose() {
         let [_, replaced, _] = counted(&books);
         assert!(replaced > 2, "{replaced}");
         let scale_j = books.last.energy_scale_j;
-        // The half kick that comes after the places of the moment is still that of the larger spheres: 0.05 N, and a little more as force rises step by step, at
-        // no more than 1 m/s. The rest, as of bodies that keep their size, is the step's.
+        // The half kick that comes after the places of the moment is still that of the larger
+        // spheres: 0.05 N, and a little more as force rises step by step, at no more than 1 m/s.
+        // The rest, as of bodies that keep their size, is the step's.
         let bound_j = replaced as f64 * 0.5 * 0.06 * step_s + 2e-5 * scale_j;
         let error_j = books.worst[0] * scale_j;
         // Some 0.4 F d each, with a depth of at least 30 um, is what contacts hold.
@@ -187,7 +191,8 @@ fn what_shrinks_while_it_touches_books_what_contacts_lose() {
     }
 }
 
-/// Bodies that break, and go in pieces, several times as many bonds as there are at a time: the count of those that broke goes on.
+/// Bodies that break, and go in pieces, several times as many bonds as there are at a time: the
+/// count of those that broke goes on.
 #[test]
 fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     let fed = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");

@@ -11,7 +11,8 @@ const SLOPE_RAD: f64 = 0.3;
 const GRAVITY_M_S2: f64 = 9.81;
 const SWAP_S: f64 = 0.1;
 
-/// A slab of four spheres that lies on another slab, `under`, which lies on a plane, all sphere on sphere; or on the plane itself.
+/// A slab of four spheres that lies on another slab, `under`, which lies on a plane, all sphere on
+/// sphere; or on the plane itself.
 fn resting(top: &str, under: Option<&str>) -> Plan {
     let slab = |name: &str, z_m: f64| {
         let more = format!("start_as = \"clump\"\nposition = [0, 0, {z_m:e}]");
@@ -105,8 +106,10 @@ fn after_swap(top: &str, under: Option<&str>) {
     let spring_m = springs.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(springs.len(), if under.is_some() { 8 } else { 4 });
     dem_run::step::advance(&mut state);
-    // The bonds were not there before and carry nothing yet: what the slope does unequally to front and back, at most its pull, comes upon them at once. The cluster
-    // swings a little, by the compliance of the bonds, of which bending is the softest, at most four times that along them; and dashpots of the four contacts answer.
+    // The bonds were not there before and carry nothing yet: what the slope does unequally to front
+    // and back, at most its pull, comes upon them at once. The cluster swings a little, by the
+    // compliance of the bonds, of which bending is the softest, at most four times that along them;
+    // and dashpots of the four contacts answer.
     let spring_n_m = 1.5 * 0.25 * weight_n / depth_m;
     let bond_n_m = 0.25 * 1e9 * std::f64::consts::PI * 1e-6 / 2e-3;
     let answer = 4.0 * 2.0 * SLOPE_RAD.sin() * (spring_n_m / bond_n_m).sqrt();
@@ -127,7 +130,8 @@ fn after_swap(top: &str, under: Option<&str>) {
         "{top} on {under:?}: force {first:.1e} at once, along the slope {sliding:.1e}, later {worst:.1e} of {answer:.1e}, on average {mean:.1e}; moved {moved_m:.1e} m, springs {spring_m:.1e} m"
     );
     assert!(first < 1e-6 && sliding < 1e-6, "{first:e} {sliding:e}");
-    // Nothing moves by more than a hundredth of the springs: without what they remember it would slide by all of their length.
+    // Nothing moves by more than a hundredth of the springs: without what they remember it would
+    // slide by all of their length.
     assert!(moved_m < 0.01 * spring_m, "{moved_m:e}");
     assert!(
         worst < answer && mean < 1e-3,

@@ -132,7 +132,8 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
         assert!(a.1 != b.1 && a.2 != b.2);
     }
 
-    // When they come, before they have turned: of each axis, each component has mean 0 and mean square 1/3.
+    // When they come, before they have turned: of each axis, each component has mean 0 and mean
+    // square 1/3.
     let mut fresh = fed(&bodies(1), inlet);
     let template = fresh.clumps.templates[0].clone();
     let mut axes: Vec<[Vector3<f64>; 3]> = Vec::new();

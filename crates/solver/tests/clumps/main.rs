@@ -1,5 +1,5 @@
-//! Rigid clumps in the solver: that they move as rigid bodies do, that bonded clusters take their places and nothing is lost, and that bodies come and go as the
-//! scene says.
+//! Rigid clumps in the solver: that they move as rigid bodies do, that bonded clusters take their
+//! places and nothing is lost, and that bodies come and go as the scene says.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -48,7 +48,8 @@ bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25 }
 /// How the material meets itself.
 pub(crate) const MEETS: &str = "contacts.stuff-stuff = { restitution = 0.5, friction = 0.5 }\n";
 
-/// A body of a block of spheres whose neighbours in it are bonded. `radius_m`: of the sphere there, or none.
+/// A body of a block of spheres whose neighbours in it are bonded. `radius_m`: of the sphere there,
+/// or none.
 pub(crate) fn block(
     name: &str,
     counts: [i32; 3],
@@ -129,7 +130,8 @@ pub(crate) fn happens(state: &mut State) -> Vec<PopulationEvent> {
     step(state).population.clone()
 }
 
-/// Mass, centre of mass, momentum, angular momentum about a place and kinetic energy of some particles.
+/// Mass, centre of mass, momentum, angular momentum about a place and kinetic energy of some
+/// particles.
 pub(crate) struct Whole {
     pub(crate) mass_kg: f64,
     pub(crate) centre: Vector3<f64>,

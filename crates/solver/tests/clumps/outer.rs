@@ -121,7 +121,8 @@ fn make_no_difference(few: State) {
     assert!(on_ground > 100 && on_each_other > 100);
 }
 
-/// What a clump takes that waits: its outer spheres, and no more, however many spheres and bonds its body has.
+/// What a clump takes that waits: its outer spheres, and no more, however many spheres and bonds
+/// its body has.
 #[test]
 fn clumps_share_what_they_are_made_of() {
     let lump = porous("lump", "").replace(

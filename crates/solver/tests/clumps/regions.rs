@@ -12,7 +12,8 @@ fn regions(text: &str) -> Vec<Region> {
     planned(&format!("{HEAD}{ball}{text}")).state.rules.regions
 }
 
-/// Whether points are inside, and that points asked for are inside and spread over all of it: the mean is the centre.
+/// Whether points are inside, and that points asked for are inside and spread over all of it: the
+/// mean is the centre.
 fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, half: f64) {
     let mut random = Random(5);
     let (mut inside, mut outside) = (0, 0);
@@ -44,7 +45,8 @@ fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, h
         }
     }
     assert!(count > 100.0);
-    // The same mean as that of points of which a larger box is full, within four times what chance allows.
+    // The same mean as that of points of which a larger box is full, within four times what chance
+    // allows.
     let (mut mean, mut n) = (Vector3::zeros(), 0.0);
     for _ in 0..20_000 {
         let point = random.point(half);
@@ -79,7 +81,8 @@ fn shapes_contain_what_they_should() {
         (!on(depth)).then_some(depth > 0.0)
     };
     compare(&all[1], ball, 1.0);
-    // By the distance from the axis as twice the area of a triangle, and by the ends as half spaces.
+    // By the distance from the axis as twice the area of a triangle, and by the ends as half
+    // spaces.
     let (from, to) = (Vector3::new(-0.3, -0.2, -0.4), Vector3::new(0.4, 0.3, 0.2));
     let cylinder = |p: &Vector3<f64>| {
         let axis = to - from;

@@ -51,7 +51,8 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     let weight_n = template.mass_kg * GRAVITY_M_S2;
     let share_n = weight_n / f64::from(count);
     let depth_m = hertz_m(share_n);
-    // The contacts are springs of 3/2 F/d each: they swing at about sqrt(3/2 g/d), damped by more than a half of the critical damping.
+    // The contacts are springs of 3/2 F/d each: they swing at about sqrt(3/2 g/d), damped by more
+    // than a half of the critical damping.
     let swing_rad_s = (1.5 * GRAVITY_M_S2 / depth_m).sqrt();
     while state.time_s < 100.0 / swing_rad_s {
         if state.steps.is_multiple_of(50) {

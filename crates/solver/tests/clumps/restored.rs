@@ -1,4 +1,5 @@
-//! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and booked, what is kept.
+//! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and
+//! booked, what is kept.
 
 use dem_run::stages::population::apply_topology_change;
 use dem_run::stages::restoring::restore_clumps;

@@ -92,7 +92,8 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     std::array::from_fn(|k| value[k].as_f64().unwrap())
 }
 
-/// The largest error of the spin along the axes of the body at eighths of a period, relative to 5 rad/s, and of the orientation; through the whole solver.
+/// The largest error of the spin along the axes of the body at eighths of a period, relative to 5
+/// rad/s, and of the orientation; through the whole solver.
 fn flip(steps_per_period: usize) -> (f64, f64) {
     let all: Value = serde_json::from_str(include_str!("../shape/data/clump.json")).unwrap();
     let case = &all["dzhanibekov_I_1_2_3"];

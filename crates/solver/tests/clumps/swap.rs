@@ -1,4 +1,5 @@
-//! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster has taken the place of a clump, and the path goes on.
+//! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster has
+//! taken the place of a clump, and the path goes on.
 
 use dem_run::physics::rotation::numbers;
 use dem_run::physics::rotation::rotation;
@@ -51,7 +52,8 @@ fn swapped(far_m: f64, seed: u64) {
 
     let about = Vector3::from(before.place_m);
     let whole = Whole::of(&state.particles, 0..count, &about);
-    // What stands far away is rounded: places are right to `eps * far`, which is a share of arms that are no longer than the reach.
+    // What stands far away is rounded: places are right to `eps * far`, which is a share of arms
+    // that are no longer than the reach.
     let share = 1e-12 + 2.0 * f64::EPSILON * about.norm() / template.reach_m;
     let spin = before.spin_rad_s(&template);
     let speed = Vector3::from(before.velocity_m_s).norm() + spin.norm() * template.reach_m;
@@ -226,7 +228,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
     let shape: Vec<[f64; 3]> = template.spheres.iter().map(|s| s.place_m).collect();
     let count = shape.len();
 
-    // All that centrifugal forces could pull at once on one bond of the body, twice as it acts suddenly.
+    // All that centrifugal forces could pull at once on one bond of the body, twice as it acts
+    // suddenly.
     let omega = Vector3::from(spin).norm();
     let pulled: f64 = template
         .spheres
@@ -256,7 +259,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
             centre = centre.max((whole.centre - about).norm() / about.norm());
             assert!((whole.centre - about).norm() < rounds * about.norm());
             assert!((whole.momentum - momentum).norm() < rounds * momentum.norm());
-            // Places are rounded as the body's place is, and turn the momentum of each sphere into a wrong one.
+            // Places are rounded as the body's place is, and turn the momentum of each sphere into
+            // a wrong one.
             let moved = about.norm() * momentum.norm();
             let angular = whole.angular_momentum - Vector3::from(clump.angular_momentum);
             assert!(angular.norm() < rounds * (moved + turning), "{angular:e}");

@@ -62,7 +62,8 @@ fn a_region_a_time_a_force_and_an_energy_replace_when_they_are_reached() {
     assert_eq!(cause, "time");
     assert!((3.3e-4 - 1e-15..3.3e-4 + STEP_S).contains(&at_s), "{at_s}");
 
-    // Two contacts of Hertz: the largest force is 2 * 4/3 E* sqrt(R) d^(3/2), with 2 * 8/15 E* sqrt(R) d^(5/2) = m v^2/2.
+    // Two contacts of Hertz: the largest force is 2 * 4/3 E* sqrt(R) d^(3/2), with 2 * 8/15 E*
+    // sqrt(R) d^(5/2) = m v^2/2.
     let stiff = 1e8 / (2.0 * (1.0 - 0.0625)) * 1e-3_f64.sqrt();
     let deep_m = (0.5 * mass_kg() * 15.0 / 16.0 / stiff).powf(0.4);
     let largest_n = 8.0 / 3.0 * stiff * deep_m.powf(1.5);
@@ -86,7 +87,8 @@ fn a_region_a_time_a_force_and_an_energy_replace_when_they_are_reached() {
     assert_eq!(cause, "impact_energy");
     assert!(before.impact_energy_j <= 0.5 * whole_j && now.impact_energy_j > 0.5 * whole_j);
     let left = 0.5 * mass_kg() * now.velocity_m_s[2].powi(2);
-    // Forces stand at the end of the step over which their power is summed: that is too much by half a step's rise of the force times the speed.
+    // Forces stand at the end of the step over which their power is summed: that is too much by
+    // half a step's rise of the force times the speed.
     let part = largest_n * STEP_S;
     assert!(
         (left - 0.5 * whole_j).abs() < 1.5 * part,

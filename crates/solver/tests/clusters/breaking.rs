@@ -44,7 +44,8 @@ fn smallest_of(clusters: &Clusters) -> Vec<u32> {
         .collect()
 }
 
-/// What must hold for any clusters: each particle in the one whose list it is in; pieces make up what they broke off; numbers by smallest particle.
+/// What must hold for any clusters: each particle in the one whose list it is in; pieces make up
+/// what they broke off; numbers by smallest particle.
 fn assert_consistent(clusters: &Clusters) {
     let mut listed = 0;
     for id in clusters.living() {

@@ -1,4 +1,5 @@
-//! The books of energy are exact to second order in the time step, and momentum is kept to rounding.
+//! The books of energy are exact to second order in the time step, and momentum is kept to
+//! rounding.
 
 use super::world::{Body, World, ZERO, material};
 use dem_run::physics::contact::NormalLaw;
@@ -8,7 +9,8 @@ use dem_run::physics::contact::pair_parameters::PairInput;
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
 use dem_run::physics::number::Vec3;
 
-/// An oblique impact of two uneven spheres that spin: what is missing in the books, over the energy at the start, and each loss over it.
+/// An oblique impact of two uneven spheres that spin: what is missing in the books, over the energy
+/// at the start, and each loss over it.
 fn missing<L: NormalLaw<f64>, R: RollingFriction<f64>>(
     law: L,
     rolling: R,

@@ -49,10 +49,11 @@ fn row_behaviour(e: f64, mu: f64, kept: TangentialUnloading) -> PairInput {
     }
 }
 
-/// The reference's two variants keep the spring's force and its elongation. At 20 degrees and more this law keeps the elongation, too: the contact
-/// sticks only while the load falls.
+/// The reference's two variants keep the spring's force and its elongation. At 20 degrees and more
+/// this law keeps the elongation, too: the contact sticks only while the load falls.
 ///
-/// Errors fall in proportion to the step at least: the load that the tangential stiffness follows begins like a root.
+/// Errors fall in proportion to the step at least: the load that the tangential stiffness follows
+/// begins like a root.
 #[test]
 fn impacts_at_all_angles_are_those_of_the_independent_implementation() {
     for row in reference().chung_ooi_4.rows {

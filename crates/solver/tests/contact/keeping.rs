@@ -170,8 +170,9 @@ fn check(
     let left = on_a + on_b + scene.apart.cross(found.force_on_b);
     prop_assert!(left.square().sqrt() <= 1e-13 * normal.abs());
 
-    // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and where sliding begins the damper's share is the root
-    // of a difference that may be rounding: half the digits.
+    // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and
+    // where sliding begins the damper's share is the root of a difference that may be rounding:
+    // half the digits.
     let normal_response = law.evaluate(&met, scene.history.overlap_m, DT);
     let speed = met.velocity_m_s.square().sqrt();
     let size = normal_response.elastic_n + normal_response.normal_damping_n_s_m * speed;

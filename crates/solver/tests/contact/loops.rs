@@ -10,7 +10,8 @@ use dem_run::physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Respon
 use dem_run::physics::number::Vec3;
 use proptest::prelude::*;
 
-/// A state of a contact that is led: overlap over 1e-5 m, displacement across over 1e-6 m, turn across over 1e-3 rad.
+/// A state of a contact that is led: overlap over 1e-5 m, displacement across over 1e-6 m, turn
+/// across over 1e-3 rad.
 type Place = [f64; 5];
 
 const ROLLING: ElasticPlastic = ElasticPlastic {
@@ -109,9 +110,11 @@ fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
     }
 }
 
-/// The least a step can lose. With W the mean of the old and the new force times the motion x, and c the share to which sliding cuts the spring
-/// back, W - (U_new - U_old) is concave in c; at c = 0 it is not below -k_old x^2 / 8, at c = 1 not below -(k_old - k_new) x^2 / 8 while the load
-/// falls and not below 0 while it rises. Both come only where the motion takes more than the whole force back.
+/// The least a step can lose. With W the mean of the old and the new force times the motion x, and
+/// c the share to which sliding cuts the spring back, W - (U_new - U_old) is concave in c; at c = 0
+/// it is not below -k_old x^2 / 8, at c = 1 not below -(k_old - k_new) x^2 / 8 while the load falls
+/// and not below 0 while it rises. Both come only where the motion takes more than the whole force
+/// back.
 fn least(before: f64, now: f64, kept: f64, old: Vector, moved: Vector, new: Vector) -> f64 {
     let stuck = old * kept + moved * (0.5 * (1.0 + kept));
     let cut = (new.square() / stuck.square().max(f64::MIN_POSITIVE))
@@ -127,7 +130,8 @@ fn stored(energy: &ContactEnergy) -> f64 {
     energy.tangential + energy.rolling
 }
 
-/// Pressed, displaced, pressed less, let back: a spring that keeps its force wins energy, this law does not.
+/// Pressed, displaced, pressed less, let back: a spring that keeps its force wins energy, this law
+/// does not.
 #[test]
 fn a_stuck_contact_creates_no_energy() {
     let places = [

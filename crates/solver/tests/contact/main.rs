@@ -1,4 +1,5 @@
-//! Laws of contact against an independent implementation, closed forms, and what every law must keep.
+//! Laws of contact against an independent implementation, closed forms, and what every law must
+//! keep.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

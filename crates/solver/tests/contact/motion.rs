@@ -10,7 +10,8 @@ use dem_run::physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
 
-/// A pair that is turned as one body in so many steps a turn: how far its force leaves the pair, over the force.
+/// A pair that is turned as one body in so many steps a turn: how far its force leaves the pair,
+/// over the force.
 fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 {
     let (radius, overlap) = (0.01, 1e-4);
     let axis = axis.normalize();
@@ -54,8 +55,9 @@ fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 
     worst
 }
 
-/// Turning of the whole changes no force. What is left is that of leapfrog, for which a turn by an angle moves the ends by the chord: at most angle^2 / 24
-/// of their distance for each radian, against a spring that is stretched by 1.1e-5 m.
+/// Turning of the whole changes no force. What is left is that of leapfrog, for which a turn by an
+/// angle moves the ends by the chord: at most angle^2 / 24 of their distance for each radian,
+/// against a spring that is stretched by 1.1e-5 m.
 #[test]
 fn turning_of_the_whole_changes_no_force() {
     for axis in [Vector3::z(), Vector3::x(), Vector3::new(1.0, -2.0, 1.5)] {
@@ -72,7 +74,8 @@ fn turning_of_the_whole_changes_no_force() {
     }
 }
 
-/// A wall is the limit of a large held sphere, and what moves along with a wall feels no more than on one at rest.
+/// A wall is the limit of a large held sphere, and what moves along with a wall feels no more than
+/// on one at rest.
 #[test]
 fn a_wall_is_an_end_of_endless_mass_and_radius() {
     let ball = ContactSphere {

@@ -34,7 +34,8 @@ fn a_pair_presses_from_where_it_parted() {
     }
 }
 
-/// Two overlapping spheres let go of each other, meet with some speed and separate: never faster than they met.
+/// Two overlapping spheres let go of each other, meet with some speed and separate: never faster
+/// than they met.
 #[test]
 fn faces_that_part_never_fly_apart() {
     let law = HertzMindlin::new([RIGID, material(26e6, 0.3)], &frictionless());
@@ -70,7 +71,8 @@ fn faces_that_part_never_fly_apart() {
 }
 
 proptest! {
-    /// Whatever the path, no more work is given back than was done: the origin never rises, and with it none of the pair's energy is out of nothing.
+    /// Whatever the path, no more work is given back than was done: the origin never rises, and
+    /// with it none of the pair's energy is out of nothing.
     #[test]
     fn origins_only_fall(path in prop::collection::vec(-1.0..3.0_f64, 1..50), least in 0.0..0.5_f64) {
         let mut before = 2.0;

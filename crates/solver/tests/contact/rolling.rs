@@ -37,7 +37,8 @@ fn run<R: RollingFriction<f64>>(world: &mut World<HertzMindlin, R>, seconds: f64
     world.step()
 }
 
-/// The lever is the radius less half the overlap l, so a sphere rolls at v0 m l^2 / (m l^2 + I): 5/7 v0 for a hard one.
+/// The lever is the radius less half the overlap l, so a sphere rolls at v0 m l^2 / (m l^2 + I):
+/// 5/7 v0 for a hard one.
 #[test]
 fn a_sphere_that_slides_comes_to_roll() {
     let wanted = reference().slide_to_roll;
@@ -115,7 +116,8 @@ fn a_constant_moment_stops_a_sphere_for_good() {
     let before = world.bodies[1].velocity.0;
     run(&mut world, 0.1);
     assert_near((before - world.bodies[1].velocity.0) / 0.1, rate, 1e-6);
-    // It stops after 0.285 s. What is stored in the tangential spring then swings out, by no more than this at first.
+    // It stops after 0.285 s. What is stored in the tangential spring then swings out, by no more
+    // than this at first.
     let touch = world.touch();
     let k_t =
         8.0 * world.law.shear_modulus_pa * (touch.effective_radius_m * touch.overlap_m).sqrt();

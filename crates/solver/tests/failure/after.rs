@@ -37,7 +37,8 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
                     assert_eq!(state.events.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
                     assert_eq!(state.broken_by_cause.tension, 1);
-                    // The bond as it was: with the increments of this step, which need the forces to be found once more without strength.
+                    // The bond as it was: with the increments of this step, which need the forces
+                    // to be found once more without strength.
                     let mut whole = before;
                     whole.bonds.rules[0].criteria = None;
                     interact(&mut whole);
@@ -65,7 +66,8 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
     });
 }
 
-/// After the break the ends fly on straight, also when they are driven into each other and out again, and are turned over.
+/// After the break the ends fly on straight, also when they are driven into each other and out
+/// again, and are turned over.
 #[test]
 fn a_broken_bond_never_acts_again() {
     on_one_thread(|| {
@@ -96,8 +98,8 @@ fn a_broken_bond_never_acts_again() {
     });
 }
 
-/// The ends of a bond get the half of the kick that the bond still gives in the step of its break: so momentum and the velocities at the time of
-/// the break are those of the bonded pair.
+/// The ends of a bond get the half of the kick that the bond still gives in the step of its break:
+/// so momentum and the velocities at the time of the break are those of the bonded pair.
 #[test]
 fn the_break_comes_in_the_middle_of_the_kick() {
     on_one_thread(|| {
@@ -125,7 +127,8 @@ fn the_break_comes_in_the_middle_of_the_kick() {
     });
 }
 
-/// A block of 4 x 4 x 4 spheres at rest, whose bonds break at a strain of 1e-8: half of the bonds are taken away, and nothing happens.
+/// A block of 4 x 4 x 4 spheres at rest, whose bonds break at a strain of 1e-8: half of the bonds
+/// are taken away, and nothing happens.
 #[test]
 fn taking_bonds_from_an_unloaded_body_breaks_nothing() {
     on_one_thread(|| {

@@ -20,8 +20,9 @@ pub(crate) const RADIUS_M: f64 = 1e-3;
 pub(crate) const LENGTH_M: f64 = 2e-3;
 /// Strength in tension; the others are near it, Pa.
 pub(crate) const STRENGTH_PA: f64 = 1e6;
-/// So stiff that the deflected shape does not matter: a force along a rod of five bonds that is bent to its strength changes the moment by about
-/// (stress over stiffness) (length over radius)^2, 1e-5, a tenth of the load's step; less by the shares of the loads. Softer, and it would matter;
+/// So stiff that the deflected shape does not matter: a force along a rod of five bonds that is
+/// bent to its strength changes the moment by about (stress over stiffness) (length over radius)^2,
+/// 1e-5, a tenth of the load's step; less by the shares of the loads. Softer, and it would matter;
 /// stiffer, and the rounding of places would.
 pub(crate) const YOUNG_PA: f64 = 1e13;
 
@@ -65,7 +66,8 @@ pub(crate) fn area_m2() -> f64 {
     PI * RADIUS_M * RADIUS_M
 }
 
-/// A row of spheres from the origin along x, with these many bonds, free and at rest. Its step is half of the limit.
+/// A row of spheres from the origin along x, with these many bonds, free and at rest. Its step is
+/// half of the limit.
 pub(crate) fn rod(bonds: usize, criteria: Criteria, incremental: bool) -> State {
     let mut particles = Particles::default();
     for i in 0..=bonds {
@@ -131,9 +133,10 @@ pub(crate) const SOFT_STEPS: u32 = 8000;
 /// What such a load grows by in a step, of its value.
 pub(crate) const LOAD_STEP: f64 = 2.0 / (3.0 * SOFT_STEPS as f64);
 
-/// Loads a sphere so slowly, and from so soft a beginning, that the body does not swing: the slope of the load rises as the square of a sine and then
-/// stays. Swings that this leaves are pi^2 / 2 / (N^2 (omega dt)^3) of the load's step, N = 8000: a fiftieth for a rod of five bonds, whose slowest
-/// omega dt is 0.017.
+/// Loads a sphere so slowly, and from so soft a beginning, that the body does not swing: the slope
+/// of the load rises as the square of a sine and then stays. Swings that this leaves are pi^2 / 2 /
+/// (N^2 (omega dt)^3) of the load's step, N = 8000: a fiftieth for a rod of five bonds, whose
+/// slowest omega dt is 0.017.
 pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n_m: [f64; 3]) {
     let soft = f64::from(SOFT_STEPS);
     let factor = |step: u32| {
@@ -159,7 +162,8 @@ pub(crate) fn damp(state: &mut State, gamma: f64) {
     state.particle_resistance = vec![Wrench::default(); state.particles.len()];
 }
 
-/// Runs on one worker thread: handing each step of a small body to another thread takes longer than the step.
+/// Runs on one worker thread: handing each step of a small body to another thread takes longer than
+/// the step.
 pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(work)

@@ -1,4 +1,5 @@
-//! The ledgers of energy and momentum stay closed when bonds break: their errors fall with the square of the time step.
+//! The ledgers of energy and momentum stay closed when bonds break: their errors fall with the
+//! square of the time step.
 
 use std::f64::consts::PI;
 
@@ -140,8 +141,9 @@ fn a_support_at_rest_does_no_work_in_a_break() {
     });
 }
 
-/// A bond between a sphere that is held and one that is moved away: all forces are those of the supports, so the books close to rounding also in
-/// the step in which it breaks, and the reaction measured there is that of the bond.
+/// A bond between a sphere that is held and one that is moved away: all forces are those of the
+/// supports, so the books close to rounding also in the step in which it breaks, and the reaction
+/// measured there is that of the bond.
 #[test]
 fn a_bond_between_supports_breaks_without_an_error() {
     for steps in [20.0, 200.0, 2000.0] {

@@ -1,4 +1,5 @@
-//! Rods whose load rises slowly break at the load that the closed form of the criterion says, to the load of one step.
+//! Rods whose load rises slowly break at the load that the closed form of the criterion says, to
+//! the load of one step.
 
 use std::f64::consts::PI;
 
@@ -12,7 +13,8 @@ use crate::bodies::{
     area_m2, hold, on_one_thread, push, rod,
 };
 
-/// A load at the free end of a rod whose other end is held: force and torque, N and N m, in some proportion.
+/// A load at the free end of a rod whose other end is held: force and torque, N and N m, in some
+/// proportion.
 #[derive(Debug, Clone, Copy)]
 struct End {
     name: &'static str,
@@ -58,7 +60,8 @@ fn beyond(state: &State) -> f64 {
     (factor_at(&state.loads[0].factor, state.time_s) - 1.0) / LOAD_STEP
 }
 
-/// Runs until the first break: how far beyond the whole load, in steps of the load, which bond, and the cause. The bond has not reached its criterion the step before, and has at the break.
+/// Runs until the first break: how far beyond the whole load, in steps of the load, which bond, and
+/// the cause. The bond has not reached its criterion the step before, and has at the break.
 fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     let share = |state: &State, at: usize| {
         let forces = state.bonds.forces(at, &state.particles.poses);

@@ -11,8 +11,8 @@ use crate::bodies::{
 /// Steps until the strain of the static strength is reached.
 const STEPS: f64 = 2000.0;
 
-/// Both ends of a bond are moved apart at this rate (together if negative). What it had of the strain of the static strength when it broke, if it did
-/// before eight times that, and how.
+/// Both ends of a bond are moved apart at this rate (together if negative). What it had of the
+/// strain of the static strength when it broke, if it did before eight times that, and how.
 fn pulled(
     rate_1_s: f64,
     criteria: Criteria,
@@ -56,7 +56,8 @@ fn pulled_by(
 fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what: &str) {
     let (strain, by) = found.unwrap_or_else(|| panic!("{what}: does not break"));
     assert_eq!(by, cause, "{what}");
-    // At the first step beyond. Places are rounded by up to 4e-6 of what they move in a step, ten thousand times.
+    // At the first step beyond. Places are rounded by up to 4e-6 of what they move in a step, ten
+    // thousand times.
     let late = (strain - wanted) * STEPS;
     assert!(
         (-0.05..1.05).contains(&late),
@@ -129,7 +130,8 @@ fn pressed_bonds_are_not_strengthened() {
     });
 }
 
-/// Two bonds in a row reach their strength in the same step, at the same rate, and both break: that one does is no faster pull on the other yet.
+/// Two bonds in a row reach their strength in the same step, at the same rate, and both break: that
+/// one does is no faster pull on the other yet.
 #[test]
 fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
     on_one_thread(|| {
@@ -150,8 +152,8 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
     });
 }
 
-/// A pair that turns as one body is pulled by its own turning, whose relative velocity is across the bond: no rate of elongation, but one of eq. 21 as it
-/// is printed.
+/// A pair that turns as one body is pulled by its own turning, whose relative velocity is across
+/// the bond: no rate of elongation, but one of eq. 21 as it is printed.
 #[test]
 fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {

@@ -56,7 +56,8 @@ fn the_weakest_bond_of_a_chain_breaks_first() {
     });
 }
 
-/// Two thousand bonds, pulled alike, break at strengths of Weibull's distribution: Kolmogorov and Smirnov's test at one per cent.
+/// Two thousand bonds, pulled alike, break at strengths of Weibull's distribution: Kolmogorov and
+/// Smirnov's test at one per cent.
 #[test]
 fn strengths_are_those_of_weibull() {
     const COUNT: usize = 2000;

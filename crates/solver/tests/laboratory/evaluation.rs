@@ -58,7 +58,8 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
     }
 }
 
-/// Force in proportion to the deflection of the body up to `largest`, then a fall to a tenth; the load travels further by what gives way at it.
+/// Force in proportion to the deflection of the body up to `largest`, then a fall to a tenth; the
+/// load travels further by what gives way at it.
 pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
     let rows = (0..=1100).map(|i| {
         let share = f64::from(i) / 1000.0;
@@ -223,7 +224,8 @@ fn fast_oscillations_are_left_out() {
     let test = test(TestKind::FourPointBending);
     let setup = setup(Specimen::Beam(BEAM));
     let mut record = record(2e4, 50.0);
-    // Rows are 1 ms apart, the lowest period is 100 ms: means are over five rows, which is the period of this.
+    // Rows are 1 ms apart, the lowest period is 100 ms: means are over five rows, which is the
+    // period of this.
     for (at, row) in record.rows.iter_mut().enumerate() {
         let swing_n = 4.0 * (0.4 * PI * at as f64).sin();
         row.force_n += swing_n;

@@ -112,7 +112,8 @@ fn four_point_bending_is_that_of_the_reference() {
     }
 }
 
-/// Solids by finite elements bend a little less than Timoshenko's beam, and their stress is that of eq. 19.
+/// Solids by finite elements bend a little less than Timoshenko's beam, and their stress is that of
+/// eq. 19.
 #[test]
 fn finite_elements_agree_with_the_beam_with_shear() {
     let (read, beam) = reference();

@@ -1,8 +1,10 @@
-//! Scenes that need one thing each: that alone is done and stored, besides what every such scene needs.
+//! Scenes that need one thing each: that alone is done and stored, besides what every such scene
+//! needs.
 
 use crate::{busy, go, planned, stored};
 
-/// Spheres in a row that moves, bonded to their neighbours unless `apart`; with more lines of the body's own.
+/// Spheres in a row that moves, bonded to their neighbours unless `apart`; with more lines of the
+/// body's own.
 fn row(name: &str, y_m: f64, more: &str) -> String {
     format!(
         "[bodies.{name}]

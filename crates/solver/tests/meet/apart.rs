@@ -1,4 +1,5 @@
-//! Overlapping bodies whose bonds vanish, all at once or one by one, with second neighbours overlapping as well: they part without gaining energy.
+//! Overlapping bodies whose bonds vanish, all at once or one by one, with second neighbours
+//! overlapping as well: they part without gaining energy.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -31,7 +32,8 @@ pub(crate) fn planned(text: &str) -> Plan {
     plan(&scene, bodies, 2, false).unwrap()
 }
 
-/// A cube of 4 x 4 x 4 spheres on a lattice such that neighbours overlap by this share of r_gen, bonded to their nearest neighbours.
+/// A cube of 4 x 4 x 4 spheres on a lattice such that neighbours overlap by this share of r_gen,
+/// bonded to their nearest neighbours.
 fn cube(overlap: f64, extra: &str) -> String {
     let apart_m = 2.0 * RADIUS_M / (1.0 + overlap);
     let count = 4_usize;
@@ -99,7 +101,8 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
     }
 }
 
-/// Largest energy that has come from nowhere, over the largest energy, while a cube that vibrates falls apart: at once, or bond by bond.
+/// Largest energy that has come from nowhere, over the largest energy, while a cube that vibrates
+/// falls apart: at once, or bond by bond.
 fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
     let text = cube(
         overlap,
@@ -145,7 +148,8 @@ fn a_vibrating_body_that_falls_apart_gains_no_energy() {
         for at_once in [true, false] {
             let errors = [2e-3, 1e-3].map(|safety| worst_gain(overlap, at_once, safety));
             eprintln!("overlap {overlap}, at once {at_once}: {errors:?}");
-            // What the leapfrog itself is off by in a vibration, (omega dt)^2/8 of its energy, falls with the square of the step; nothing else is left.
+            // What the leapfrog itself is off by in a vibration, (omega dt)^2/8 of its energy,
+            // falls with the square of the step; nothing else is left.
             assert!(errors[0] > 3.0 * errors[1], "{errors:?}");
             assert!(errors[1] < 1e-6, "{errors:?}");
         }
@@ -157,7 +161,8 @@ const INTO_EACH_OTHER: [f64; 3] = [0.5, 0.05, 0.0];
 const BY_EACH_OTHER: [f64; 3] = [0.02, 0.5, 0.1];
 const AWAY: [f64; 3] = [-0.5, 0.0, 0.0];
 
-/// Places of the second sphere of a pair from the first, step by step for 1.5 ms, as they fly from a small overlap; bonded with these criteria of failure.
+/// Places of the second sphere of a pair from the first, step by step for 1.5 ms, as they fly from
+/// a small overlap; bonded with these criteria of failure.
 fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Vec<Vector3<f64>> {
     let bonded = failure.is_some();
     let list = if bonded { ", bond_list = [[0, 1]]" } else { "" };
@@ -192,7 +197,8 @@ fn a_bond_without_strength_is_none() {
         "tension = 0, shear = 0, rate_strengthening = true, weibull_modulus = 3",
     ] {
         for velocity_m_s in [INTO_EACH_OTHER, BY_EACH_OTHER, AWAY] {
-            // It acts until it is looked at for the second time, and its cluster is searched a step later: that much of the approach is lost.
+            // It acts until it is looked at for the second time, and its cluster is searched a step
+            // later: that much of the approach is lost.
             let off = [4e-7, 2e-7, 1e-7].map(|dt| {
                 let bonded = flight(Some(failure), velocity_m_s, dt);
                 let free = flight(None, velocity_m_s, dt);
@@ -225,7 +231,8 @@ fn a_bond_without_strength_holds_a_body_at_rest_together() {
     assert!(balance.energy_error.is_finite(), "{balance:?}");
 }
 
-/// Which cluster each particle is in, by the smallest particle that unbroken bonds lead to: breadth first.
+/// Which cluster each particle is in, by the smallest particle that unbroken bonds lead to: breadth
+/// first.
 fn breadth_first(state: &State) -> Vec<u32> {
     let count = state.particles.len();
     let mut beside = vec![Vec::new(); count];

@@ -1,4 +1,5 @@
-//! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however often near pairs are looked for.
+//! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however
+//! often near pairs are looked for.
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;
@@ -57,7 +58,8 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
     ]
 }
 
-/// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common centre.
+/// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common
+/// centre.
 pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     let mut any = scattered();
     let mut particles = Particles::default();

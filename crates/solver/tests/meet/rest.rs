@@ -1,4 +1,5 @@
-//! A sphere at rest on walls of every kind sinks in as the closed form says, and what is caught before it goes through one.
+//! A sphere at rest on walls of every kind sinks in as the closed form says, and what is caught
+//! before it goes through one.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -150,7 +151,8 @@ fn a_particle_that_is_pushed_through_a_wall_is_caught() {
     assert_eq!(state.walls[0].crossed, Some(0));
 }
 
-/// What is thinner than the particle has two sides at once: the far one pushed it out behind, with its speed, and nobody noticed.
+/// What is thinner than the particle has two sides at once: the far one pushed it out behind, with
+/// its speed, and nobody noticed.
 #[test]
 fn a_particle_that_is_shot_through_a_thin_wall_is_caught() {
     for wall in [

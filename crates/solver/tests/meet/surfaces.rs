@@ -1,4 +1,5 @@
-//! Walls of STL files that are odd: what they do to a sphere, what is said of them, and what is refused.
+//! Walls of STL files that are odd: what they do to a sphere, what is said of them, and what is
+//! refused.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -74,7 +75,8 @@ fn tried(text: &str) -> Result<Plan, Diagnostic> {
     plan(&scene, bodies, 2, false)
 }
 
-/// A sphere that bounces and slides over a plate does so alike whichever way its triangles are wound, and however often they stand there.
+/// A sphere that bounces and slides over a plate does so alike whichever way its triangles are
+/// wound, and however often they stand there.
 #[test]
 fn turned_and_doubled_triangles_push_as_a_clean_plate_does() {
     let folder = tempfile::tempdir().unwrap();

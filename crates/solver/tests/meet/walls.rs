@@ -97,7 +97,8 @@ fn the_books_balance_whatever_the_walls_do() {
     }
 }
 
-/// The limit of contacts alone, found quickly and found exactly: the first is never above the second, and not far below.
+/// The limit of contacts alone, found quickly and found exactly: the first is never above the
+/// second, and not far below.
 #[test]
 fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);
@@ -131,7 +132,8 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     );
 }
 
-/// Contacts that cannot be stiffer than a limit are passed over; the stiffest is found whenever it is above that.
+/// Contacts that cannot be stiffer than a limit are passed over; the stiffest is found whenever it
+/// is above that.
 #[test]
 fn the_stiffest_contact_is_found_among_those_that_matter() {
     let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);

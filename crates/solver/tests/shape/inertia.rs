@@ -84,7 +84,9 @@ fn collinear_unions_match_the_reference() {
     );
 }
 
-/// Three spheres that overlap all together. The numbers are plain integrals of the height of the union over the plane of the centres, over the three sectors of its power diagram, with 30 digits.
+/// Three spheres that overlap all together. The numbers are plain integrals of the height of the
+/// union over the plane of the centres, over the three sectors of its power diagram, with 30
+/// digits.
 #[test]
 fn three_spheres_match_integrals_with_thirty_digits() {
     let centres = [[0.0, 0.0, 0.0], [1.1, 0.0, 0.0], [0.4, 0.8, 0.0]];

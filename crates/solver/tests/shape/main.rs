@@ -1,4 +1,5 @@
-//! Geometry of bodies made of spheres, and free rotation: against published numbers, closed forms and samples.
+//! Geometry of bodies made of spheres, and free rotation: against published numbers, closed forms
+//! and samples.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

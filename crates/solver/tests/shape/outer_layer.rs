@@ -148,7 +148,8 @@ fn dense_blocks_have_their_skin() {
         let (points, _) = lattice(6, 1.16);
         let all: Vec<u32> = (0..216).collect();
         assert_eq!(outer_layer(&points, &[1.0; 216], 0.0, 0.0), all);
-        // Just at it, the last points are single and count as hidden or not; nothing else may change.
+        // Just at it, the last points are single and count as hidden or not; nothing else may
+        // change.
         let (points, skin) = lattice(6, 2.0 / 3.0_f64.sqrt());
         let points = turned(&random.rotation(), &points);
         let found: BTreeSet<u32> = outer_layer(&points, &[1.0; 216], 0.0, 0.0)

@@ -13,7 +13,8 @@ fn body_spin(q: &[f64; 4], l: [f64; 3], moments: [f64; 3]) -> Vector3<f64> {
     unit(*q).inverse() * Vector3::from(spin_rad_s(q, l, moments))
 }
 
-/// The largest errors of the spin, relative to 5 rad/s, and of the quaternion up to a time, at a number of steps per period.
+/// The largest errors of the spin, relative to 5 rad/s, and of the quaternion up to a time, at a
+/// number of steps per period.
 fn errors(steps_per_period: usize, parts: usize) -> (f64, f64) {
     let all = reference();
     let case = &all["dzhanibekov_I_1_2_3"];

@@ -1,4 +1,5 @@
-//! What is thrown at a packed body, from anywhere and turned anyhow, first touches a sphere of its outer layer: balls, planes, edges and corners of cubes.
+//! What is thrown at a packed body, from anywhere and turned anyhow, first touches a sphere of its
+//! outer layer: balls, planes, edges and corners of cubes.
 
 use std::path::Path;
 
@@ -40,7 +41,8 @@ impl Packed {
         self.is_outer.iter().filter(|outer| **outer).count()
     }
 
-    /// Which sphere something touches first that flies towards the middle. `distance`: of a point from it, in the place where it starts.
+    /// Which sphere something touches first that flies towards the middle. `distance`: of a point
+    /// from it, in the place where it starts.
     fn first(&self, direction: &Vector3<f64>, distance: impl Fn(Vector3<f64>) -> f64) -> usize {
         let mut gone = 0.0;
         loop {
@@ -128,7 +130,8 @@ fn balls_edges_and_corners_touch_the_outer_layer_first() {
     assert!(count > 250, "{count}");
 }
 
-/// What is sharper than a cube, or smaller than the balls, does get in: with it the layer is everything that is not covered.
+/// What is sharper than a cube, or smaller than the balls, does get in: with it the layer is
+/// everything that is not covered.
 #[test]
 fn needles_touch_spheres_within() {
     let packed = cake(BALL);

@@ -30,7 +30,8 @@ fn errors(balance: &Balance) -> [f64; 3] {
     .map(f64::abs)
 }
 
-/// The largest errors on the way, how often somebody fell asleep and woke, and what motion they lost.
+/// The largest errors on the way, how often somebody fell asleep and woke, and what motion they
+/// lost.
 fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
     let mut state = planned(&format!("{}{asks}", scene()));
     let mass_kg = state.ledger.mass_kg();

@@ -50,7 +50,8 @@ fn nobody_sleeps_who_is_held_or_loaded_or_lies_on_such() {
 
 #[test]
 fn who_touches_somebody_restless_does_not_sleep() {
-    // A ball that rolls on, slower than a body that falls asleep may be, is quiet; one that spins faster is not, and rests on the slab.
+    // A ball that rolls on, slower than a body that falls asleep may be, is quiet; one that spins
+    // faster is not, and rests on the slab.
     let spinner = ball(
         "spinner",
         [1e-3, 1e-3, 2e-3 * 0.5_f64.sqrt()],

@@ -39,7 +39,8 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
     for state in [&mut state, &mut awake] {
         place_all(&state.clumps, &mut state.particles);
     }
-    // Contacts swing with sqrt(3/2 g/d): a body that is as slow as asked is no further than this from where it comes to rest.
+    // Contacts swing with sqrt(3/2 g/d): a body that is as slow as asked is no further than this
+    // from where it comes to rest.
     let swing_rad_s = (1.5 * crate::GRAVITY_M_S2 / depth_m(slab_kg())).sqrt();
     let apart_m = apart_m(&state, &awake);
     eprintln!("{apart_m:e} m of {:e}", SPEED_M_S / swing_rad_s);
@@ -83,7 +84,8 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
             seen.push((news.kind, news.bodies));
         }
     }
-    // The stack sleeps and the one apart; the ball wakes the stack alone; all four fall asleep as one.
+    // The stack sleeps and the one apart; the ball wakes the stack alone; all four fall asleep as
+    // one.
     assert_eq!(
         seen,
         [("asleep", 1), ("asleep", 3), ("awake", 3), ("asleep", 4)]

@@ -49,7 +49,8 @@ fn a_ball_that_comes_down_wakes_what_it_hits() {
             "{start:?}: apart {largest_m:.1e} m, woke at {woke_s} s, {:e}",
             moved(&state)
         );
-        // The slab was within this of its rest when it fell asleep, and the ball hits it so much sooner or later.
+        // The slab was within this of its rest when it fell asleep, and the ball hits it so much
+        // sooner or later.
         assert!(largest_m < 1e-2 * depth_m(slab_kg()), "{largest_m:e}");
     }
 }

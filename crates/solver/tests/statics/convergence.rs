@@ -6,7 +6,8 @@ use dem_run::state::State;
 use crate::bars::{ELASTIC, MODELS, random_body, with_threads};
 use crate::{fix, load, rest};
 
-/// Asserts that each residual is at most as large as the square of the one before: of those that a tangent of their own is made for.
+/// Asserts that each residual is at most as large as the square of the one before: of those that a
+/// tangent of their own is made for.
 fn assert_quadratic(residuals: &[f64]) {
     let mut seen = 0;
     for pair in residuals.windows(2).filter(|p| p[0] < 0.2 && p[0] > 1e-6) {
@@ -16,7 +17,8 @@ fn assert_quadratic(residuals: &[f64]) {
     assert!(seen >= 2, "too few to tell: {residuals:?}");
 }
 
-/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as it is long: in a slender one every other step rule_runs what the one before has bent.
+/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as
+/// it is long: in a slender one every other step rule_runs what the one before has bent.
 #[test]
 fn residuals_fall_quadratically_under_forces() {
     for (model, name) in MODELS {
@@ -28,7 +30,8 @@ fn residuals_fall_quadratically_under_forces() {
     }
 }
 
-/// With the tangent itself, which is not symmetric where torques act. Along and across together, so that what is not symmetric matters.
+/// With the tangent itself, which is not symmetric where torques act. Along and across together, so
+/// that what is not symmetric matters.
 #[test]
 fn residuals_fall_quadratically_under_torques() {
     for (model, name) in MODELS {

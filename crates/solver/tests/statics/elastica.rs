@@ -1,12 +1,15 @@
-//! A slender cantilever under a large force at its end against the elastica, EI theta'' = -P cos theta, integrated here to rounding.
+//! A slender cantilever under a large force at its end against the elastica, EI theta'' = -P cos
+//! theta, integrated here to rounding.
 
 use dem_run::physics::bond::stiffness::BondModel;
 
 use crate::{bar, fix, load, rest};
 
-/// Where the end of the elastica of length 1 comes to under P/EI = `load`: along and across; by shooting from the free end, where the moment is 0.
+/// Where the end of the elastica of length 1 comes to under P/EI = `load`: along and across; by
+/// shooting from the free end, where the moment is 0.
 fn elastica(load: f64) -> [f64; 2] {
-    // From the clamp: the curvature there is the moment, load times the lever, which is along at the end.
+    // From the clamp: the curvature there is the moment, load times the lever, which is along at
+    // the end.
     let end = |curvature: f64| {
         let steps = 4000;
         let h = 1.0 / f64::from(steps);
@@ -49,7 +52,8 @@ fn elastica_is_that_of_the_table() {
     }
 }
 
-/// Second order in the length of the bonds. Bonds as thin as a thousandth of the bar: what they stretch and shear by is 1e-6 of it.
+/// Second order in the length of the bonds. Bonds as thin as a thousandth of the bar: what they
+/// stretch and shear by is 1e-6 of it.
 #[test]
 fn the_end_tends_to_the_elastica() {
     for strength in [1.0, 10.0] {

@@ -10,7 +10,8 @@ use crate::{assert_near, bar, fix, hold, load, rest};
 
 const BONDS: u32 = 20;
 
-/// In pure bending all bonds are chords of their initial length, each turned against the one before by the same angle.
+/// In pure bending all bonds are chords of their initial length, each turned against the one before
+/// by the same angle.
 fn assert_arc(state: &State, angle: f64) {
     let (mut x, mut y) = (0.0, 0.0);
     for (i, pose) in state.particles.poses.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Equilibrium without steps: closed forms, convergence, supports, stability, refusals, and what runs that step come to.
+//! Equilibrium without steps: closed forms, convergence, supports, stability, refusals, and what
+//! runs that step come to.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -1,4 +1,5 @@
-//! Bars under small loads: statically determinate, so each bond gives way by what it carries over its stiffness.
+//! Bars under small loads: statically determinate, so each bond gives way by what it carries over
+//! its stiffness.
 
 use dem_run::physics::rigid::rotation_vector;
 use dem_run::state::State;

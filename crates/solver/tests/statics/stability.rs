@@ -48,12 +48,14 @@ fn a_column_buckles_above_eulers_load() {
         );
         let problem = equilibrium(&mut state, END_S, &|_| true).unwrap_err();
         assert_eq!(problem.cause, Cause::Pivot);
-        // The load is stepped down to a thousandth; shorter bonds would be nearer by (pi/2n)^2 / 12.
+        // The load is stepped down to a thousandth; shorter bonds would be nearer by (pi/2n)^2 /
+        // 12.
         assert_near(over * problem.share, 1.0, 5e-3, "Euler's load");
     }
 }
 
-/// A column that leans a little bends aside and stands on: its end comes down where Euler's load is left behind.
+/// A column that leans a little bends aside and stands on: its end comes down where Euler's load is
+/// left behind.
 #[test]
 fn a_column_with_a_force_across_bends_aside() {
     let (mut state, critical_n) = column();

@@ -1,4 +1,5 @@
-//! Supports that move, by displacements and by velocities, with factors over time; and freedoms that are held one by one.
+//! Supports that move, by displacements and by velocities, with factors over time; and freedoms
+//! that are held one by one.
 
 use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
@@ -80,7 +81,8 @@ fn a_moved_end_and_a_loaded_end_are_the_same() {
     }
 }
 
-/// A bar on two hinges, each of which holds places and the turn about the bar, so that torques act where it is free to turn: sags as a beam on two supports.
+/// A bar on two hinges, each of which holds places and the turn about the bar, so that torques act
+/// where it is free to turn: sags as a beam on two supports.
 #[test]
 fn hinges_hold_places_only() {
     let mut state = bar(BondModel::EulerBernoulli, BONDS, 1.0);
@@ -103,7 +105,8 @@ fn hinges_hold_places_only() {
     let stiffness_n_m2 = 0.4 * state.bonds.stiffness(0).bending;
     let length_m = 0.4 * f64::from(BONDS);
     let sag_m = 1e3 * length_m.powi(3) / (48.0 * stiffness_n_m2);
-    // Bonds bend in their middles; a moment that is linear over them is met to (1/n)^2 of half of it.
+    // Bonds bend in their middles; a moment that is linear over them is met to (1/n)^2 of half of
+    // it.
     let turn = rotation_vector(state.particles.poses[0].turned);
     assert_near(
         turn[1],

@@ -129,7 +129,8 @@ pub(crate) fn steel(model: BondModel, rule: BondRule) -> Bonding {
     }
 }
 
-/// The bar of case 1 of Chen et al. 2022: 11 spheres of radius 0.2 m along x, density 7850 kg/m3, E = 200 GPa.
+/// The bar of case 1 of Chen et al. 2022: 11 spheres of radius 0.2 m along x, density 7850 kg/m3, E
+/// = 200 GPa.
 pub(crate) fn bar(model: BondModel, rule: BondRule, time_step_s: f64) -> State {
     let (particles, pairs) = spheres(11);
     body(particles, &pairs, &steel(model, rule), time_step_s)
@@ -213,8 +214,8 @@ pub(crate) fn shake(state: &mut State, velocity_m_s: f64) {
     reopen(state);
 }
 
-/// The bar tumbles about all axes and vibrates in its slow modes, as the second case of the reference values' drift: 27.2 MJ, of which the bonds
-/// take up to about 80 kJ.
+/// The bar tumbles about all axes and vibrates in its slow modes, as the second case of the
+/// reference values' drift: 27.2 MJ, of which the bonds take up to about 80 kJ.
 pub(crate) fn tumble(state: &mut State) {
     let spin = Vector3::new(20.0, 30.0, 103.5);
     let (centre, half) = (2.0, 2.0);
@@ -284,13 +285,15 @@ pub(crate) fn run(state: &mut State, steps: u64, every: u64) -> Errors {
     errors
 }
 
-/// Does something where Rayon has this many threads. With one, nothing is handed over, which small bodies are grateful for.
+/// Does something where Rayon has this many threads. With one, nothing is handed over, which small
+/// bodies are grateful for.
 pub(crate) fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(work)
 }
 
-/// Order of a method whose errors at steps each half of the one before are these: one number for each halving.
+/// Order of a method whose errors at steps each half of the one before are these: one number for
+/// each halving.
 pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect()
 }

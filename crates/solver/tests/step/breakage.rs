@@ -1,4 +1,5 @@
-//! Bonds that break in mid-run: their energy is booked, and the error that each leaves falls with the step.
+//! Bonds that break in mid-run: their energy is booked, and the error that each leaves falls with
+//! the step.
 
 use crate::bars::{
     BondDamping, ELASTIC, bar, damp, random_body, reopen, step_and_balance, with_threads,
@@ -31,8 +32,9 @@ struct Left {
     energy: f64,
     momentum: f64,
     angular_momentum: f64,
-    /// What flies straight on is moved by the same length in every step and so rounded the same way: its place, and with it the angular momentum
-    /// about a point, is off by up to the number of steps times this.
+    /// What flies straight on is moved by the same length in every step and so rounded the same
+    /// way: its place, and with it the angular momentum about a point, is off by up to the number
+    /// of steps times this.
     rounding: f64,
 }
 
@@ -64,7 +66,8 @@ fn left(mut state: State, steps: u64) -> Left {
     left
 }
 
-/// The bar flies apart: its halves are pulled away from each other and turn, so that bonds break one after another.
+/// The bar flies apart: its halves are pulled away from each other and turn, so that bonds break
+/// one after another.
 fn torn(incremental: bool, step_s: f64) -> State {
     let mut state = bar(BondModel::Timoshenko, breaking(100e6, incremental), step_s);
     for (i, motion) in state.particles.motions.iter_mut().enumerate() {

@@ -66,7 +66,8 @@ fn places_are_of_second_order() {
     });
 }
 
-/// The step becomes a third longer after a third of the run and half as long after two thirds, at the same moments for all steps.
+/// The step becomes a third longer after a third of the run and half as long after two thirds, at
+/// the same moments for all steps.
 #[test]
 fn a_step_that_changes_in_mid_run_keeps_the_order() {
     with_threads(1, || {
@@ -97,7 +98,8 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
     });
 }
 
-/// A million steps at a tenth of the limit: as well as the independent implementation, whose error was 1.3e-7.
+/// A million steps at a tenth of the limit: as well as the independent implementation, whose error
+/// was 1.3e-7.
 #[test]
 fn a_million_steps_of_tumbling_lose_nothing() {
     with_threads(1, || {

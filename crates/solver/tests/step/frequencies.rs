@@ -72,7 +72,8 @@ fn set_moving(motion: &mut Motion, (velocity_m_s, spin_rad_s): Moving) {
     motion.spin_rad_s = spin_rad_s;
 }
 
-/// Circular frequency of a mode that starts with these velocities, from the times at which its velocity changes sign.
+/// Circular frequency of a mode that starts with these velocities, from the times at which its
+/// velocity changes sign.
 fn measured(mut state: State, motions: [Moving; 2], near: f64) -> f64 {
     let along = |state: &State| -> f64 {
         let p = &state.particles;
@@ -188,7 +189,8 @@ fn peak(velocities: &[f64], every_s: f64, near: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Velocities of the last particle of the bar after a blow: every so many seconds, all freedoms added that were struck.
+/// Velocities of the last particle of the bar after a blow: every so many seconds, all freedoms
+/// added that were struck.
 fn rung(mut state: State, steps: usize, every: usize) -> Vec<f64> {
     set_moving(
         &mut state.particles.motions[10],

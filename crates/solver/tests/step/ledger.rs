@@ -162,7 +162,8 @@ fn errors(change: Change, incremental: bool, finer: u32) -> Errors {
     run(&mut state, 300 * u64::from(finer), 1)
 }
 
-/// Steps of a 10th, a 20th, a 40th and an 80th of the limit. Loads and supports change their course at moments that are steps of all of them.
+/// Steps of a 10th, a 20th, a 40th and an 80th of the limit. Loads and supports change their course
+/// at moments that are steps of all of them.
 #[test]
 fn energy_error_falls_with_the_square_of_the_step_whatever_acts() {
     let mut failed = Vec::new();

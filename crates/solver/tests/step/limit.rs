@@ -75,7 +75,8 @@ fn damped_limits_are_those_of_the_reference() {
     }
 }
 
-/// A bound near a step that is stable is not below it, one near a step that is not is not above the limit: so it tells the two apart.
+/// A bound near a step that is stable is not below it, one near a step that is not is not above the
+/// limit: so it tells the two apart.
 #[test]
 fn a_bound_tells_whether_a_step_is_stable() {
     for (name, model, body, _) in all() {
@@ -122,7 +123,8 @@ fn damping_of_particles_stiffens() {
     assert!((found.undamped_step_s / BAR_LIMIT_S - 1.0).abs() < 1e-4);
 }
 
-/// Spheres on a cubic grid, each moved a little, bonded to those nearer than the diagonal of a face: about 12 bonds each.
+/// Spheres on a cubic grid, each moved a little, bonded to those nearer than the diagonal of a
+/// face: about 12 bonds each.
 fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
     let mut next = crate::bars::scattered();
     let mut particles = Particles::default();
@@ -145,7 +147,8 @@ fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
     (particles, pairs)
 }
 
-/// Iterations hardly grow with the body; and from another start, as the same body with its numbers backwards has it, the same limit is found.
+/// Iterations hardly grow with the body; and from another start, as the same body with its numbers
+/// backwards has it, the same limit is found.
 #[test]
 fn the_limit_of_a_large_body_is_found_from_any_start() {
     let (particles, pairs) = shaken_grid(18);

@@ -9,7 +9,8 @@ use dem_run::state::particles::Particles;
 
 use crate::bars::{ELASTIC, bar, body, random_body, spheres, steel};
 
-/// Of the bar of 11 spheres, rad/s, by an independent eigenvalue solver: `free_free_first_8` of `data/oscillation.json`.
+/// Of the bar of 11 spheres, rad/s, by an independent eigenvalue solver: `free_free_first_8` of
+/// `data/oscillation.json`.
 fn of_reference(model: &str) -> f64 {
     let read: serde_json::Value =
         serde_json::from_str(include_str!("data/oscillation.json")).unwrap();
@@ -33,7 +34,8 @@ fn is_above_that_of_the_reference_by_little() {
     }
 }
 
-/// omega = 22.3733 sqrt(EI/(rho A L^4)); masses in points and bonds that end at the centres of the last spheres change it by about the slenderness squared.
+/// omega = 22.3733 sqrt(EI/(rho A L^4)); masses in points and bonds that end at the centres of the
+/// last spheres change it by about the slenderness squared.
 #[test]
 fn of_a_slender_bar_is_that_of_euler_and_bernoulli() {
     let count = 101_u32;
@@ -54,7 +56,8 @@ fn of_a_slender_bar_is_that_of_euler_and_bernoulli() {
     let wanted = 22.373_285_448 * (200e9 * second_moment / per_length).sqrt() / length.powi(2);
     let off = found / wanted - 1.0;
     eprintln!("{off:e}");
-    // Its ends are stiffer by half a bond each, 1/100 of the length in all, and the polynomial is 0.3 % high.
+    // Its ends are stiffer by half a bond each, 1/100 of the length in all, and the polynomial is
+    // 0.3 % high.
     assert!((0.0..0.03).contains(&off), "{off}");
 }
 

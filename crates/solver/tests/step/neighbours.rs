@@ -46,7 +46,8 @@ proptest! {
     }
 }
 
-/// Two bodies of many particles each, side by side: only the faces that look at each other are near, and the other ends are left out.
+/// Two bodies of many particles each, side by side: only the faces that look at each other are
+/// near, and the other ends are left out.
 #[test]
 fn large_clusters_meet_where_their_boxes_do() {
     for gap in [-0.3, 0.05, 0.5] {

@@ -50,7 +50,8 @@ fn a_body_moved_as_a_whole_feels_no_force() {
             let force = of_all(|w| w.force_n) / (stiffest * size);
             let torque = of_all(|w| w.torque_n_m) / (stiffest * size * 1e-3);
             eprintln!("{model:?}: {force:e} {torque:e}");
-            // Places are rounded to 1e-16 of the size of the body; a particle has up to a dozen bonds.
+            // Places are rounded to 1e-16 of the size of the body; a particle has up to a dozen
+            // bonds.
             assert!(
                 force < 1e-14 && torque < 1e-14,
                 "{model:?}: {force:e} {torque:e}"
@@ -186,7 +187,8 @@ fn a_mirrored_scene_gives_the_mirrored_result() {
     assert!(found < ROUNDING, "{found:e}");
 }
 
-/// Numbers from last to first: every bond has its ends the other way round, and every sum another order.
+/// Numbers from last to first: every bond has its ends the other way round, and every sum another
+/// order.
 #[test]
 fn numbers_do_not_matter() {
     let (particles, pairs) = in_motion();

@@ -7,7 +7,8 @@ use dem_run::step::step;
 use std::f64::consts::PI;
 
 const SPACING_M: f64 = 0.4;
-/// Along a straight chain bonds are linear, however large this is; a small one would drown in the rounding of places.
+/// Along a straight chain bonds are linear, however large this is; a small one would drown in the
+/// rounding of places.
 const SPEED_M_S: f64 = 1.0;
 
 /// A chain, and the root of its normal stiffness over mass, 1/s.
@@ -18,8 +19,8 @@ fn chain(count: u32, model: BondModel) -> (State, f64) {
     (state, rate)
 }
 
-/// A standing wave of wave number q of a free chain keeps its shape and swings with 2 sqrt(k/m) sin(q L/2), at a step dt with
-/// sin(omega dt/2) of that.
+/// A standing wave of wave number q of a free chain keeps its shape and swings with 2 sqrt(k/m)
+/// sin(q L/2), at a step dt with sin(omega dt/2) of that.
 #[test]
 fn standing_waves_have_the_dispersion_of_the_discrete_chain() {
     with_threads(1, || {
@@ -75,7 +76,8 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
             state.time_step_s = 0.1 / rate;
             let (start, width) = (180.0, 30.0);
             for i in 0..state.particles.len() {
-                // Displacement exp(-z^2/2) that moves on: its velocity is minus the speed times its slope.
+                // Displacement exp(-z^2/2) that moves on: its velocity is minus the speed times its
+                // slope.
                 let back = -0.5 * state.time_step_s * rate;
                 let (z, z_back) = (
                     (i as f64 - start) / width,
@@ -95,7 +97,8 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
             }
             let found = (centre(&state) - from) * SPACING_M / (state.time_s - at_s);
             let off = found / speed - 1.0;
-            // Group velocity c cos(q L/2), on the mean of q^2 in the energy of the pulse, 3/(2 width^2).
+            // Group velocity c cos(q L/2), on the mean of q^2 in the energy of the pulse, 3/(2
+            // width^2).
             let discrete = -3.0 / (16.0 * width * width);
             eprintln!("{model:?}: {off:e}, as a discrete chain {discrete:e}");
             assert!(off.abs() < 1e-3, "{model:?}: {off:e}");

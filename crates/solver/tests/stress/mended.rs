@@ -93,7 +93,8 @@ fn a_wall_is_called_by_its_name() {
     );
 }
 
-/// Two spheres whose centres met went on as if nothing had been, or ended as a step that was too large.
+/// Two spheres whose centres met went on as if nothing had been, or ended as a step that was too
+/// large.
 #[test]
 fn spheres_that_would_go_through_each_other_are_named() {
     for (radius_m, other_m) in [(1e-3, 1e-3), (1e-3, 5e-3), (5e-3, 1e-3)] {

@@ -1,4 +1,5 @@
-//! A suite that cannot fail proves nothing: predictions that are wrong, and scenes that are spoiled, are found out.
+//! A suite that cannot fail proves nothing: predictions that are wrong, and scenes that are
+//! spoiled, are found out.
 
 use std::sync::atomic::AtomicBool;
 

@@ -26,7 +26,8 @@ fn every_case_does_as_predicted() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What the suite has to hold, so that no case is lost: predictions of each kind, a map of all models, families over all their orders.
+/// What the suite has to hold, so that no case is lost: predictions of each kind, a map of all
+/// models, families over all their orders.
 #[test]
 fn nothing_is_missing() {
     assert_eq!(CASES.len(), 15);
@@ -91,15 +92,17 @@ fn results_are_the_same_for_any_number_of_threads() {
     assert_eq!(one.len(), 3);
 }
 
-/// The observed limit of a pair is that in closed form, 2 over its largest frequency: what is observed stands on its own, whatever the program predicts.
+/// The observed limit of a pair is that in closed form, 2 over its largest frequency: what is
+/// observed stands on its own, whatever the program predicts.
 #[test]
 fn the_observed_limit_is_the_closed_form() {
     for share in [1e-2, 1e-9] {
         let what = format!("timoshenko, {share:e} of a radius, its limit");
         let pair = member("short-bonds", &what);
         let observed_s = largest_step_s(&pair.trial, &AtomicBool::new(false)).unwrap();
-        // Equal spheres of radius R: stretch 2 k_n / m is faster than bending 2 k_b / I, with k_b = k_n R^2 / 4 and I = 0.4 m R^2, and than shear, 2 k_s / m with
-        // k_s < k_n, as a lever so short turns nothing.
+        // Equal spheres of radius R: stretch 2 k_n / m is faster than bending 2 k_b / I, with k_b =
+        // k_n R^2 / 4 and I = 0.4 m R^2, and than shear, 2 k_s / m with k_s < k_n, as a lever so
+        // short turns nothing.
         let radius_m = 1e-3_f64;
         let mass_kg = 2500.0 * 4.0 / 3.0 * PI * radius_m.powi(3);
         let normal_n_m = 1e9 * PI * radius_m.powi(2) / (share * radius_m);

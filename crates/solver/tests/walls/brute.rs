@@ -8,11 +8,12 @@ use crate::{Surface, add_tiles, apart, mesh, touches};
 
 type Vector = Vector3<f64>;
 
-/// Points nearer than all surface around them, found without any tolerance: over a face; over an edge from which every triangle at it leads away; over a
-/// vertex from which every edge at it leads away.
+/// Points nearer than all surface around them, found without any tolerance: over a face; over an
+/// edge from which every triangle at it leads away; over a vertex from which every edge at it leads
+/// away.
 ///
-/// None: not in general position. The foot on an edge is so near to an end of it that the least point there is none for who rounds, if beyond the end the
-/// surface comes nearer.
+/// None: not in general position. The foot on an edge is so near to an end of it that the least
+/// point there is none for who rounds, if beyond the end the surface comes nearer.
 fn everything(
     (vertices, triangles): &Surface,
     c: Vector,
@@ -145,8 +146,9 @@ proptest! {
     }
 }
 
-/// A ridge that rises to a peak, beyond which a slope leads to a nearer point. Over the ridge, all points nearer to the peak than rounding counts are passed
-/// over for that slope; a little farther down they are touches of their own.
+/// A ridge that rises to a peak, beyond which a slope leads to a nearer point. Over the ridge, all
+/// points nearer to the peak than rounding counts are passed over for that slope; a little farther
+/// down they are touches of their own.
 #[test]
 fn next_to_a_peak_only_what_stands_out_is_touched() {
     let vertices = vec![

@@ -61,7 +61,8 @@ fn a_closed_box_is_read_the_same_way() {
 
 #[test]
 fn gaps_splits_doubles_and_slivers_are_seen_to() {
-    // The second half of the plate is off by a ten-thousandth of a tile, and has one of its tiles twice, the other way round, and one facet on a line.
+    // The second half of the plate is off by a ten-thousandth of a tile, and has one of its tiles
+    // twice, the other way round, and one facet on a line.
     let (vertices, mut triangles) = plate();
     let near = triangles.split_off(16);
     let mut text = stl(&(vertices.clone(), triangles));
@@ -92,7 +93,8 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
     assert_eq!((read.t_junctions, read.triangles.len()), (1, 4));
 }
 
-/// Facets that are turned against their neighbours are counted, those that stand there both ways are none of them.
+/// Facets that are turned against their neighbours are counted, those that stand there both ways
+/// are none of them.
 #[test]
 fn turned_facets_are_counted() {
     let read = |surface: &Surface| {

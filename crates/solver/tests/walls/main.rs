@@ -1,4 +1,5 @@
-//! Where spheres touch walls: meshes against the shapes that they stand for and against looking at everything.
+//! Where spheres touch walls: meshes against the shapes that they stand for and against looking at
+//! everything.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -47,7 +48,8 @@ pub(crate) fn assert_same(found: &Touch, wanted: &Touch, error: f64, what: &str)
     );
 }
 
-/// A box with each face divided into `n` by `n` squares of two triangles, whose diagonals run either way. Faces share vertices.
+/// A box with each face divided into `n` by `n` squares of two triangles, whose diagonals run
+/// either way. Faces share vertices.
 pub(crate) fn box_surface(low: [f64; 3], high: [f64; 3], n: u32) -> Surface {
     let mut surface = (Vec::new(), Vec::new());
     for axis in 0..3_usize {

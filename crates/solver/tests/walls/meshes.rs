@@ -83,7 +83,8 @@ proptest! {
         }
     }
 
-    /// Outside, with a reach that is much larger than the box or so small that the rear is out of it.
+    /// Outside, with a reach that is much larger than the box or so small that the rear is out of
+    /// it.
     #[test]
     fn a_mesh_of_a_box_is_a_box(
         n in 1_u32..5,
@@ -106,7 +107,8 @@ proptest! {
             let found = touches(&Shape::Mesh(surface), centre, reach);
             prop_assert_eq!(found.len(), wanted.len(), "{:?} {:?}", found, wanted);
             for (found, wanted) in found.iter().zip(&wanted) {
-                // On an edge, and next to a vertex of its tiles within the tolerance, the point may be off along it.
+                // On an edge, and next to a vertex of its tiles within the tolerance, the point may
+                // be off along it.
                 let is_on_face = wanted.normal.iter().filter(|x| **x != 0.0).count() == 1;
                 let error = if is_on_face { 1e-12 } else { 5e-8 * reach };
                 assert_same(found, wanted, error, "box");
@@ -232,7 +234,8 @@ fn single_precision_costs_no_second_touch() {
     }
 }
 
-/// A rim that rounding has bent inwards in the middle: both halves are nearer to a sphere in front of it than the vertex between them.
+/// A rim that rounding has bent inwards in the middle: both halves are nearer to a sphere in front
+/// of it than the vertex between them.
 #[test]
 fn a_bent_straight_edge_is_touched_once() {
     let vertices = [
@@ -284,7 +287,8 @@ fn a_thin_plate_is_touched_on_one_side() {
     assert!((only(&plate, [0.4, 0.4, 0.2], 0.5).distance_m - 0.19).abs() < 1e-15);
 }
 
-/// A plate without the middle one of its nine squares. Its rim has two edges at every corner, in one flat part.
+/// A plate without the middle one of its nine squares. Its rim has two edges at every corner, in
+/// one flat part.
 #[test]
 fn over_a_hole_the_rim_is_touched() {
     let mut surface = (Vec::new(), Vec::new());

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 
 use crate::{apart, touches};
 
-/// Whether a point is inside, and its distance from the surface, by the textbook's formula (negative inside).
+/// Whether a point is inside, and its distance from the surface, by the textbook's formula
+/// (negative inside).
 fn box_distance(p: [f64; 3], half: [f64; 3]) -> f64 {
     let q = [0, 1, 2].map(|k| p[k].abs() - half[k]);
     let outside = Vector3::from(q.map(|x| x.max(0.0))).norm();
@@ -19,7 +20,8 @@ fn cylinder_distance(p: [f64; 3], half: f64, radius: f64) -> f64 {
     q[0].max(0.0).hypot(q[1].max(0.0)) + q[0].max(q[1]).min(0.0)
 }
 
-/// What holds for every touch of a solid: the point is where the normal and the distance say, and lies on the surface.
+/// What holds for every touch of a solid: the point is where the normal and the distance say, and
+/// lies on the surface.
 fn assert_touch(shape: &Shape, p: [f64; 3], distance: f64, surface: impl Fn([f64; 3]) -> f64) {
     let found = touches(shape, p, 100.0);
     assert_eq!(found.len(), 1, "{p:?}");

@@ -1,4 +1,5 @@
-//! The features of a mesh: flat parts, straight edges, corners. What a modeller made as one face or edge is one feature, however it is tiled.
+//! The features of a mesh: flat parts, straight edges, corners. What a modeller made as one face or
+//! edge is one feature, however it is tiled.
 
 use nalgebra::Vector3;
 
@@ -6,16 +7,19 @@ use crate::disjoint::{find, join};
 
 use super::triangle::Triangle;
 
-/// Corners of a flat part may lie off its plane by this share of the diagonal: what single precision costs, a few times over.
+/// Corners of a flat part may lie off its plane by this share of the diagonal: what single
+/// precision costs, a few times over.
 const ROUGHNESS: f64 = 3e-7;
 
-/// Sine of the angle between two directions that are one, beside what roughness does to short lengths.
+/// Sine of the angle between two directions that are one, beside what roughness does to short
+/// lengths.
 const STRAIGHT: f64 = 1e-5;
 
 /// What each triangle consists of.
 #[derive(Debug, Default)]
 pub(super) struct Features {
-    /// The feature of each region of each triangle. Flat parts come first, then edges, then corners.
+    /// The feature of each region of each triangle. Flat parts come first, then edges, then
+    /// corners.
     pub(super) of_regions: Vec<[u32; 7]>,
     pub(super) flat_parts: u32,
     pub(super) straight_edges: u32,
@@ -215,7 +219,8 @@ fn vertex(
     }
 }
 
-/// The flat part of each triangle, and how many there are. Each grows from its largest triangle over edges, as long as it stays in that plane.
+/// The flat part of each triangle, and how many there are. Each grows from its largest triangle
+/// over edges, as long as it stays in that plane.
 fn flat_parts(triangles: &[Triangle], edges: &Edges, diagonal: f64) -> (Vec<u32>, u32) {
     const NONE: u32 = u32::MAX;
     let sizes: Vec<[f64; 2]> = triangles.iter().map(area_and_height).collect();

@@ -1,4 +1,5 @@
-//! A tree of boxes over triangles: halved across the longest side of the box of their middles, until few are left.
+//! A tree of boxes over triangles: halved across the longest side of the box of their middles,
+//! until few are left.
 
 use super::super::Bounds;
 
@@ -9,7 +10,8 @@ const FEW: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     bounds: Bounds,
-    /// A leaf: the first of its triangles. Otherwise the second child; the first child is the next node.
+    /// A leaf: the first of its triangles. Otherwise the second child; the first child is the next
+    /// node.
     at: u32,
     /// Triangles of a leaf; 0 for others.
     count: u32,
@@ -22,7 +24,8 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// The tree over triangles with these boxes, and the order in which they are to stand. Equal input gives equal order.
+    /// The tree over triangles with these boxes, and the order in which they are to stand. Equal
+    /// input gives equal order.
     pub(super) fn new(boxes: &[Bounds]) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut tree = Self::default();
@@ -65,7 +68,8 @@ impl Tree {
         self.halve(boxes, right, first + half as u32);
     }
 
-    /// Calls `visit` with each triangle of the leaves that lie within `reach` of a point along each axis, in order.
+    /// Calls `visit` with each triangle of the leaves that lie within `reach` of a point along each
+    /// axis, in order.
     pub(super) fn visit_near(&self, point: &[f64; 3], reach: f64, visit: &mut impl FnMut(u32)) {
         if !self.nodes.is_empty() {
             self.visit_node(0, point, reach, visit);
@@ -85,7 +89,8 @@ impl Tree {
         }
     }
 
-    /// Calls `visit` with each triangle of the leaves that a ray from a point along z may meet, in order.
+    /// Calls `visit` with each triangle of the leaves that a ray from a point along z may meet, in
+    /// order.
     pub(super) fn visit_above(&self, point: &[f64; 3], visit: &mut impl FnMut(u32)) {
         if !self.nodes.is_empty() {
             self.visit_node_above(0, point, visit);

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use super::super::Touch;
 
-/// Where on a triangle a point lies: 0 its face; 1, 2, 3 the edges from its first, second, third corner; 4, 5, 6 its corners.
+/// Where on a triangle a point lies: 0 its face; 1, 2, 3 the edges from its first, second, third
+/// corner; 4, 5, 6 its corners.
 pub(super) const REGIONS: u32 = 7;
 
 /// A triangle with its normal.
@@ -25,7 +26,8 @@ impl Triangle {
         }
     }
 
-    /// The point nearest to `p`, and its region (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+    /// The point nearest to `p`, and its region (Ericson, Real-Time Collision Detection, 2005,
+    /// section 5.1.5).
     pub(super) fn nearest(&self, p: &Vector3<f64>) -> (Vector3<f64>, u32) {
         let [a, b, c] = &self.corners;
         let (ab, ac) = (b - a, c - a);

@@ -11,7 +11,8 @@ const TOP: f64 = 0.10;
 /// Free margin at the bottom, for the scale bar, as a share of the height.
 const BOTTOM: f64 = 0.12;
 
-/// Where the three-quarter view looks when x lies across the picture: from the front, the right and above.
+/// Where the three-quarter view looks when x lies across the picture: from the front, the right and
+/// above.
 const THREE_QUARTER: [f64; 3] = [-0.42, 0.80, -0.43];
 
 /// Points farther away than this are taken for nonsense, m.
@@ -31,14 +32,17 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera that looks in this direction and shows all of a box, with `up` upwards in the picture.
+    /// The camera that looks in this direction and shows all of a box, with `up` upwards in the
+    /// picture.
     ///
-    /// Directions may have any length. Where they say nothing, the three-quarter view is taken. `size_px`: width and height.
+    /// Directions may have any length. Where they say nothing, the three-quarter view is taken.
+    /// `size_px`: width and height.
     pub fn looking(direction: [f64; 3], up: [f64; 3], at: &Bounds, size_px: [u32; 2]) -> Self {
         Self::around(direction, up, &at.corners(), size_px)
     }
 
-    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box where walls are tilted.
+    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box where walls are
+    /// tilted.
     pub fn around(
         direction: [f64; 3],
         up: [f64; 3],
@@ -74,7 +78,8 @@ impl Camera {
         }
     }
 
-    /// The default view around points, m, shape n x 3: from the front, the right and above, the longer horizontal axis across the picture.
+    /// The default view around points, m, shape n x 3: from the front, the right and above, the
+    /// longer horizontal axis across the picture.
     pub fn three_quarter(points_m: &[[f64; 3]], size_px: [u32; 2]) -> Self {
         let bounds = Bounds::of(sane(points_m));
         let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
@@ -91,7 +96,8 @@ impl Camera {
         self.px_per_m
     }
 
-    /// Where a point, m, lies in the picture, px: from the left, from the top, and from the middle of the scene towards the viewer. Length 3.
+    /// Where a point, m, lies in the picture, px: from the left, from the top, and from the middle
+    /// of the scene towards the viewer. Length 3.
     pub fn project(&self, point_m: [f64; 3]) -> [f64; 3] {
         let from = minus(point_m, self.middle_m);
         let [x, y, z] = self.axes.map(|axis| dot(axis, from) * self.px_per_m);

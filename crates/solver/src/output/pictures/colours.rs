@@ -1,6 +1,7 @@
 //! Colours of particles by the piece that they belong to.
 //!
-//! Hues are told apart with any colour vision, and neighbouring numbers differ in hue as well as in lightness. A number has one colour for ever.
+//! Hues are told apart with any colour vision, and neighbouring numbers differ in hue as well as in
+//! lightness. A number has one colour for ever.
 
 /// A single particle: light grey.
 pub const SINGLE: [u8; 3] = [196, 198, 201];
@@ -42,7 +43,8 @@ pub fn of_clump(id: u32) -> [u8; 3] {
 
 /// The colour of a fragment by its number and its share of the body that it comes from.
 ///
-/// The whole body (1) is calm, and the smaller the piece, the more vivid. A share that is not a number counts as 0. Red, green, blue.
+/// The whole body (1) is calm, and the smaller the piece, the more vivid. A share that is not a
+/// number counts as 0. Red, green, blue.
 pub fn of_fragment(id: u32, share: f64) -> [u8; 3] {
     let calm = if share > 0.0 { share.min(1.0) } else { 0.0 };
     mixed(of_cluster(id), of_clump(id), 0.75 * calm * calm)

@@ -49,9 +49,11 @@ pub fn delay_ms(count: usize) -> u16 {
     (FILM_MS / count.max(1)).clamp(least, most) as u16
 }
 
-/// The pictures in rows of so many columns, thin lines between them. All as large as the first one: the others are cut off or have a white margin.
+/// The pictures in rows of so many columns, thin lines between them. All as large as the first one:
+/// the others are cut off or have a white margin.
 ///
-/// Where it would be larger than a picture may be, the frames are reduced by a whole factor. Without frames it has no pixels.
+/// Where it would be larger than a picture may be, the frames are reduced by a whole factor.
+/// Without frames it has no pixels.
 pub fn film_strip(frames: &[Image], columns: usize) -> Image {
     let Some(first) = frames.first() else {
         return Image::new(0, 0, RULE);
@@ -78,10 +80,11 @@ pub fn film_strip(frames: &[Image], columns: usize) -> Image {
     strip
 }
 
-/// Pictures as the bytes of an animated PNG file, which browsers play over and over again. `delay_ms`: how long each is seen.
+/// Pictures as the bytes of an animated PNG file, which browsers play over and over again.
+/// `delay_ms`: how long each is seen.
 ///
-/// `frame` gives each of the `count` pictures in turn. All as large as the first one: the others are cut off or have a white margin. Of each only what differs from
-/// the one before is stored.
+/// `frame` gives each of the `count` pictures in turn. All as large as the first one: the others
+/// are cut off or have a white margin. Of each only what differs from the one before is stored.
 ///
 /// # Errors
 /// Those of `frame`; no frames, or frames without pixels.
@@ -138,7 +141,8 @@ fn add(
     writer.write_image_data(next.part([x, y], [width, height]).rgb())
 }
 
-/// The smallest rectangle that holds all pixels that differ, or one pixel: left, top, width, height. The pictures are of one size.
+/// The smallest rectangle that holds all pixels that differ, or one pixel: left, top, width,
+/// height. The pictures are of one size.
 fn difference(a: &Image, b: &Image) -> [u32; 4] {
     let wide = a.width().max(1);
     let mut low = [u32::MAX; 2];

@@ -12,7 +12,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture of one colour. Sides beyond [`MAX_SIDE_PX`] are cut off; without width or height it has no pixels.
+    /// A picture of one colour. Sides beyond [`MAX_SIDE_PX`] are cut off; without width or height
+    /// it has no pixels.
     pub fn new(width: u32, height: u32, colour: [u8; 3]) -> Self {
         let [width, height] = [width, height].map(|side| side.min(MAX_SIDE_PX));
         Self {
@@ -22,7 +23,8 @@ impl Image {
         }
     }
 
-    /// A picture of these pixels, as [`Image::rgb`] gives them. None where they are not as many as it has, or too many along a side.
+    /// A picture of these pixels, as [`Image::rgb`] gives them. None where they are not as many as
+    /// it has, or too many along a side.
     pub fn of_rgb(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
         let fits =
             width.max(height) <= MAX_SIDE_PX && rgb.len() == 3 * width as usize * height as usize;
@@ -64,7 +66,8 @@ impl Image {
         }
     }
 
-    /// Copies a picture into this one, its top left pixel to `x`, `y`. What reaches over is cut off.
+    /// Copies a picture into this one, its top left pixel to `x`, `y`. What reaches over is cut
+    /// off.
     pub fn paste(&mut self, from: &Self, x: u32, y: u32) {
         if x >= self.width {
             return;
@@ -93,7 +96,8 @@ impl Image {
         part
     }
 
-    /// The picture with sides shorter by a whole factor: each pixel is the mean of a square. Rests at the right and below are cut off.
+    /// The picture with sides shorter by a whole factor: each pixel is the mean of a square. Rests
+    /// at the right and below are cut off.
     #[must_use]
     pub fn reduced(&self, factor: u32) -> Self {
         if factor <= 1 {

@@ -17,7 +17,8 @@ const BAR: f64 = 0.20;
 /// Units of length with their size, m.
 const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
 
-/// A time as a label: `t = 0.125 s`, with as many decimals as frames that are `step_s` apart need. Both in s.
+/// A time as a label: `t = 0.125 s`, with as many decimals as frames that are `step_s` apart need.
+/// Both in s.
 pub fn time_text(time_s: f64, step_s: f64) -> String {
     let mut decimals = 0;
     let mut rest = step_s.abs();
@@ -41,7 +42,8 @@ pub fn label(image: &mut Image, text: &str) {
     font::write(image, text, [1.1 * size, 1.0 * size], size, INK);
 }
 
-/// Draws a bar of a round length with its label into the bottom right corner. `px_per_m`: the scale of the picture.
+/// Draws a bar of a round length with its label into the bottom right corner. `px_per_m`: the scale
+/// of the picture.
 ///
 /// Nothing is drawn where the scale is not a positive number.
 pub fn scale_bar(image: &mut Image, px_per_m: f64) {

@@ -1,9 +1,11 @@
 //! Draws shaded balls and light-grey walls.
 //!
-//! Balls are exact spheres: each of four samples a pixel has its own depth. Walls let balls behind them shine through. Two lights: a lamp from the upper left,
-//! which casts shadows of the balls, and a sky, which balls in the depth of a heap see less of.
+//! Balls are exact spheres: each of four samples a pixel has its own depth. Walls let balls behind
+//! them shine through. Two lights: a lamp from the upper left, which casts shadows of the balls,
+//! and a sky, which balls in the depth of a heap see less of.
 //!
-//! All is done in view space: px from the left, from the top, and from the middle of the scene towards the viewer.
+//! All is done in view space: px from the left, from the top, and from the middle of the scene
+//! towards the viewer.
 
 mod band;
 mod light;

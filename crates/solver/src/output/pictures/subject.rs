@@ -1,4 +1,5 @@
-//! What is to be seen of a state: its particles, coloured by the piece that they belong to, and its walls.
+//! What is to be seen of a state: its particles, coloured by the piece that they belong to, and its
+//! walls.
 
 use super::colours::{SINGLE, of_fragment};
 use super::render::Ball;
@@ -25,7 +26,8 @@ pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
         .collect()
 }
 
-/// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where others begin.
+/// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where
+/// others begin.
 pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
     let plane_of = |wall: &Wall| HalfSpace::of_wall(&wall.shape, &wall.frame);
     let planes: Vec<HalfSpace> = walls.iter().filter_map(plane_of).collect();
@@ -36,7 +38,8 @@ pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
     walls.iter().filter_map(surface).collect()
 }
 
-/// The colour of each cluster. The largest piece of one that broke keeps its colour, so that a body which loses a crumb does not flicker.
+/// The colour of each cluster. The largest piece of one that broke keeps its colour, so that a body
+/// which loses a crumb does not flicker.
 fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
     let mut heirs: Vec<Option<usize>> = vec![None; history.len()];
     for (id, cluster) in history.iter().enumerate() {
@@ -47,7 +50,8 @@ fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
             *heir = Some(id);
         }
     }
-    // Number of the colour, and particles of the body that it comes from. A parent comes before its pieces.
+    // Number of the colour, and particles of the body that it comes from. A parent comes before its
+    // pieces.
     let mut known: Vec<(u32, u32)> = Vec::with_capacity(history.len());
     for (id, cluster) in history.iter().enumerate() {
         let parent = cluster.parent.map(|parent| parent as usize);

@@ -8,7 +8,8 @@ use crate::geometry::{Bounds, Frame, Shape};
 /// Sides of a polygon that stands for a circle.
 const ROUND: u32 = 96;
 
-/// A fold between two triangles is drawn from this angle on: the cosine of 155 degrees between the triangles.
+/// A fold between two triangles is drawn from this angle on: the cosine of 155 degrees between the
+/// triangles.
 const FOLD: f64 = -0.906;
 /// And below this one there is none: the cosine of 179.9 degrees.
 const FLAT: f64 = -0.999_998;
@@ -37,7 +38,8 @@ pub struct Triangle {
 pub struct Edge {
     /// Its ends, m. Shape 2 x 3.
     pub ends_m: [[f64; 3]; 2],
-    /// Of an edge on a round surface, which is drawn only where it is an outline: the third corners of the two triangles beside it, m. Shape 2 x 3.
+    /// Of an edge on a round surface, which is drawn only where it is an outline: the third corners
+    /// of the two triangles beside it, m. Shape 2 x 3.
     pub beside_m: Option<[[f64; 3]; 2]>,
 }
 
@@ -79,7 +81,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface of half of space: the part of the plane that lies around a scene and in none of the other `solids`.
+    /// The surface of half of space: the part of the plane that lies around a scene and in none of
+    /// the other `solids`.
     pub fn plane(plane: &HalfSpace, around: &Bounds, solids: &[HalfSpace]) -> Self {
         let HalfSpace { point_m, normal } = *plane;
         let Some(normal) = unit(normal) else {
@@ -114,7 +117,8 @@ impl Surface {
         }
     }
 
-    /// A wall's shape where it stands. None: a plane has no end, and is drawn by [`Surface::plane`].
+    /// A wall's shape where it stands. None: a plane has no end, and is drawn by
+    /// [`Surface::plane`].
     pub fn of_finite(shape: &Shape, frame: &Frame) -> Option<Self> {
         let in_its_frame = match shape {
             Shape::Plane(_) => return None,
@@ -182,9 +186,11 @@ impl Surface {
         }
     }
 
-    /// A surface with two sides: vertices, m, shape n x 3, and triangles of three of them each, shape m x 3.
+    /// A surface with two sides: vertices, m, shape n x 3, and triangles of three of them each,
+    /// shape m x 3.
     ///
-    /// Lines are its borders and folds, and where it is round its outline. Triangles that are not finite or of vertices that do not exist are left out.
+    /// Lines are its borders and folds, and where it is round its outline. Triangles that are not
+    /// finite or of vertices that do not exist are left out.
     pub fn mesh(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
         let corners = |t: &[u32; 3]| -> Option<Triangle> {
             let [a, b, c] = t.map(|v| vertices_m.get(v as usize).copied());
@@ -237,7 +243,8 @@ fn along_an_axis(normal: [f64; 3]) -> [f64; 3] {
     unit(plus(axis, -normal[least], normal)).unwrap_or(axis)
 }
 
-/// The part of a convex polygon, m, shape n x 3, that is not in a solid. One that lies in its plane is left as it is.
+/// The part of a convex polygon, m, shape n x 3, that is not in a solid. One that lies in its plane
+/// is left as it is.
 fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
     let Some(normal) = unit(solid.normal) else {
         return polygon.to_vec();
@@ -258,7 +265,8 @@ fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
     left
 }
 
-/// A side of a triangle: numbers of its ends in rising order, the ends, and the third corner of the triangle.
+/// A side of a triangle: numbers of its ends in rising order, the ends, and the third corner of the
+/// triangle.
 type Side = ([usize; 2], [[f64; 3]; 2], [f64; 3]);
 
 /// Borders, folds and possible outlines. Corners at equal places are one.

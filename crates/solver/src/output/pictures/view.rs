@@ -27,8 +27,9 @@ pub struct View {
 }
 
 impl View {
-    /// Takes in all particles, inlets and walls of a state at its start, of planes a patch around the rest. `from`: where to look from, of any length; None: from the front,
-    /// the right and above.
+    /// Takes in all particles, inlets and walls of a state at its start, of planes a patch around
+    /// the rest. `from`: where to look from, of any length; None: from the front, the right and
+    /// above.
     pub fn of(state: &State, from: Option<[f64; 3]>) -> Self {
         let poses = &state.particles.poses;
         let mut points_m: Vec<[f64; 3]> = (poses.iter())

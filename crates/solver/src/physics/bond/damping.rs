@@ -1,4 +1,5 @@
-//! Viscous damping of bonds: four coefficients, one for each mode, whatever rule they come from. Rules may be added.
+//! Viscous damping of bonds: four coefficients, one for each mode, whatever rule they come from.
+//! Rules may be added.
 //!
 //! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
 
@@ -42,7 +43,8 @@ pub struct Reduced {
     pub inertia_kg_m2: f64,
 }
 
-/// Reduced mass and inertia of two ends, from one over mass and one over moment of inertia: 0 for an end that is held. Between two held ends both are 0, so nothing is damped.
+/// Reduced mass and inertia of two ends, from one over mass and one over moment of inertia: 0 for
+/// an end that is held. Between two held ends both are 0, so nothing is damped.
 #[inline(always)]
 pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced {
     let reduced = |[a, b]: [f64; 2]| if a + b > 0.0 { 1.0 / (a + b) } else { 0.0 };
@@ -52,7 +54,8 @@ pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced 
     }
 }
 
-/// [Chen 9, 10]: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2 k_tor I_red) about all axes.
+/// [Chen 9, 10]: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2 k_tor I_red) about
+/// all axes.
 #[inline(always)]
 pub fn chen(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
     let force = 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt();
@@ -65,8 +68,9 @@ pub fn chen(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoeffi
     }
 }
 
-/// As [`chen`], but 2 eta sqrt(k m_red), 2 eta sqrt(k I_red) with the stiffness k of each mode, and without the 2 under the root of eq. 10.
-/// eta is then the share of critical damping of each mode of two particles that is not coupled to another (stretch, torsion).
+/// As [`chen`], but 2 eta sqrt(k m_red), 2 eta sqrt(k I_red) with the stiffness k of each mode, and
+/// without the 2 under the root of eq. 10. eta is then the share of critical damping of each mode
+/// of two particles that is not coupled to another (stretch, torsion).
 #[inline(always)]
 pub fn chen_by_mode(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
     DampingCoefficients {
@@ -77,7 +81,8 @@ pub fn chen_by_mode(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> Dampi
     }
 }
 
-/// [Platzer 7, 9]: `coefficient_n_s_m` times the whole relative velocity, and `moment_factor` (1 as printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
+/// [Platzer 7, 9]: `coefficient_n_s_m` times the whole relative velocity, and `moment_factor` (1 as
+/// printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
 ///
 /// The thesis' table 1 gives its coefficient without a unit; eq. 7 needs N s/m.
 #[inline(always)]
@@ -113,9 +118,11 @@ pub struct DampingForces {
     pub torques: [Vector3<f64>; 2],
 }
 
-/// Damping of a bond now `length_m` long along the unit vector `c` from a to b. Its contact point splits the length as the `levers_m` do the initial one.
+/// Damping of a bond now `length_m` long along the unit vector `c` from a to b. Its contact point
+/// splits the length as the `levers_m` do the initial one.
 ///
-/// The bond is turned by nothing as a whole, gives no force while it moves as a rigid body, and never adds energy.
+/// The bond is turned by nothing as a whole, gives no force while it moves as a rigid body, and
+/// never adds energy.
 pub fn damping_forces(
     coefficients: &DampingCoefficients,
     levers_m: &[f64; 2],
@@ -133,8 +140,8 @@ pub fn damping_forces(
     }
 }
 
-/// As [`damping_forces`], for one bond or several at once whose ends have these velocities, m/s, and spins, rad/s: force on the second end, N, and
-/// torques on both, N m.
+/// As [`damping_forces`], for one bond or several at once whose ends have these velocities, m/s,
+/// and spins, rad/s: force on the second end, N, and torques on both, N m.
 #[inline(always)]
 pub fn resistance<T: Number>(
     coefficients: &DampingCoefficients<T>,

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any load takes more than all, and none takes nothing.
-/// Several may act together.
+/// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any
+/// load takes more than all, and none takes nothing. Several may act together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Criteria {
     /// Largest stress at the tensile edge: F_n / A + M_ben r / I, tension positive, Pa.

@@ -1,7 +1,9 @@
-//! Two particles joined by one bond: how they swing, in closed form, and the largest time step they allow.
+//! Two particles joined by one bond: how they swing, in closed form, and the largest time step they
+//! allow.
 //!
-//! Small motion about the unloaded bond, undamped. A particle with several bonds swings faster than any of its pairs: the critical step of a body is
-//! smaller than the least of its pairs (down to 0.71 of it in a chain of equal spheres), and only an eigenvalue of the whole body is the limit.
+//! Small motion about the unloaded bond, undamped. A particle with several bonds swings faster than
+//! any of its pairs: the critical step of a body is smaller than the least of its pairs (down to
+//! 0.71 of it in a chain of equal spheres), and only an eigenvalue of the whole body is the limit.
 
 use super::stiffness::Stiffness;
 
@@ -12,7 +14,8 @@ pub struct Frequencies {
     pub axial: f64,
     /// Twist.
     pub torsion: f64,
-    /// Bending and shear together: the slower and the faster of their two modes, each in two planes.
+    /// Bending and shear together: the slower and the faster of their two modes, each in two
+    /// planes.
     pub bending: [f64; 2],
 }
 
@@ -28,10 +31,12 @@ impl Frequencies {
     }
 }
 
-/// Frequencies of two ends, from one over mass and one over moment of inertia: 0 for an end that is held.
+/// Frequencies of two ends, from one over mass and one over moment of inertia: 0 for an end that is
+/// held.
 ///
-/// Bending and shear: with the shear u and the bend phi of the bond as coordinates, the inverse masses are W_uu = 1/m + sum of l^2/I,
-/// W_phi = sum of 1/I, W_u,phi = l_a/I_a - l_b/I_b, and omega^2 are the eigenvalues of diag(k_s, k_ben) W.
+/// Bending and shear: with the shear u and the bend phi of the bond as coordinates, the inverse
+/// masses are W_uu = 1/m + sum of l^2/I, W_phi = sum of 1/I, W_u,phi = l_a/I_a - l_b/I_b, and
+/// omega^2 are the eigenvalues of diag(k_s, k_ben) W.
 pub fn frequencies(
     stiffness: &Stiffness,
     inverse_masses: [f64; 2],
@@ -49,7 +54,8 @@ pub fn frequencies(
     let product = stiffness.shear * stiffness.bending;
     let apart = (shear - bend).hypot(2.0 * product.sqrt() * coupling);
     let fast = 0.5 * (shear + bend + apart);
-    // The other root from the product of both, written without a difference: near the fast one nothing would be left of it.
+    // The other root from the product of both, written without a difference: near the fast one
+    // nothing would be left of it.
     let length = lever_a + lever_b;
     let determinant =
         product * (per_mass * per_inertia + length * length * per_inertia_a * per_inertia_b);

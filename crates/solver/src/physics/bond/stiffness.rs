@@ -1,13 +1,15 @@
 //! Stiffnesses of a bond in its four modes, and where along it shear acts, for five bond models.
 //!
-//! Sources: Chen et al. 2022, table 8 (parallel, Euler-Bernoulli, Timoshenko); MUSEN's elastic solid bond; Platzer 2022, eqs. 6-10 (shear-coefficient beam).
+//! Sources: Chen et al. 2022, table 8 (parallel, Euler-Bernoulli, Timoshenko); MUSEN's elastic
+//! solid bond; Platzer 2022, eqs. 6-10 (shear-coefficient beam).
 
 use std::f64::consts::PI;
 
 /// Which beam a bond is taken for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BondModel {
-    /// Parallel bond: shear stiffness is the normal stiffness over `kappa`, 2 (1 + nu) unless given. Shear acts halfway between the surfaces of the spheres.
+    /// Parallel bond: shear stiffness is the normal stiffness over `kappa`, 2 (1 + nu) unless
+    /// given. Shear acts halfway between the surfaces of the spheres.
     Parallel {
         /// Normal over shear stiffness.
         kappa: Option<f64>,
@@ -36,7 +38,8 @@ pub struct BondShape {
     pub end_radii_m: [f64; 2],
 }
 
-/// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point lies.
+/// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point
+/// lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stiffness<T = f64> {
     /// Along the bond, N/m.
@@ -72,7 +75,8 @@ pub fn stiffness(
     match model {
         BondModel::Parallel { kappa } => {
             let shear = normal / kappa.unwrap_or(2.0 * (1.0 + poisson_ratio));
-            // The longer lever first: what is left for the other is then exact, and both together are the length to the last bit.
+            // The longer lever first: what is left for the other is then exact, and both together
+            // are the length to the last bit.
             let longer = 0.5 * (length + (radius_a - radius_b).abs());
             let shorter = length - longer;
             Stiffness {

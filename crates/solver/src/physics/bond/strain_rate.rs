@@ -2,9 +2,11 @@
 //!
 //! Source: Platzer 2022, eqs. 20 and 21, after Zhou and Hao 2008.
 //!
-//! Printed eq. 20 lacks parentheses: 1 + 0.0225 (lg rate + 5.3333) is meant, which is 1 at 4.64e-6/s and meets the second branch at 0.1/s.
-//! The second branch is a parabola whose lowest point, 1.079 at 0.144/s, lies inside it: the factor falls a little above 0.1/s before it rises.
-//! It is left as printed. Printed eq. 21 takes the whole relative velocity, which gives a rate where the bond only turns; here it is the part along the bond.
+//! Printed eq. 20 lacks parentheses: 1 + 0.0225 (lg rate + 5.3333) is meant, which is 1 at
+//! 4.64e-6/s and meets the second branch at 0.1/s. The second branch is a parabola whose lowest
+//! point, 1.079 at 0.144/s, lies inside it: the factor falls a little above 0.1/s before it rises.
+//! It is left as printed. Printed eq. 21 takes the whole relative velocity, which gives a rate
+//! where the bond only turns; here it is the part along the bond.
 
 use nalgebra::Vector3;
 
@@ -15,10 +17,12 @@ const HIGHEST_1_S: f64 = 50.0;
 /// Where the second branch begins, /s.
 const BRANCH_1_S: f64 = 0.1;
 
-/// The thesis' setting of the rate below which nothing is strengthened, so that the small oscillations of a quasi-static test are not, /s.
+/// The thesis' setting of the rate below which nothing is strengthened, so that the small
+/// oscillations of a quasi-static test are not, /s.
 pub const THESIS_FROM_1_S: f64 = 1.1;
 
-/// Rate at which a bond along the unit vector `c` from a to b gets longer, in initial lengths per second.
+/// Rate at which a bond along the unit vector `c` from a to b gets longer, in initial lengths per
+/// second.
 #[inline(always)]
 pub fn elongation_rate(
     c: &Vector3<f64>,
@@ -29,8 +33,9 @@ pub fn elongation_rate(
     (b - a).dot(c) / initial_length_m
 }
 
-/// Dynamic over static strength at this rate of elongation: 1 while the bond gets shorter and below the rate `from_1_s`, where the factor
-/// jumps to its value (from 1 to 1.652 at the thesis' 1.1/s). Never below 1: the printed fit gives 0.999996 at its lower end.
+/// Dynamic over static strength at this rate of elongation: 1 while the bond gets shorter and below
+/// the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at the thesis' 1.1/s).
+/// Never below 1: the printed fit gives 0.999996 at its lower end.
 ///
 /// One logarithm. The factor is never below 1, so only a bond that would break without it needs it.
 #[inline(always)]

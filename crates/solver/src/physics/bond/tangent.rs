@@ -1,4 +1,5 @@
-//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the very formulas of the forces ([`bond_response`]), differentiated exactly.
+//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the
+//! very formulas of the forces ([`bond_response`]), differentiated exactly.
 
 use nalgebra::Vector3;
 
@@ -7,20 +8,24 @@ use super::total::{End, bond_response};
 use crate::physics::dual::Dual;
 use crate::physics::number::{Rotation, Vec3};
 
-/// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z of the first (3..6), then those of the second.
+/// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z
+/// of the first (3..6), then those of the second.
 pub const FREEDOMS: usize = 12;
 
-/// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns, rad. Its entries are what a small move or turn takes: minus the
-/// derivatives of what the bond exerts.
+/// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns,
+/// rad. Its entries are what a small move or turn takes: minus the derivatives of what the bond
+/// exerts.
 pub type BondTangent = [[f64; FREEDOMS]; FREEDOMS];
 
-/// Variables: where the second end stands from the first, the turns of the first and those of the second.
+/// Variables: where the second end stands from the first, the turns of the first and those of the
+/// second.
 type Number = Dual<9>;
 
 /// The tangent of a bond of the total formulation.
 ///
-/// Turns are rotation vectors in space that are applied after the present rotation, q <- exp(turn) q. Where a torque acts on an end, the tangent is not symmetric in the
-/// turns of that end: K - K^T = the cross product with the torque that the bond exerts there.
+/// Turns are rotation vectors in space that are applied after the present rotation, q <- exp(turn)
+/// q. Where a torque acts on an end, the tangent is not symmetric in the turns of that end: K - K^T
+/// = the cross product with the torque that the bond exerts there.
 pub fn bond_tangent(
     stiffness: &Stiffness,
     direction: &Vector3<f64>,
@@ -62,7 +67,8 @@ pub fn bond_tangent(
     tangent
 }
 
-/// How an end is turned, with the derivatives by a further turn: half of the turn times the present rotation. Variables from `first` on.
+/// How an end is turned, with the derivatives by a further turn: half of the turn times the present
+/// rotation. Variables from `first` on.
 fn turning(end: &End, first: usize) -> Rotation<Number> {
     let (v, w) = (end.turned.imag(), end.turned.w);
     let mut parts = [v.x, v.y, v.z, w].map(Number::constant);

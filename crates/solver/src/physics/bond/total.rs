@@ -1,13 +1,15 @@
-//! The total formulation: force and torques are the exact gradient of an energy of the present positions and orientations.
-//! There is no history, so nothing has to be rotated along, stored or can drift.
+//! The total formulation: force and torques are the exact gradient of an energy of the present
+//! positions and orientations. There is no history, so nothing has to be rotated along, stored or
+//! can drift.
 //!
-//! With c the unit vector from a to b, a_a and a_b the bond's initial direction carried by each particle, levers l_a + l_b = L0,
-//! s = l_a a_a + l_b a_b, w = c x s, e the direction of a_a + a_b, and phi the rotation of b relative to a:
+//! With c the unit vector from a to b, a_a and a_b the bond's initial direction carried by each
+//! particle, levers l_a + l_b = L0, s = l_a a_a + l_b a_b, w = c x s, e the direction of a_a + a_b,
+//! and phi the rotation of b relative to a:
 //!
 //! U = 1/2 k_n (L - L0)^2 + 1/2 k_s |w|^2 + 1/2 k_ben |phi|^2 + 1/2 (k_tor - k_ben) (phi . e)^2
 //!
-//! phi is twice the vector part of the relative quaternion: 2 sin(angle/2) along the axis. It needs no trigonometry and differs from the
-//! rotation vector in third order only.
+//! phi is twice the vector part of the relative quaternion: 2 sin(angle/2) along the axis. It needs
+//! no trigonometry and differs from the rotation vector in third order only.
 
 use super::BondLoad;
 use super::stiffness::Stiffness;
@@ -52,18 +54,21 @@ pub struct BondForces {
     pub torques: [Vector3<f64>; 2],
     /// Energy stored, J.
     pub energy: BondEnergy,
-    /// What it carries, mode by mode: each stiffness times its deformation, so half of load times deformation is the energy of the mode.
+    /// What it carries, mode by mode: each stiffness times its deformation, so half of load times
+    /// deformation is the energy of the mode.
     pub load: BondLoad,
 }
 
-/// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in [`bond_forces`], so that a bond at rest gives no force to the last bit.
+/// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in
+/// [`bond_forces`], so that a bond at rest gives no force to the last bit.
 pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {
     let apart = Vec3(apart.x, apart.y, apart.z);
     let Vec3(x, y, z) = apart * apart.square().sqrt().inverse();
     Vector3::new(x, y, z)
 }
 
-/// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit vector).
+/// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit
+/// vector).
 pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
     let triple = |v: &Vector3<f64>| Vec3(v.x, v.y, v.z);
     let vector = |t: Vec3<f64>| Vector3::new(t.0, t.1, t.2);
@@ -91,10 +96,11 @@ pub struct BondResponse<T> {
     pub load: BondLoad<T>,
 }
 
-/// Forces of bonds whose initial directions were `direction`, whose second ends now stand `apart` from the first, m, and whose ends are `turned`
-/// since the start.
+/// Forces of bonds whose initial directions were `direction`, whose second ends now stand `apart`
+/// from the first, m, and whose ends are `turned` since the start.
 ///
-/// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and load the caller does not read is not computed.
+/// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and
+/// load the caller does not read is not computed.
 #[inline(always)]
 pub fn bond_response<T: Number>(
     stiffness: &Stiffness<T>,
@@ -109,7 +115,8 @@ pub fn bond_response<T: Number>(
     let initial = lever_a + lever_b;
     let elongation = length - initial;
 
-    // s = L0 c + offset: nothing cancels in an offset that is small, and at rest it is 0 to the last bit.
+    // s = L0 c + offset: nothing cancels in an offset that is small, and at rest it is 0 to the
+    // last bit.
     let [turned_a, turned_b] = turned;
     let (direction_a, direction_b) = (turned_a.of(direction), turned_b.of(direction));
     let offset = (direction_a - c) * lever_a + (direction_b - c) * lever_b;
@@ -117,7 +124,8 @@ pub fn bond_response<T: Number>(
     let along = initial + offset_along;
     let shear_displacement = offset - c * offset_along;
 
-    // A quaternion and its negative are the same rotation: the one of less than half a turn is meant.
+    // A quaternion and its negative are the same rotation: the one of less than half a turn is
+    // meant.
     let Rotation(half_phi, cosine) = turned_b.relative_to(turned_a);
     let sign = cosine.sign();
     let (half_phi, cosine) = (half_phi * sign, cosine * sign);
@@ -129,7 +137,8 @@ pub fn bond_response<T: Number>(
     let bend = phi - twist;
     let excess = stiffness.torsion - stiffness.bending;
 
-    // Gradients of the energy with respect to phi and e; a change of e is a change of the sum, across it.
+    // Gradients of the energy with respect to phi and e; a change of e is a change of the sum,
+    // across it.
     let by_phi = phi * stiffness.bending + twist * excess;
     let by_sum = bend * (excess * twist_per_sum);
     let relative_torque = by_phi * cosine;

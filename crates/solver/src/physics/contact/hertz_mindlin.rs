@@ -1,11 +1,12 @@
 //! The law of Hertz and Mindlin.
 //!
-//! With 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b, 1/G* = (2 - nu_a)/G_a + (2 - nu_b)/G_b, 1/R* = 1/R_a + 1/R_b:
+//! With 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b, 1/G* = (2 - nu_a)/G_a + (2 - nu_b)/G_b, 1/R* =
+//! 1/R_a + 1/R_b:
 //!
 //! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz);
 //! - k_t = 8 G* sqrt(R* d) (Mindlin 1949, no slip);
-//! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al. 1992), and the [ratio zeta](super::restitution)
-//!   that gives the wanted restitution.
+//! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al.
+//!   1992), and the [ratio zeta](super::restitution) that gives the wanted restitution.
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{Elastic, PairInput, PairParameters};
@@ -46,7 +47,8 @@ impl HertzMindlin {
 }
 
 impl<T: Number> HertzMindlin<T> {
-    /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the root of R* times the overlap.
+    /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the root of R*
+    /// times the overlap.
     #[inline(always)]
     pub fn normal_n_m(&self, contact_radius_m: T) -> T {
         self.young_modulus_pa.scale(2.0) * contact_radius_m

@@ -2,10 +2,12 @@
 
 use crate::physics::number::{Number, Vec3};
 
-/// A sphere that may touch: one of its own, or one of a clump, which then has the clump's mass and moment of inertia.
+/// A sphere that may touch: one of its own, or one of a clump, which then has the clump's mass and
+/// moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSphere<T = f64> {
-    /// Velocity of the centre halfway through the step, m/s: what it moved in the step over the time step.
+    /// Velocity of the centre halfway through the step, m/s: what it moved in the step over the
+    /// time step.
     pub velocity_m_s: Vec3<T>,
     /// Spin halfway through the step, rad/s.
     pub spin_rad_s: Vec3<T>,
@@ -41,7 +43,8 @@ pub struct ContactKinematics<T = f64> {
     pub middle: Vec3<T>,
     /// Overlap, m; where it is not above 0 the ends are apart.
     pub overlap_m: T,
-    /// From each centre to the contact point, m: radius less half the overlap, 0 for a wall. Together they are the distance of the centres, so torques balance.
+    /// From each centre to the contact point, m: radius less half the overlap, 0 for a wall.
+    /// Together they are the distance of the centres, so torques balance.
     pub levers_m: [T; 2],
     /// Velocity of b's surface against a's at the contact point, halfway through the step, m/s.
     pub velocity_m_s: Vec3<T>,
@@ -53,11 +56,13 @@ pub struct ContactKinematics<T = f64> {
     pub effective_radius_m: T,
     /// m_a m_b / (m_a + m_b), kg; at a wall the sphere's mass. 0 between two held ends.
     pub effective_mass_kg: T,
-    /// J_a J_b / (J_a + J_b) with J = I + m R^2, kg m^2: inertia against rolling (Ai et al. 2011). 0 between two held ends.
+    /// J_a J_b / (J_a + J_b) with J = I + m R^2, kg m^2: inertia against rolling (Ai et al. 2011).
+    /// 0 between two held ends.
     pub effective_rolling_inertia_kg_m2: T,
 }
 
-/// How two spheres touch whose centres are `apart_m` (from a to b) after a step of `dt`, s. The centres must not coincide.
+/// How two spheres touch whose centres are `apart_m` (from a to b) after a step of `dt`, s. The
+/// centres must not coincide.
 #[inline(always)]
 pub fn contact_kinematics<T: Number>(
     apart_m: Vec3<T>,
@@ -118,7 +123,8 @@ pub fn wall_contact_kinematics<T: Number>(
     }
 }
 
-/// Velocity of b's surface against a's at the contact point, m/s, of ends that have these velocities and spins (a first), where the touch is now.
+/// Velocity of b's surface against a's at the contact point, m/s, of ends that have these
+/// velocities and spins (a first), where the touch is now.
 ///
 /// For a wall: the velocity of its surface there.
 #[inline(always)]
@@ -131,7 +137,8 @@ pub fn relative_velocity<T: Number>(
     velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
 }
 
-/// Torques on a and b about their centres, N m, of a force on b at the contact point, N, and a moment on b, N m.
+/// Torques on a and b about their centres, N m, of a force on b at the contact point, N, and a
+/// moment on b, N m.
 ///
 /// For a wall: about the contact point.
 #[inline(always)]

@@ -1,10 +1,12 @@
 //! The linear law: springs and dashpots of constant stiffness.
 //!
-//! F_n = k_n d, k_t a constant share of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n, across it with k_t, and the
-//! [ratio zeta](super::restitution) that gives the wanted restitution at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
+//! F_n = k_n d, k_t a constant share of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n,
+//! across it with k_t, and the [ratio zeta](super::restitution) that gives the wanted restitution
+//! at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
 //!
-//! The dashpot pulls from the first moment on with all it has, while a step is one kick around its end. So that the loss does not hang on the moment
-//! within a step at which the ends meet, the first kick has the share of the dashpot that is due since then.
+//! The dashpot pulls from the first moment on with all it has, while a step is one kick around its
+//! end. So that the loss does not hang on the moment within a step at which the ends meet, the
+//! first kick has the share of the dashpot that is due since then.
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{PairInput, PairParameters};
@@ -72,8 +74,8 @@ impl<T: Number> NormalLaw<T> for Linear<T> {
     }
 }
 
-/// Fraction of a kick that is due if the ends met in the step of `dt`, s, before its middle: since then, and half a step after it. 1 where they touched a step
-/// before, or part.
+/// Fraction of a kick that is due if the ends met in the step of `dt`, s, before its middle: since
+/// then, and half a step after it. 1 where they touched a step before, or part.
 #[inline(always)]
 fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt: f64) -> T {
     let one = overlap_before_m.zero().plus(1.0);

@@ -16,16 +16,19 @@ pub struct Elastic {
 pub enum AttractiveDamping {
     /// It is cut off at 0.
     None,
-    /// It pulls until the overlap is 0, as in Tsuji et al. 1992: for comparison with programs that do so.
+    /// It pulls until the overlap is 0, as in Tsuji et al. 1992: for comparison with programs that
+    /// do so.
     AsDamped,
 }
 
 /// What the tangential spring keeps while the normal load changes its stiffness.
 ///
-/// Mindlin and Deresiewicz 1953 is a whole theory of partial slip; these are the simple laws that programs use instead.
+/// Mindlin and Deresiewicz 1953 is a whole theory of partial slip; these are the simple laws that
+/// programs use instead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TangentialUnloading {
-    /// Its force while the load rises and its elongation while the load falls (Thornton et al. 2013): no cycle of load and displacement creates energy.
+    /// Its force while the load rises and its elongation while the load falls (Thornton et al.
+    /// 2013): no cycle of load and displacement creates energy.
     LesserForce,
     /// Its force: for comparison. A cycle may create energy.
     Force,
@@ -40,7 +43,8 @@ pub struct PairInput {
     pub restitution: f64,
     /// Coefficient of friction.
     pub friction: f64,
-    /// Tangential damping over that of Tsuji et al. 1992, who use the ratio of the normal direction: 1 as there, 0 for none.
+    /// Tangential damping over that of Tsuji et al. 1992, who use the ratio of the normal
+    /// direction: 1 as there, 0 for none.
     pub tangential_damping: f64,
     /// Whether damping may pull.
     pub pull: AttractiveDamping,

@@ -1,11 +1,13 @@
-//! Relaxation after breakage: two particles of one parent that cease to be of one cluster may overlap without ever having touched.
+//! Relaxation after breakage: two particles of one parent that cease to be of one cluster may
+//! overlap without ever having touched.
 //!
-//! Source: Platzer 2022, section 4.3 (algorithm 4 with its comparison the right way round). The overlap d0 they part with is the origin of their contact law: force law(d - d0) for
-//! d > d0. For d < d0 there is no force and d0 becomes d; below a least overlap the pair is ordinary again. So cut faces can press on each other but
-//! never fly apart.
+//! Source: Platzer 2022, section 4.3 (algorithm 4 with its comparison the right way round). The
+//! overlap d0 they part with is the origin of their contact law: force law(d - d0) for d > d0. For
+//! d < d0 there is no force and d0 becomes d; below a least overlap the pair is ordinary again. So
+//! cut faces can press on each other but never fly apart.
 //!
-//! A least overlap above 0 makes a force jump from 0 to law(least) when the pair becomes ordinary, which gives it that little energy; with 0 nothing
-//! is ever created.
+//! A least overlap above 0 makes a force jump from 0 to law(least) when the pair becomes ordinary,
+//! which gives it that little energy; with 0 nothing is ever created.
 
 use crate::physics::number::Number;
 
@@ -18,7 +20,8 @@ pub struct Relaxed<T = f64> {
     pub origin_m: T,
 }
 
-/// Overlap for the contact law of a pair that overlaps by `overlap_m`, whose origin was `origin_m` and which is ordinary below `least_m` (the setting times R*), m.
+/// Overlap for the contact law of a pair that overlaps by `overlap_m`, whose origin was `origin_m`
+/// and which is ordinary below `least_m` (the setting times R*), m.
 #[inline(always)]
 pub fn relaxed<T: Number>(overlap_m: T, origin_m: T, least_m: T) -> Relaxed<T> {
     let lower = overlap_m.minimum(origin_m);

@@ -2,12 +2,16 @@
 //!
 //! Rolling w_t is the part of the relative spin across the normal; the moment is mu_r R* N at most.
 //!
-//! - Constant moment (type A of Ai et al. 2011): against w_t, whatever its size. Slow rolling meets a viscous moment instead, which would take a
-//!   [small share](ConstantMoment::SHARE) of the rolling in a step: so a body at rest neither jitters nor is turned back. It does not hold either: a constant torque
-//!   below the limit makes it creep, more slowly as the time step is smaller.
-//! - Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with k_n the tangent normal stiffness, slipping at the
-//!   limit; c_r = 2 eta sqrt(J k_r) with J the reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts in the limit,
-//!   so that it fades out instead of jumping to 0 when the spring begins to slip; and the spring is treated as the tangential one when the load changes.
+//! - Constant moment (type A of Ai et al. 2011): against w_t, whatever its size. Slow rolling meets
+//!   a viscous moment instead, which would take a [small share](ConstantMoment::SHARE) of the
+//!   rolling in a step: so a body at rest neither jitters nor is turned back. It does not hold
+//!   either: a constant torque below the limit makes it creep, more slowly as the time step is
+//!   smaller. -
+//! Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with
+//!   k_n the tangent normal stiffness, slipping at the limit; c_r = 2 eta sqrt(J k_r) with J the
+//!   reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts
+//!   in the limit, so that it fades out instead of jumping to 0 when the spring begins to slip; and
+//!   the spring is treated as the tangential one when the load changes.
 
 use super::NormalResponse;
 use super::kinematics::{ContactKinematics, FrameRotation};
@@ -19,7 +23,8 @@ pub trait RollingFriction<T: Number> {
     /// Whether there is anything to remember: else springs and damping are nothing.
     const REMEMBERS: bool;
 
-    /// The spring after a step that began with the elongation `before`, in the axes of that moment, pressed by the normal force `pressed`, N.
+    /// The spring after a step that began with the elongation `before`, in the axes of that moment,
+    /// pressed by the normal force `pressed`, N.
     fn roll(
         &self,
         normal_response: &NormalResponse<T>,
@@ -59,8 +64,9 @@ pub struct ElasticPlastic<T = f64> {
 }
 
 impl ConstantMoment {
-    /// Slow rolling loses this share of itself in a step, reckoned with the inertia about the contact point. That is 3.5 times a sphere's inertia
-    /// about its centre: a dozen contacts with equal spheres, each with half of it, still take no more than all of its spin.
+    /// Slow rolling loses this share of itself in a step, reckoned with the inertia about the
+    /// contact point. That is 3.5 times a sphere's inertia about its centre: a dozen contacts with
+    /// equal spheres, each with half of it, still take no more than all of its spin.
     pub const SHARE: f64 = 1.0 / 21.0;
 }
 

@@ -1,9 +1,11 @@
-//! A spring that slides: tangential friction and elastic-plastic rolling friction are the same thing with other units.
+//! A spring that slides: tangential friction and elastic-plastic rolling friction are the same
+//! thing with other units.
 
 use super::kinematics::FrameRotation;
 use crate::physics::number::{Number, Vec3};
 
-/// A spring after a step, in the axes of the end of the step. Forces are those that the spring and its damper hold against the motion.
+/// A spring after a step, in the axes of the end of the step. Forces are those that the spring and
+/// its damper hold against the motion.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentialStep<T> {
     /// Elongation.
@@ -18,12 +20,15 @@ pub struct TangentialStep<T> {
     pub lost_j: T,
 }
 
-/// A spring that was stretched by `before` and has `moved` by this much, while its stiffness changed. `before` is in the axes of the beginning of the
-/// step, `moved` and `damping` are in those of its middle.
+/// A spring that was stretched by `before` and has `moved` by this much, while its stiffness
+/// changed. `before` is in the axes of the beginning of the step, `moved` and `damping` are in
+/// those of its middle.
 ///
-/// `kept` is the share of the old elongation that is left: with the old stiffness over the new one, the force stays as it was; with 1, the elongation.
-/// The motion adds its part halfway through that change. The spring is cut back where its force is above `limit`, and of the damper only so much
-/// acts that both together stay below it: a sliding contact is not damped, and there is no jump when it begins to slide.
+/// `kept` is the share of the old elongation that is left: with the old stiffness over the new one,
+/// the force stays as it was; with 1, the elongation. The motion adds its part halfway through that
+/// change. The spring is cut back where its force is above `limit`, and of the damper only so much
+/// acts that both together stay below it: a sliding contact is not damped, and there is no jump
+/// when it begins to slide.
 #[inline(always)]
 pub fn coulomb_return_map<T: Number>(
     carry: &FrameRotation<T>,

@@ -12,7 +12,8 @@ use crate::state::State;
 
 /// A surface that is larger than all bodies together by this factor makes one ask for its unit.
 const TOO_LARGE: f64 = 300.0;
-/// And so does one that is smaller than they are by this factor, if it is smaller than so many of their spheres: a pin or a tooth may be.
+/// And so does one that is smaller than they are by this factor, if it is smaller than so many of
+/// their spheres: a pin or a tooth may be.
 const TOO_SMALL: f64 = 50.0;
 const OF_A_PIN: f64 = 3.0;
 

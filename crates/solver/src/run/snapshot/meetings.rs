@@ -17,7 +17,8 @@ pub(super) struct Meetings {
     /// Cluster of each particle, all clusters, bonds broken since the last search.
     clusters: Option<(Vec<u32>, Vec<Cluster>, Vec<u32>)>,
     fastest_m_s: f64,
-    /// All listed pairs, in order, and what they remember: one that has come to touch in the last step remembers nothing yet, but it was listed.
+    /// All listed pairs, in order, and what they remember: one that has come to touch in the last
+    /// step remembers nothing yet, but it was listed.
     contacts: Vec<([u32; 2], ContactHistory)>,
     /// Energy that friction and damping took, booked at each particle, J.
     lost_j: Vec<[f64; 2]>,

@@ -1,4 +1,5 @@
-//! What a checkpoint holds of a scene in which bodies come, go, and become others: all particles, bonds, clumps and bodies, as no plan knows them.
+//! What a checkpoint holds of a scene in which bodies come, go, and become others: all particles,
+//! bonds, clumps and bodies, as no plan knows them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -81,7 +82,8 @@ impl Population {
         })
     }
 
-    /// Puts it into a state that has been planned from the same scene. Contacts and clusters are put back by others, after this.
+    /// Puts it into a state that has been planned from the same scene. Contacts and clusters are
+    /// put back by others, after this.
     ///
     /// # Errors
     /// The scene has other templates, inlets or outlets.

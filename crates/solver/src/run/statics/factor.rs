@@ -1,4 +1,5 @@
-//! Linear systems with the tangent, solved by sparse factors with an order that keeps them small: Cholesky's where it is symmetric, Gauss' elsewhere.
+//! Linear systems with the tangent, solved by sparse factors with an order that keeps them small:
+//! Cholesky's where it is symmetric, Gauss' elsewhere.
 //!
 //! One thread works, so the bits do not depend on their number.
 
@@ -16,16 +17,19 @@ use super::matrix::Matrix;
 /// Factors of matrices of one pattern.
 #[derive(Debug)]
 pub enum Factor {
-    /// Of symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and its entries.
+    /// Of symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and
+    /// its entries.
     Cholesky(SymbolicCholesky<usize>, Vec<f64>),
-    /// Of others, L U with partial pivoting, by an approximate minimum degree order of the columns. The patterns, and the factors once they are there.
+    /// Of others, L U with partial pivoting, by an approximate minimum degree order of the columns.
+    /// The patterns, and the factors once they are there.
     Gauss(SymbolicLu<usize>, Option<Lu<usize, f64>>),
 }
 
 /// Why there are no factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoFactor {
-    /// A pivot is zero, negative or not a number: the matrix is not positive definite; or of one that is not symmetric, singular.
+    /// A pivot is zero, negative or not a number: the matrix is not positive definite; or of one
+    /// that is not symmetric, singular.
     Pivot,
     /// They do not fit into memory.
     ContactHistory,
@@ -100,7 +104,8 @@ impl Factor {
         }
     }
 
-    /// Replaces the right side of the system by its solution, with the factors computed last; without any it stays as it is.
+    /// Replaces the right side of the system by its solution, with the factors computed last;
+    /// without any it stays as it is.
     pub fn solve(&self, side: &mut [f64]) {
         let rows = side.len();
         let side = MatMut::from_column_major_slice_mut(side, rows, 1);

@@ -1,4 +1,5 @@
-//! Which freedoms of the particles are unknown, and where supports have those that are held at the end.
+//! Which freedoms of the particles are unknown, and where supports have those that are held at the
+//! end.
 
 use dem_io::scene::{Factor, Hold};
 
@@ -11,11 +12,13 @@ pub const HELD: usize = usize::MAX;
 /// The freedoms of all particles: moves along x, y, z, then turns about x, y, z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Freedoms {
-    /// For each particle the numbers of its freedoms among the unknowns, rising; or [`HELD`]. Length 6 each.
+    /// For each particle the numbers of its freedoms among the unknowns, rising; or [`HELD`].
+    /// Length 6 each.
     pub unknown: Vec<[usize; 6]>,
     /// Number of unknowns.
     pub count: usize,
-    /// Particles that supports move or turn, and by how much from the start to the end: m, and rotation vectors in rad. A freedom that is free or fixed has 0.
+    /// Particles that supports move or turn, and by how much from the start to the end: m, and
+    /// rotation vectors in rad. A freedom that is free or fixed has 0.
     pub moved: Vec<(u32, [f64; 6])>,
 }
 
@@ -64,7 +67,8 @@ impl Freedoms {
         6 * self.unknown.len() - self.count
     }
 
-    /// The unknowns of all particles, for each with its particle and which of the six freedoms it is.
+    /// The unknowns of all particles, for each with its particle and which of the six freedoms it
+    /// is.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> {
         let six = |(i, of): (usize, &[usize; 6])| {
             let of = *of;
@@ -73,8 +77,9 @@ impl Freedoms {
         self.unknown.iter().enumerate().flat_map(six)
     }
 
-    /// Whether a torque may act on a particle at rest that is free to turn in more ways than one: then the tangent is not symmetric, even in equilibrium. The torque is that of
-    /// a load, or of a support that holds one of its three turns.
+    /// Whether a torque may act on a particle at rest that is free to turn in more ways than one:
+    /// then the tangent is not symmetric, even in equilibrium. The torque is that of a load, or of
+    /// a support that holds one of its three turns.
     pub fn has_free_torques(&self, state: &State) -> bool {
         let free_turns = |i: usize| self.unknown[i][3..].iter().filter(|n| **n != HELD).count();
         let held_once = || (0..self.unknown.len()).any(|i| free_turns(i) == 2);

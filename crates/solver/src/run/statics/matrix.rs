@@ -1,4 +1,5 @@
-//! The tangent of a whole scene as a sparse matrix, by columns: what its bonds answer to small moves and turns of the unknowns.
+//! The tangent of a whole scene as a sparse matrix, by columns: what its bonds answer to small
+//! moves and turns of the unknowns.
 
 use crate::physics::bond::tangent::{BondTangent, FREEDOMS};
 use crate::state::State;
@@ -21,7 +22,8 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// The pattern of a state: every particle with itself and with those that bonds join it to. All entries are 0.
+    /// The pattern of a state: every particle with itself and with those that bonds join it to. All
+    /// entries are 0.
     pub fn pattern(state: &State, freedoms: &Freedoms, symmetric: bool) -> Self {
         let mut neighbours: Vec<Vec<u32>> =
             (0..state.particles.len() as u32).map(|i| vec![i]).collect();
@@ -92,7 +94,8 @@ impl Matrix {
     }
 }
 
-/// What acts on the unknowns because supports move by these ways, m and rad, before the others follow: minus the tangent times the ways, N and N m.
+/// What acts on the unknowns because supports move by these ways, m and rad, before the others
+/// follow: minus the tangent times the ways, N and N m.
 pub fn pulled_by_supports(
     bonds: &Bonds,
     freedoms: &Freedoms,

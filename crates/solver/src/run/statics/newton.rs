@@ -1,15 +1,21 @@
 //! Newton's method to an equilibrium, with the exact tangent of the bonds' energy.
 //!
-//! The residual is what acts on the freedoms that are not held: bonds, loads and gravity. A step solves for the moves and turns that take it to 0. Supports that move take
-//! their first step with the tangent as well, so that the body follows them as a whole.
+//! The residual is what acts on the freedoms that are not held: bonds, loads and gravity. A step
+//! solves for the moves and turns that take it to 0. Supports that move take their first step with
+//! the tangent as well, so that the body follows them as a whole.
 //!
-//! The whole load is tried at once. Where a step would turn a particle far, or the steps do not come to an end, half of it is, and so on from there (load stepping): small turns lead
-//! to the equilibrium that the body comes to as the load rises. There is no line search on the energy: a slender body that bends is first stretched by the square of its turns, which costs
-//! much energy and is gone a step later. A search that forbids it takes fifty times as many steps.
+//! The whole load is tried at once. Where a step would turn a particle far, or the steps do not
+//! come to an end, half of it is, and so on from there (load stepping): small turns lead to the
+//! equilibrium that the body comes to as the load rises. There is no line search on the energy: a
+//! slender body that bends is first stretched by the square of its turns, which costs much energy
+//! and is gone a step later. A search that forbids it takes fifty times as many steps.
 //!
-//! Off equilibrium the tangent is not symmetric: where a torque acts on a particle, by the cross product with it. In equilibrium these torques are those of loads and supports.
-//! Where none can be (see [`Freedoms::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky: exact at the solution, so that the convergence is quadratic, and a
-//! pivot that is not positive says that the equilibrium is not stable. Elsewhere the tangent itself is factored, L U, and stability is looked at in the end.
+//! Off equilibrium the tangent is not symmetric: where a torque acts on a particle, by the cross
+//! product with it. In equilibrium these torques are those of loads and supports. Where none can be
+//! (see [`Freedoms::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky:
+//! exact at the solution, so that the convergence is quadratic, and a pivot that is not positive
+//! says that the equilibrium is not stable. Elsewhere the tangent itself is factored, L U, and
+//! stability is looked at in the end.
 
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::loads::add_loads;
@@ -29,7 +35,8 @@ const STEPS: usize = 20;
 const TURN: f64 = 0.5;
 /// Smallest load step, as a share of all loads and displacements.
 const SMALLEST: f64 = 1.0 / 1024.0;
-/// Residual over the largest bond force at which factors are good for the equilibrium itself: its stability is judged by them.
+/// Residual over the largest bond force at which factors are good for the equilibrium itself: its
+/// stability is judged by them.
 const NEAR: f64 = 1e-4;
 /// The same from which on factors that are near serve for further steps.
 const NEARER: f64 = 1e-6;
@@ -48,13 +55,15 @@ pub struct Equilibrium {
     pub newton_steps: usize,
     /// Load steps that were taken; 1: all at once.
     pub load_steps: usize,
-    /// Largest residual over the largest bond force before each step of the last load step and after its last one: 1 where the bonds carried nothing yet.
+    /// Largest residual over the largest bond force before each step of the last load step and
+    /// after its last one: 1 where the bonds carried nothing yet.
     pub residuals: Vec<f64>,
     /// The largest residual that is left, N; that of a torque is over the radius of its particle.
     pub residual_n: f64,
     /// The largest that a bond carries, N; moments are over its radius.
     pub bond_force_n: f64,
-    /// Whether small moves from the equilibrium need work, all of them. Where torques act it may be false though the body does not move away.
+    /// Whether small moves from the equilibrium need work, all of them. Where torques act it may be
+    /// false though the body does not move away.
     pub stable: bool,
 }
 
@@ -105,13 +114,15 @@ struct Search<'a> {
     bond_force_n: f64,
 }
 
-/// Brings a state that stands at its start into the equilibrium under what loads, gravity and supports are at `end_s`: its poses are changed, and its wrenches are those of the
-/// bonds. `goes_on` is asked before every step, with how far it has come in 0..1.
+/// Brings a state that stands at its start into the equilibrium under what loads, gravity and
+/// supports are at `end_s`: its poses are changed, and its wrenches are those of the bonds.
+/// `goes_on` is asked before every step, with how far it has come in 0..1.
 ///
 /// Every piece of the bodies has to be held by supports, and all bonds be of the total formulation.
 ///
 /// # Errors
-/// There is none that is stable, it is not found, or it is told to stop. The poses are then those of the share that was reached.
+/// There is none that is stable, it is not found, or it is told to stop. The poses are then those
+/// of the share that was reached.
 pub fn equilibrium(
     state: &mut State,
     end_s: f64,
@@ -182,7 +193,8 @@ impl Search<'_> {
             .map(|(particle, way)| (*particle, way.map(|w| (to - from) * w)))
             .collect();
         let mut pulls = !ways.is_empty();
-        // The residual before the last step, whether the factors are near the equilibrium, and whether that step was theirs alone.
+        // The residual before the last step, whether the factors are near the equilibrium, and
+        // whether that step was theirs alone.
         let (mut before_n, mut is_near, mut is_fresh) = (f64::INFINITY, false, false);
         let mut poses = self.state.particles.poses.clone();
         self.residuals.clear();

@@ -15,11 +15,13 @@ pub struct Outlook {
     pub unknowns: usize,
     /// Freedoms that supports hold.
     pub held: usize,
-    /// Whether the tangent is taken as symmetric: no torque acts on particles that are free to turn in more ways than one.
+    /// Whether the tangent is taken as symmetric: no torque acts on particles that are free to turn
+    /// in more ways than one.
     pub symmetric: bool,
     /// Entries of its factor. None: they are not known before it is there.
     pub factor_entries: Option<usize>,
-    /// Largest memory of matrix and factor, bytes; of a tangent that is not symmetric that of the matrix alone.
+    /// Largest memory of matrix and factor, bytes; of a tangent that is not symmetric that of the
+    /// matrix alone.
     pub memory_bytes: usize,
 }
 

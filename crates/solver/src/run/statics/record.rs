@@ -112,7 +112,8 @@ impl AtRest<'_> {
         }
     }
 
-    /// Writes one frame, one row of the time series with what was `measured`, no events, and the summary.
+    /// Writes one frame, one row of the time series with what was `measured`, no events, and the
+    /// summary.
     ///
     /// # Errors
     /// Those of the files.

@@ -14,7 +14,8 @@ pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
     a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
 }
 
-/// Elastic energy of all contacts, J. Summed by particles: near pairs that do not touch, which a resumed run may list others of, do not change its last bit.
+/// Elastic energy of all contacts, J. Summed by particles: near pairs that do not touch, which a
+/// resumed run may list others of, do not change its last bit.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
     ordered_sum(particles.len(), |i| {
         let first = contacts.pairs.partition_point(|&[a, _]| (a as usize) < i);
@@ -88,7 +89,8 @@ pub(in crate::stages) fn stored_force_n(
         + vector(history.damping)
 }
 
-/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers, J.
+/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers,
+/// J.
 pub(in crate::stages) fn stored_energy_j(
     law: &impl NormalLaw<f64>,
     rolling: &Rolling,

@@ -22,7 +22,8 @@ pub struct Fragment {
     pub centre_m: [f64; 3],
     /// Of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],
-    /// Of the rigid body with the same angular momentum about the centre, rad/s; the spin of a single sphere. Length 3.
+    /// Of the rigid body with the same angular momentum about the centre, rad/s; the spin of a
+    /// single sphere. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
     /// Angular momentum about the centre of mass, spins included, kg m2/s. Length 3.
     pub angular_momentum_kg_m2_s: [f64; 3],
@@ -34,8 +35,8 @@ pub struct Fragment {
     pub extent_m: f64,
 }
 
-/// All clusters that are whole, in the order of their numbers. `now`: motions of particles and clumps for the moment of the poses, if others than those that
-/// they have.
+/// All clusters that are whole, in the order of their numbers. `now`: motions of particles and
+/// clumps for the moment of the poses, if others than those that they have.
 pub fn fragments(
     clusters: &Clusters,
     particles: &Particles,
@@ -161,7 +162,8 @@ pub struct Passing {
     pub mass_fraction: f64,
 }
 
-/// The cumulative size distribution by mass: one point for each size that there is, from the smallest, up to a mass fraction of 1.
+/// The cumulative size distribution by mass: one point for each size that there is, from the
+/// smallest, up to a mass fraction of 1.
 pub fn size_distribution(fragments: &[Fragment]) -> Vec<Passing> {
     let mut sorted: Vec<&Fragment> = fragments.iter().collect();
     sorted.sort_by(|a, b| a.size_m.total_cmp(&b.size_m));

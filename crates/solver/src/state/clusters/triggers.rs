@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// When clusters are searched: every so many steps, if enough bonds have broken by then, or if any has and it is time to look anyway.
+/// When clusters are searched: every so many steps, if enough bonds have broken by then, or if any
+/// has and it is time to look anyway.
 ///
-/// The triggers that the thesis names are settings of these numbers: see the functions that make them.
+/// The triggers that the thesis names are settings of these numbers: see the functions that make
+/// them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Triggers {
     /// Steps from one question to the next; 0 is as 1.
@@ -38,7 +40,8 @@ impl Triggers {
         Self::combined(interval, 0, 0)
     }
 
-    /// The thesis' fourth: every so many steps if more than so many bonds have broken, and at every so manieth of these times if any has.
+    /// The thesis' fourth: every so many steps if more than so many bonds have broken, and at every
+    /// so manieth of these times if any has.
     pub fn combined(interval: u64, broken: u64, force_every: u64) -> Self {
         Self {
             interval,

@@ -16,7 +16,8 @@ const HALO_OPACITY: f64 = 0.85;
 /// How often corners are cut: three times is smooth.
 const CUTS: usize = 3;
 
-/// Width in units, and strokes: points of two digits each, from the left and from the top. Corners are rounded, unless a point stands twice.
+/// Width in units, and strokes: points of two digits each, from the left and from the top. Corners
+/// are rounded, unless a point stands twice.
 const GLYPHS: [(char, usize, &str); 28] = [
     ('0', 4, "20 40 42 46 48 28 08 06 02 00 20"),
     ('1', 2, "02 20 20 28"),

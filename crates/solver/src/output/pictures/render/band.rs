@@ -6,7 +6,8 @@ use super::{Face, Line, Scene};
 /// Rows of pixels in a band.
 pub(super) const ROWS: usize = 16;
 
-/// How much of the sky a wall sees is found in every so many pixels both ways, and between them by their distance.
+/// How much of the sky a wall sees is found in every so many pixels both ways, and between them by
+/// their distance.
 const STEP: usize = 4;
 /// Rows of such places in a band.
 const STEPS: usize = ROWS / STEP + 1;

@@ -1,6 +1,7 @@
 //! What the lamp and the sky see: depth maps, each along one direction.
 //!
-//! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the wall begins, which is fainter and falls on walls only.
+//! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the
+//! wall begins, which is fainter and falls on walls only.
 
 use crate::output::pictures::vector::dot_f32 as dot;
 use rayon::prelude::*;
@@ -10,7 +11,8 @@ use super::{Body, range};
 use crate::output::pictures::camera::Camera;
 use crate::output::pictures::vector::minus;
 
-/// Towards the lamp in view space, where y points downwards: from the upper left, a little from the front. Any length.
+/// Towards the lamp in view space, where y points downwards: from the upper left, a little from the
+/// front. Any length.
 const LAMP: [f32; 3] = [-0.42, -0.78, 0.46];
 /// Towards the middle of the sky. Any length.
 const ZENITH: [f32; 3] = [-0.08, -0.76, 0.64];
@@ -141,7 +143,8 @@ fn directions(zenith: [f32; 3]) -> [[f32; 3]; SKY] {
     })
 }
 
-/// How near to a light the nearest ball and the nearest wall are, for each texel of a grid across its direction.
+/// How near to a light the nearest ball and the nearest wall are, for each texel of a grid across
+/// its direction.
 struct Map {
     towards: [f32; 3],
     across: [[f32; 3]; 2],
@@ -158,7 +161,8 @@ struct Map {
 }
 
 impl Map {
-    /// The map of all these balls and points: at least so large texels, px, and at most so many along a side.
+    /// The map of all these balls and points: at least so large texels, px, and at most so many
+    /// along a side.
     fn new(
         towards: [f32; 3],
         bodies: &[&Body],

@@ -1,4 +1,5 @@
-//! How bright a point of a surface is. Colours are proportional to light: the square of what is stored in a picture.
+//! How bright a point of a surface is. Colours are proportional to light: the square of what is
+//! stored in a picture.
 
 use super::{Body, Face, Scene};
 use crate::output::pictures::vector::dot_f32 as dot;
