@@ -128,8 +128,8 @@ fn regular_anywhere(
     }
 }
 
-/// Spheres dropped one by one until 600 in succession find no place in the cone. Radii are `1 -
-/// spread` to `1 + spread`.
+/// Spheres dropped one by one until 600 in succession find no place in the cone, with radii from
+/// `1 - spread` to `1 + spread`.
 fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
     let cell = 2.0 * (1.0 + spread);
     let column = |x: f64| (x / cell).floor() as i32;

@@ -5,15 +5,15 @@
 //! for all five models, which differ in stiffness and contact point only. Offered for comparison:
 //! the [total formulation](super::total) needs no history.
 //!
-//! Where this is not what is printed: -
-//! The increment is taken with the axis halfway through the step, and half of it before and half
+//! Where this is not what is printed:
+//! - The increment is taken with the axis halfway through the step, and half of it before and half
 //!   after the turn about the axis: the step is the same backwards. With the axis at the end of the
-//!   step, energy grows. -
-//! The history is turned with the axis and also with the mean spin of the ends about it; MUSEN's
-//!   T turns it with the axis only. -
-//! The normal force comes from the length (as in MUSEN), not from a sum of increments, which
-//!   would drift. -
-//! MUSEN's relative spin has the opposite sense to its relative velocity, and its last product is
+//!   step, energy grows.
+//! - The history is turned with the axis and also with the mean spin of the ends about it; MUSEN's
+//!   T turns it with the axis only.
+//! - The normal force comes from the length (as in MUSEN), not from a sum of increments, which
+//!   would drift.
+//! - MUSEN's relative spin has the opposite sense to its relative velocity, and its last product is
 //!   a cross product: here everything is b relative to a.
 
 use super::BondLoad;

@@ -6,8 +6,8 @@
 //!   a viscous moment instead, which would take a [small share](ConstantMoment::SHARE) of the
 //!   rolling in a step: so a body at rest neither jitters nor is turned back. It does not hold
 //!   either: a constant torque below the limit makes it creep, more slowly as the time step is
-//!   smaller. -
-//! Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with
+//!   smaller.
+//! - Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with
 //!   k_n the tangent normal stiffness, slipping at the limit; c_r = 2 eta sqrt(J k_r) with J the
 //!   reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts
 //!   in the limit, so that it fades out instead of jumping to 0 when the spring begins to slip; and
