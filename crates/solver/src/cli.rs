@@ -27,9 +27,9 @@ use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Unfinished;
-use crate::plan::plan;
+use crate::plan::{Plan, plan};
 use crate::run::snapshot::Snapshot;
-use crate::run::{Finished, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
+use crate::run::{Finished, Outcome, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
 
 /// Runs scenes with bonded bodies.
 #[derive(Debug, Parser)]
@@ -332,73 +332,18 @@ fn refuse_two_pipes(scene: &Scene) -> Result<()> {
 
 fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
-    if arguments.resume && scene.run.integrator == Integrator::Static {
-        return Err(Diagnostic::input(
-            "--resume",
-            "run.integrator = \"static\" leaves no checkpoint to go on from",
-            "leave it out; --force replaces the results that are in the folder",
-        ));
-    }
-    let folder = match results_path(arguments, &scene) {
-        Some(path) => {
-            let existing = match (arguments.force, arguments.resume) {
-                (true, _) => Existing::Replace,
-                (_, true) => Existing::Continue,
-                _ => Existing::Refuse,
-            };
-            Some((path, existing))
-        }
-        None if arguments.resume => {
-            return Err(Diagnostic::input(
-                "--resume",
-                "no folder of results is named",
-                "add --out FOLDER",
-            ));
-        }
-        None => None,
-    };
-    let lowest_hz = lowest_in_test_hz(&scene, &bodies, threads)?;
-    let test = lowest_hz.map(|lowest_frequency_hz| TestSettings {
-        lowest_frequency_hz,
-        at_twice_the_rate: None,
-    });
-    let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
-    let twice = match &test {
-        Some(test) if checked => {
-            let scene = arrange(&scene, test.lowest_frequency_hz, 2.0)?;
-            Some((scene, bodies.clone(), test.clone()))
-        }
-        _ => None,
-    };
-    let scene = match &test {
-        Some(test) => arrange(&scene, test.lowest_frequency_hz, 1.0)?,
-        None => scene,
-    };
+    let path = folder_to_open(arguments, &scene)?;
+    let (scene, test, twice) = arranged(scene, &bodies, threads)?;
     let force_step = arguments.scene.force_step;
     let mut prepared = plan(&scene, bodies, threads, force_step)?;
     prepared.inputs.set.clone_from(&arguments.scene.overrides);
     let inputs = prepared.inputs.clone();
     if !arguments.quiet {
-        let notes = prepared.notes.iter().map(|note| ("note", note));
-        let warnings = prepared.warnings.iter().chain(&prepared.forecast.warnings);
-        let warnings = warnings.map(|warning| ("warning", warning));
-        for (kind, text) in notes.chain(warnings) {
-            // Nobody to read it is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{kind}: {}", visible(text));
-        }
+        say_beforehand(&prepared);
     }
-    if let Some((path, _)) = &folder {
-        refuse_inputs_among_results(path, &scene.input_files())?;
-    }
-    let folder = folder
-        .map(|(path, existing)| ResultsFolder::create(&path, existing))
-        .transpose()?;
+    let folder = open_folder(path, &scene)?;
     let resume = match &folder {
-        Some(folder) if arguments.resume => {
-            let path = folder.checkpoint();
-            let within = |error: Diagnostic| error.within(&path.display().to_string());
-            Some(Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)?)
-        }
+        Some(folder) if arguments.resume => Some(checkpoint_of(folder)?),
         _ => None,
     };
     let bar = if arguments.quiet || !std::io::stderr().is_terminal() {
@@ -406,7 +351,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     } else {
         progress_bar()
     };
-    let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
+    let progress = |fraction: f64| bar.set_position((1000.0 * fraction) as u64);
     let outcome = interrupt.heeded_by(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
@@ -444,10 +389,91 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             }
         }
     })?;
-    let outcome = match outcome {
-        Ok(outcome) => outcome,
-        Err(finished) => return say_finished(arguments, &finished),
+    match outcome {
+        Ok(outcome) => say_outcome(arguments, outcome),
+        Err(finished) => say_finished(arguments, &finished),
+    }
+}
+
+/// Where results go, and what becomes of those that are there. None: nowhere.
+fn folder_to_open(arguments: &RunArguments, scene: &Scene) -> Result<Option<(PathBuf, Existing)>> {
+    if arguments.resume && scene.run.integrator == Integrator::Static {
+        return Err(Diagnostic::input(
+            "--resume",
+            "run.integrator = \"static\" leaves no checkpoint to go on from",
+            "leave it out; --force replaces the results that are in the folder",
+        ));
+    }
+    let existing = match (arguments.force, arguments.resume) {
+        (true, _) => Existing::Replace,
+        (_, true) => Existing::Continue,
+        _ => Existing::Refuse,
     };
+    match results_path(arguments, scene) {
+        Some(path) => Ok(Some((path, existing))),
+        None if arguments.resume => Err(Diagnostic::input(
+            "--resume",
+            "no folder of results is named",
+            "add --out FOLDER",
+        )),
+        None => Ok(None),
+    }
+}
+
+/// What is run at twice the rate, to tell whether the rate matters.
+type AtTwiceTheRate = (Scene, BTreeMap<String, Body>, TestSettings);
+
+/// The scene of a laboratory test with its rate, and the same at twice the rate where that is to be
+/// checked. Other scenes as they are.
+fn arranged(
+    scene: Scene,
+    bodies: &BTreeMap<String, Body>,
+    threads: usize,
+) -> Result<(Scene, Option<TestSettings>, Option<AtTwiceTheRate>)> {
+    let Some(lowest_frequency_hz) = lowest_in_test_hz(&scene, bodies, threads)? else {
+        return Ok((scene, None, None));
+    };
+    let test = TestSettings {
+        lowest_frequency_hz,
+        at_twice_the_rate: None,
+    };
+    let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
+    let twice = if checked {
+        let scene = arrange(&scene, lowest_frequency_hz, 2.0)?;
+        Some((scene, bodies.clone(), test.clone()))
+    } else {
+        None
+    };
+    let scene = arrange(&scene, lowest_frequency_hz, 1.0)?;
+    Ok((scene, Some(test), twice))
+}
+
+/// Says notes and warnings before the run. Nobody to read them is no reason to stop.
+fn say_beforehand(plan: &Plan) {
+    let notes = plan.notes.iter().map(|note| ("note", note));
+    let warnings = plan.warnings.iter().chain(&plan.forecast.warnings);
+    let warnings = warnings.map(|warning| ("warning", warning));
+    for (kind, text) in notes.chain(warnings) {
+        let _ = writeln!(std::io::stderr(), "{kind}: {}", visible(text));
+    }
+}
+
+fn open_folder(path: Option<(PathBuf, Existing)>, scene: &Scene) -> Result<Option<ResultsFolder>> {
+    let Some((path, existing)) = path else {
+        return Ok(None);
+    };
+    refuse_inputs_among_results(&path, &scene.input_files())?;
+    ResultsFolder::create(&path, existing).map(Some)
+}
+
+fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot> {
+    let path = folder.checkpoint();
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)
+}
+
+/// Says how a run ended, as text or as JSON.
+fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     let summary = &outcome.summary;
     if arguments.scene.json {
         write_standard_json(summary)?;

@@ -82,8 +82,52 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
 }
 
 fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String {
+    let mut text = contents(plan) + &time_step(plan);
+    let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let state = &plan.state;
-    let choice = &plan.step;
+    let exact = steps < 1e15;
+    line(
+        "steps",
+        if exact {
+            format!("{steps}")
+        } else {
+            significant(steps, 2)
+        },
+    );
+    for stage in &plan.stages {
+        let name = if stage.needed { "does" } else { "leaves out" };
+        line(name, stage_text(stage, state, trial));
+    }
+    for note in &plan.notes {
+        line("note", note.clone());
+    }
+    for warning in plan.warnings.iter().chain(&plan.forecast.warnings) {
+        line("warning", warning.clone());
+    }
+    let fed_bytes: f64 = plan.forecast.to_come.iter().map(|fed| fed.bytes).sum();
+    let with_fed = if fed_bytes > 0.0 {
+        let most = size_text((bytes as f64 + fed_bytes) as usize);
+        format!(" at the start, {most} if all that is fed is bonded and none leaves")
+    } else {
+        String::new()
+    };
+    line("memory", format!("about {}{with_fed}", size_text(bytes)));
+    line(
+        "run time",
+        trial.map(|trial| trial.per_step_s).map_or(
+            "not foreseen: bodies come, go, or become others".to_owned(),
+            |s| {
+                let run_s = significant(steps * s, 2);
+                format!("about {run_s} s, if this machine stays as it is")
+            },
+        ),
+    );
+    text
+}
+
+/// What the scene holds, what will come to it and what it weighs.
+fn contents(plan: &Plan) -> String {
+    let state = &plan.state;
     let mut text = String::new();
     let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     line(
@@ -126,6 +170,14 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     for (name, mass) in masses::lines(&plan.masses) {
         line(name, mass);
     }
+    text
+}
+
+/// The time step and why.
+fn time_step(plan: &Plan) -> String {
+    let (state, choice) = (&plan.state, &plan.step);
+    let mut text = String::new();
+    let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let why = if choice.given { "given" } else { "chosen" };
     let step = significant(choice.step_s, 5);
     let limit = if choice.foreseen_s.is_finite() {
@@ -191,43 +243,6 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     if choice.thesis_s.is_finite() {
         line("", beside("0.17 sqrt(m/K)", choice.thesis_s));
     }
-    let exact = steps < 1e15;
-    line(
-        "steps",
-        if exact {
-            format!("{steps}")
-        } else {
-            significant(steps, 2)
-        },
-    );
-    for stage in &plan.stages {
-        let name = if stage.needed { "does" } else { "leaves out" };
-        line(name, stage_text(stage, state, trial));
-    }
-    for note in &plan.notes {
-        line("note", note.clone());
-    }
-    for warning in plan.warnings.iter().chain(&plan.forecast.warnings) {
-        line("warning", warning.clone());
-    }
-    let fed_bytes: f64 = plan.forecast.to_come.iter().map(|fed| fed.bytes).sum();
-    let with_fed = if fed_bytes > 0.0 {
-        let most = size_text((bytes as f64 + fed_bytes) as usize);
-        format!(" at the start, {most} if all that is fed is bonded and none leaves")
-    } else {
-        String::new()
-    };
-    line("memory", format!("about {}{with_fed}", size_text(bytes)));
-    line(
-        "run time",
-        trial.map(|trial| trial.per_step_s).map_or(
-            "not foreseen: bodies come, go, or become others".to_owned(),
-            |s| {
-                let run_s = significant(steps * s, 2);
-                format!("about {run_s} s, if this machine stays as it is")
-            },
-        ),
-    );
     text
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::{Setup, Specimen};
+use crate::plan::test_theory::Beam;
 use crate::plan::test_theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 
 /// Shares of the largest load between which the stiffness is the slope of the load: below it pins
@@ -206,92 +207,38 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         record,
         ..
     } = *evidence;
-    let (mut figures, mut dimensions) = (Vec::new(), Vec::new());
     let rows = &rows_of(record, evidence.lowest_frequency_hz);
     let by_travel = slope(rows, |row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
-    let (stiffness, of_body) = (
-        by_travel.map(|slope| slope.stiffness_n_m),
-        of_body.map(|slope| slope.stiffness_n_m),
-    );
-    let mut add = |name: &str, value: Option<f64>, unit: &str, theory: Option<f64>| {
-        figures.extend(value.map(|value| Figure::new(name, value, unit, theory)));
-    };
-    let mut is = |name: &str, value: f64, unit: &str| {
-        dimensions.push(Figure::new(name, value, unit, None));
-    };
-    let (modulus, strength) = (test.young_modulus_pa, test.strength_pa);
-    let nu = test.poisson_ratio;
     let largest = peak(rows).map(Row::load_n);
-    let failure = largest.filter(|_| evidence.broken);
+    let mut measured = Measured {
+        stiffness_n_m: by_travel.map(|slope| slope.stiffness_n_m),
+        of_body_n_m: of_body.map(|slope| slope.stiffness_n_m),
+        failure_n: largest.filter(|_| evidence.broken),
+        modulus_pa: test.young_modulus_pa,
+        strength_pa: test.strength_pa,
+        dimensions: Vec::new(),
+        figures: Vec::new(),
+    };
     match setup.specimen {
-        Specimen::Beam(beam) => {
-            is("span", beam.span_m, "m");
-            if beam.load_distance_m > 0.0 {
-                is("load distance", beam.load_distance_m, "m");
-            }
-            is("width", beam.width_m, "m");
-            is("height", beam.height_m, "m");
-            let (shape, shear) = (beam.bending_shape_m(), beam.shear_over_bending(nu, KAPPA));
-            let theory = modulus.map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
-            add(STIFFNESS, stiffness, "N/m", theory);
-            add("stiffness of the body", of_body, "N/m", theory);
-            let bending = |k: f64| k / shape;
-            let with_shear = |k: f64| k * (1.0 + shear) / shape;
-            add(EQ_18, stiffness.map(bending), "Pa", modulus);
-            add(
-                "modulus with shear",
-                stiffness.map(with_shear),
-                "Pa",
-                modulus,
-            );
-            add(MODULUS, of_body.map(with_shear), "Pa", modulus);
-            let theory = strength.map(|strength| beam.force_n(strength));
-            add(FAILURE_FORCE, failure, "N", theory);
-            let stress = failure.map(|force| beam.stress_pa(force));
-            add(STRENGTH, stress, "Pa", strength);
-        }
+        Specimen::Beam(beam) => measured.beam(&beam, test.poisson_ratio),
         Specimen::Disc {
             diameter_m,
             thickness_m,
-        } => {
-            is("diameter", diameter_m, "m");
-            is("thickness", thickness_m, "m");
-            add(STIFFNESS, stiffness, "N/m", None);
-            let stress = |force: f64| disc_stress_pa(force, diameter_m, thickness_m);
-            let theory = strength.map(|strength| strength / stress(1.0));
-            add(FAILURE_FORCE, failure, "N", theory);
-            add(STRENGTH, failure.map(stress), "Pa", strength);
-        }
-        Specimen::Bar { length_m, area_m2 } => {
-            is("length", length_m, "m");
-            is("area", area_m2, "m2");
-            is("probe length", setup.gauge_m, "m");
-            let theory = modulus.map(|modulus| modulus * area_m2 / length_m);
-            add(STIFFNESS, stiffness, "N/m", theory);
-            let theory = modulus.map(|modulus| modulus * area_m2 / setup.gauge_m);
-            // Pressed, the measured places come nearer to each other.
-            let of_body = of_body.map(f64::abs);
-            add("stiffness of the body", of_body, "N/m", theory);
-            let of_gauge = |k: f64| k * setup.gauge_m / area_m2;
-            add(MODULUS, of_body.map(of_gauge), "Pa", modulus);
-            let stress = |force: f64| bar_stress_pa(force, area_m2);
-            let theory = strength.map(|strength| strength * area_m2);
-            add(FAILURE_FORCE, failure, "N", theory);
-            add(STRENGTH, failure.map(stress), "Pa", strength);
-        }
+        } => measured.disc(diameter_m, thickness_m),
+        Specimen::Bar { length_m, area_m2 } => measured.bar(length_m, area_m2, setup.gauge_m),
     }
     let play_m = play_m(rows);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
-    add(
+    measured.add(
         "failure travel",
         travel.filter(|_| evidence.broken),
         "m",
         None,
     );
     if !evidence.broken {
-        add("largest force", largest, "N", None);
+        measured.add("largest force", largest, "N", None);
     }
     let first_broken = first_broken(evidence).map(|first| FirstBroken {
         travel_m: first.travel_m - play_m,
@@ -301,11 +248,11 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
         broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
-        strength_wanted_pa: strength,
+        strength_wanted_pa: test.strength_pa,
         lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
-        dimensions,
-        figures,
+        dimensions: measured.dimensions,
+        figures: measured.figures,
         calibration: Vec::new(),
         first_broken,
         crack: crack(evidence),
@@ -313,6 +260,100 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     };
     result.calibration = calibration(&result, evidence);
     result
+}
+
+/// What the curve of a test says, and the figures that follow from it.
+struct Measured {
+    /// Load over travel, N/m.
+    stiffness_n_m: Option<f64>,
+    /// Load over the deformation of the body itself, N/m.
+    of_body_n_m: Option<f64>,
+    /// Load at which the body broke, N.
+    failure_n: Option<f64>,
+    /// What the scene says that the modulus should be, Pa.
+    modulus_pa: Option<f64>,
+    /// What the scene says that the strength should be, Pa.
+    strength_pa: Option<f64>,
+    dimensions: Vec<Figure>,
+    figures: Vec<Figure>,
+}
+
+impl Measured {
+    fn add(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
+        let figure = value.map(|value| Figure::new(name, value, unit, theory));
+        self.figures.extend(figure);
+    }
+
+    fn dimension(&mut self, name: &str, value: f64, unit: &str) {
+        self.dimensions.push(Figure::new(name, value, unit, None));
+    }
+
+    fn beam(&mut self, beam: &Beam, nu: f64) {
+        self.dimension("span", beam.span_m, "m");
+        if beam.load_distance_m > 0.0 {
+            self.dimension("load distance", beam.load_distance_m, "m");
+        }
+        self.dimension("width", beam.width_m, "m");
+        self.dimension("height", beam.height_m, "m");
+        let (shape, shear) = (beam.bending_shape_m(), beam.shear_over_bending(nu, KAPPA));
+        let theory = self
+            .modulus_pa
+            .map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+        self.add("stiffness of the body", self.of_body_n_m, "N/m", theory);
+        let bending = |k: f64| k / shape;
+        let with_shear = |k: f64| k * (1.0 + shear) / shape;
+        self.add(
+            EQ_18,
+            self.stiffness_n_m.map(bending),
+            "Pa",
+            self.modulus_pa,
+        );
+        self.add(
+            "modulus with shear",
+            self.stiffness_n_m.map(with_shear),
+            "Pa",
+            self.modulus_pa,
+        );
+        self.add(
+            MODULUS,
+            self.of_body_n_m.map(with_shear),
+            "Pa",
+            self.modulus_pa,
+        );
+        let theory = self.strength_pa.map(|strength| beam.force_n(strength));
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        let stress = self.failure_n.map(|force| beam.stress_pa(force));
+        self.add(STRENGTH, stress, "Pa", self.strength_pa);
+    }
+
+    fn disc(&mut self, diameter_m: f64, thickness_m: f64) {
+        self.dimension("diameter", diameter_m, "m");
+        self.dimension("thickness", thickness_m, "m");
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", None);
+        let stress = |force: f64| disc_stress_pa(force, diameter_m, thickness_m);
+        let theory = self.strength_pa.map(|strength| strength / stress(1.0));
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        self.add(STRENGTH, self.failure_n.map(stress), "Pa", self.strength_pa);
+    }
+
+    fn bar(&mut self, length_m: f64, area_m2: f64, gauge_m: f64) {
+        self.dimension("length", length_m, "m");
+        self.dimension("area", area_m2, "m2");
+        self.dimension("gauge length", gauge_m, "m");
+        let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+        let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
+        // Pressed, the measured places come nearer to each other.
+        let of_body = self.of_body_n_m.map(f64::abs);
+        self.add("stiffness of the body", of_body, "N/m", theory);
+        let of_gauge = |k: f64| k * gauge_m / area_m2;
+        self.add(MODULUS, of_body.map(of_gauge), "Pa", self.modulus_pa);
+        let stress = |force: f64| bar_stress_pa(force, area_m2);
+        let theory = self.strength_pa.map(|strength| strength * area_m2);
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        self.add(STRENGTH, self.failure_n.map(stress), "Pa", self.strength_pa);
+    }
 }
 
 /// Names of figures that are looked up.

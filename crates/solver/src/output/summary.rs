@@ -274,6 +274,87 @@ impl PopulationSummary {
 }
 
 impl Summary {
+    /// Errors, steps and speed.
+    fn write_steps(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "error        energy {}   momentum {}   angular momentum {}",
+            significant(self.energy_error, 2),
+            significant(self.momentum_error, 2),
+            significant(self.angular_momentum_error, 2),
+        )?;
+        writeln!(
+            f,
+            "steps        {} of {} s, {}; ended by {}",
+            self.steps,
+            significant(self.time_step_s, 4),
+            if self.limit_s.is_finite() {
+                format!("{} of the limit", significant(self.share_of_limit, 3))
+            } else {
+                "without a limit".to_owned()
+            },
+            self.ended_by,
+        )?;
+        if let Some(adaptive) = &self.adaptive {
+            writeln!(
+                f,
+                "             adaptive: {} to {} s, changed {} times",
+                significant(adaptive.smallest_step_s, 4),
+                significant(adaptive.largest_step_s, 4),
+                adaptive.changes,
+            )?;
+        }
+        if let Some(change) = &self.resumed_with {
+            writeln!(f, "resumed      {change}")?;
+        }
+        writeln!(
+            f,
+            "speed        {} steps/s, {} million bond-steps/s",
+            significant(self.steps_per_s, 3),
+            significant(self.bond_steps_per_s * 1e-6, 3),
+        )?;
+        let fractions: Vec<String> = self
+            .time_by_stage
+            .iter()
+            .filter(|(_, share)| *share >= 0.005)
+            .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
+            .collect();
+        writeln!(f, "time         {}", fractions.join("   "))
+    }
+
+    /// Bodies that came, left or became others.
+    fn write_population(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(p) = &self.population else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps{} at the end",
+            p.came,
+            significant(p.came_kg, 4),
+            p.replaced,
+            p.restored,
+            p.left,
+            significant(p.left_kg, 4),
+            p.clumps,
+            match p.single_spheres {
+                0 => String::new(),
+                count => format!(" and {count} single spheres"),
+            },
+        )?;
+        let hidden = match 100.0 * p.inner_spheres {
+            share if share >= 0.5 => {
+                format!("; {share:.0} % of the spheres of clumps, which nothing can touch")
+            }
+            _ => String::new(),
+        };
+        writeln!(
+            f,
+            "saved        {:.0} % of bonds times steps, as their bodies were rigid{hidden}",
+            100.0 * p.bonds_left_out,
+        )
+    }
+
     /// The text of a summary that is of an equilibrium.
     ///
     /// # Errors
@@ -413,50 +494,7 @@ impl fmt::Display for Summary {
         if let Some(test) = &self.test {
             write!(f, "{test}")?;
         }
-        writeln!(
-            f,
-            "error        energy {}   momentum {}   angular momentum {}",
-            significant(self.energy_error, 2),
-            significant(self.momentum_error, 2),
-            significant(self.angular_momentum_error, 2),
-        )?;
-        writeln!(
-            f,
-            "steps        {} of {} s, {}; ended by {}",
-            self.steps,
-            significant(self.time_step_s, 4),
-            if self.limit_s.is_finite() {
-                format!("{} of the limit", significant(self.share_of_limit, 3))
-            } else {
-                "without a limit".to_owned()
-            },
-            self.ended_by,
-        )?;
-        if let Some(adaptive) = &self.adaptive {
-            writeln!(
-                f,
-                "             adaptive: {} to {} s, changed {} times",
-                significant(adaptive.smallest_step_s, 4),
-                significant(adaptive.largest_step_s, 4),
-                adaptive.changes,
-            )?;
-        }
-        if let Some(change) = &self.resumed_with {
-            writeln!(f, "resumed      {change}")?;
-        }
-        writeln!(
-            f,
-            "speed        {} steps/s, {} million bond-steps/s",
-            significant(self.steps_per_s, 3),
-            significant(self.bond_steps_per_s * 1e-6, 3),
-        )?;
-        let shares: Vec<String> = self
-            .time_by_stage
-            .iter()
-            .filter(|(_, share)| *share >= 0.005)
-            .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share))
-            .collect();
-        writeln!(f, "time         {}", shares.join("   "))?;
+        self.write_steps(f)?;
         let causes = match self.broken_bonds {
             0 => String::new(),
             _ => format!(": {}", self.broken_by_cause),
@@ -470,34 +508,7 @@ impl fmt::Display for Summary {
                 self.broken_bonds, self.bonds
             )?;
         }
-        if let Some(p) = &self.population {
-            writeln!(
-                f,
-                "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps{} at the end",
-                p.came,
-                significant(p.came_kg, 4),
-                p.replaced,
-                p.restored,
-                p.left,
-                significant(p.left_kg, 4),
-                p.clumps,
-                match p.single_spheres {
-                    0 => String::new(),
-                    count => format!(" and {count} single spheres"),
-                },
-            )?;
-            let hidden = match 100.0 * p.inner_spheres {
-                share if share >= 0.5 => {
-                    format!("; {share:.0} % of the spheres of clumps, which nothing can touch")
-                }
-                _ => String::new(),
-            };
-            writeln!(
-                f,
-                "saved        {:.0} % of bonds times steps, as their bodies were rigid{hidden}",
-                100.0 * p.bonds_left_out,
-            )?;
-        }
+        self.write_population(f)?;
         if let Some(sleep) = &self.sleep {
             writeln!(
                 f,

@@ -93,42 +93,7 @@ impl<'a> Limits<'a> {
         bodies: &[PlacedBody],
         mut files: Option<&mut Files<'_>>,
     ) -> Result<()> {
-        if let Some(adaptive) = &mut self.adaptive {
-            let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
-            if replaced {
-                let outlook = adaptive.replaced;
-                progress.allow_as_well_for(&outlook);
-                progress.had_bonds = true;
-                self.take(
-                    state,
-                    outlook.step_s,
-                    "replacement",
-                    progress,
-                    files.as_deref_mut(),
-                )?;
-            } else if state.steps >= progress.next_look || has_lost_all_bonds {
-                let outlook = Outlook::of(adaptive.scene, state, adaptive.arriving.as_mut());
-                let iterations = outlook.limit.all_iterations as u64;
-                let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
-                progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
-                progress.had_bonds = !state.bonds.is_empty();
-                progress.allow_for(&outlook);
-                progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
-                progress.strain = progress.bound_strain;
-                let is_larger = outlook.step_s >= LARGER * state.time_step_s;
-                let is_unstable =
-                    state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
-                if is_larger || is_unstable || state.time_step_s > SMALLER * outlook.step_s {
-                    self.set(
-                        state,
-                        outlook.step_s,
-                        "adaptive",
-                        progress,
-                        files.as_deref_mut(),
-                    )?;
-                }
-            }
-        }
+        self.follow_adaptive(state, replaced, progress, files.as_deref_mut())?;
         let mut may_be_less = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
             let strain = progress.seen.look_at_bonds(state, bodies);
@@ -190,6 +155,42 @@ impl<'a> Limits<'a> {
             };
             let largest_s = safety * farthest_m / state.fastest_m_s;
             self.take(state, largest_s, "speed", progress, files)?;
+        }
+        Ok(())
+    }
+
+    /// An adaptive step is chosen anew once clumps have become clusters, now and then, and once all
+    /// bonds have gone.
+    fn follow_adaptive(
+        &mut self,
+        state: &mut State,
+        replaced: bool,
+        progress: &mut Progress,
+        files: Option<&mut Files<'_>>,
+    ) -> Result<()> {
+        let Some(adaptive) = &mut self.adaptive else {
+            return Ok(());
+        };
+        let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
+        if replaced {
+            let outlook = adaptive.replaced;
+            progress.allow_as_well_for(&outlook);
+            progress.had_bonds = true;
+            self.take(state, outlook.step_s, "replacement", progress, files)?;
+        } else if state.steps >= progress.next_look || has_lost_all_bonds {
+            let outlook = Outlook::of(adaptive.scene, state, adaptive.arriving.as_mut());
+            let iterations = outlook.limit.all_iterations as u64;
+            let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
+            progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
+            progress.had_bonds = !state.bonds.is_empty();
+            progress.allow_for(&outlook);
+            progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
+            progress.strain = progress.bound_strain;
+            let is_larger = outlook.step_s >= LARGER * state.time_step_s;
+            let is_unstable = state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
+            if is_larger || is_unstable || state.time_step_s > SMALLER * outlook.step_s {
+                self.set(state, outlook.step_s, "adaptive", progress, files)?;
+            }
         }
         Ok(())
     }

@@ -31,119 +31,47 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         coming,
         leaving,
     } = changes;
-    let leaves = |id: u32| leaving.binary_search(&id).is_ok();
-    let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let old = std::mem::take(&mut state.particles);
-    let of_particle = state.clusters.as_ref().map(|c| c.of_particle.clone());
-    let of_particle = of_particle.unwrap_or_else(|| vec![0; old.len()]);
-
-    // Who is where now.
-    let mut new = Particles::default();
-    let mut particles = vec![REMOVED; old.len()];
-    let mut ids: Vec<u32> = Vec::new();
-    let mut is_new = Vec::new();
-    for i in 0..old.free {
-        if !leaves(of_particle[i]) && !stiffens(of_particle[i]) {
-            particles[i] = keep(&old, i, &mut new);
-            ids.push(of_particle[i]);
-        }
-    }
-    new.free = new.len();
-    is_new.resize(new.len(), None);
-
-    let mut born = Vec::new();
-    for &at in &to_clusters {
-        let clump = state.clumps.all[at];
-        let template = Arc::clone(state.clumps.template(&clump));
-        let first_particle = new.len();
-        push_cluster(&template, &clump, &mut new);
-        for (n, &sphere) in template.outer.iter().enumerate() {
-            particles[clump.first as usize + n] = first_particle as u32 + sphere;
-        }
-        ids.resize(new.len(), clump.cluster);
-        is_new.resize(new.len(), Some(template.material));
-        born.push(NewCluster {
-            clump,
-            template,
-            first_particle,
-            first_bond: 0,
-        });
-    }
-
-    let mut at = 0;
-    let clumps = &mut state.clumps;
-    let mut near = std::mem::take(&mut clumps.near);
-    let templates = &clumps.templates;
-    clumps.all.retain_mut(|clump| {
-        at += 1;
-        if to_clusters.binary_search(&(at - 1)).is_ok() || leaves(clump.cluster) {
-            return false;
-        }
-        let own = templates[clump.template as usize].spheres_from(clump.first);
-        clump.first = new.len() as u32;
-        for (i, now) in own.clone().zip(&mut particles[own]) {
-            *now = keep(&old, i, &mut new);
-        }
-        ids.resize(new.len(), clump.cluster);
-        true
-    });
-    is_new.resize(new.len(), None);
-
-    let known = state.clusters.take();
-    for (id, mut clump) in to_clumps {
-        let template = Arc::clone(clumps.template(&clump));
-        Clumps::push_spheres(&template, &mut clump, &mut new);
-        // The spheres of its template stand in the order of its particles.
-        let members = known
-            .as_ref()
-            .map_or(&[][..], |clusters| clusters.members(id));
-        for (n, &sphere) in template.outer.iter().enumerate() {
-            particles[members[sphere as usize] as usize] = clump.first + n as u32;
-        }
-        ids.resize(new.len(), id);
-        is_new.resize(new.len(), Some(template.material));
-        clumps.all.push(clump);
-    }
-    state.clusters = known;
-
-    let mut history = state
-        .clusters
-        .as_ref()
-        .map_or(Vec::new(), |c| c.history.clone());
-    for mut clump in coming {
-        let template = Arc::clone(clumps.template(&clump));
-        clump.cluster = history.len() as u32;
-        history.push(Cluster {
-            parent: None,
-            born_s: state.time_s,
-            ended_s: None,
-            particles: template.outer.len() as u32,
-        });
-        Clumps::push_spheres(&template, &mut clump, &mut new);
-        ids.resize(new.len(), clump.cluster);
-        is_new.resize(new.len(), Some(template.material));
-        clumps.all.push(clump);
-    }
+    let mut near = std::mem::take(&mut state.clumps.near);
+    let mut rebuilt = Rebuilt::of(&old);
+    let clusters = state.clusters.take();
+    let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
+    let goes = |id: u32| leaving.binary_search(&id).is_ok() || stiffens(id);
+    rebuilt.keep_free(clusters.as_ref(), goes);
+    let mut born = rebuilt.replace_clumps(&to_clusters, &state.clumps);
+    rebuilt.keep_clumps(&mut state.clumps, &to_clusters, &leaving);
+    rebuilt.stiffen(&mut state.clumps, to_clumps, clusters.as_ref());
+    let mut history = clusters.as_ref().map_or(Vec::new(), |c| c.history.clone());
+    rebuilt.receive(&mut state.clumps, coming, &mut history, state.time_s);
+    state.clusters = clusters;
     for born in &born {
         history[born.clump.cluster as usize].particles = born.template.spheres.len() as u32;
     }
-    for clump in &clumps.all {
-        history[clump.cluster as usize].particles = clumps.template(clump).outer.len() as u32;
+    for clump in &state.clumps.all {
+        let outer = state.clumps.template(clump).outer.len();
+        history[clump.cluster as usize].particles = outer as u32;
     }
     for &id in &leaving {
         history[id as usize].ended_s = Some(state.time_s);
     }
+    let Rebuilt {
+        new,
+        numbers: particles,
+        ids,
+        materials_of_new,
+        ..
+    } = rebuilt;
 
     // Those that followed still do, under their new numbers; which they are is looked for in the
     // next step.
     renumber(&mut near, &particles);
     near.retain(|&sphere| sphere as usize >= new.free);
     near.sort_unstable();
-    clumps.set_near(near);
+    state.clumps.set_near(near);
     state.particles = new;
     let bonds = change_bonds(state, &particles, &mut born);
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
-    count_anew(state, &particles, &radii_m, &bonds, &is_new);
+    count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
         let visited = clusters.visited;
         // The two are made to belong together above.
@@ -153,17 +81,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         clusters.visited = visited;
     }
     for born in &born {
-        // A fragment brings the strain that it had when it became a clump.
-        let bonds = born.first_bond..born.first_bond + born.template.bonds.len();
-        let strain_j = |at| {
-            state
-                .bonds
-                .forces(at, &state.particles.poses)
-                .energy
-                .total()
-        };
-        let strain_j: f64 = bonds.map(strain_j).sum();
-        state.ledger.gain(strain_j);
+        state.ledger.gain(strain_of(born, state));
     }
     count_sleepers(state);
     let pressed_j = pressed_j(state);
@@ -173,6 +91,144 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         bonds,
         free: state.particles.free as u32,
         born,
+    }
+}
+
+/// Elastic energy that the bonds of a new cluster bring, J: a fragment has the strain that it had
+/// when it became a clump.
+fn strain_of(born: &NewCluster, state: &State) -> f64 {
+    let poses = &state.particles.poses;
+    let bonds = born.first_bond..born.first_bond + born.template.bonds.len();
+    bonds
+        .map(|at| state.bonds.forces(at, poses).energy.total())
+        .sum()
+}
+
+/// The particles as they are counted after a change: those that move by themselves, then those that
+/// clumps carry.
+struct Rebuilt<'a> {
+    old: &'a Particles,
+    new: Particles,
+    /// For each particle before, its number now, or [`REMOVED`].
+    numbers: Vec<u32>,
+    /// For each particle now, the number of its cluster.
+    ids: Vec<u32>,
+    /// For each particle now, its material if it was not there before.
+    materials_of_new: Vec<Option<u8>>,
+}
+
+impl<'a> Rebuilt<'a> {
+    fn of(old: &'a Particles) -> Self {
+        Self {
+            old,
+            new: Particles::default(),
+            numbers: vec![REMOVED; old.len()],
+            ids: Vec::new(),
+            materials_of_new: Vec::new(),
+        }
+    }
+
+    /// All that has been added since belongs to this cluster and is new, of this material, or not.
+    fn label(&mut self, cluster: u32, material: Option<u8>) {
+        self.ids.resize(self.new.len(), cluster);
+        self.materials_of_new.resize(self.new.len(), material);
+    }
+
+    /// Particles that move by themselves, without those whose cluster goes.
+    fn keep_free(&mut self, clusters: Option<&Clusters>, goes: impl Fn(u32) -> bool) {
+        for i in 0..self.old.free {
+            let id = clusters.map_or(0, |clusters| clusters.of_particle[i]);
+            if !goes(id) {
+                self.numbers[i] = keep(self.old, i, &mut self.new);
+                self.label(id, None);
+            }
+        }
+        self.new.free = self.new.len();
+    }
+
+    /// Clumps that become clusters, whose particles move by themselves from now on.
+    fn replace_clumps(&mut self, to_clusters: &[usize], clumps: &Clumps) -> Vec<NewCluster> {
+        let mut born = Vec::new();
+        for &at in to_clusters {
+            let clump = clumps.all[at];
+            let template = Arc::clone(clumps.template(&clump));
+            let first_particle = self.new.len();
+            push_cluster(&template, &clump, &mut self.new);
+            for (n, &sphere) in template.outer.iter().enumerate() {
+                self.numbers[clump.first as usize + n] = first_particle as u32 + sphere;
+            }
+            self.label(clump.cluster, Some(template.material));
+            born.push(NewCluster {
+                clump,
+                template,
+                first_particle,
+                first_bond: 0,
+            });
+        }
+        born
+    }
+
+    /// Clumps that stay clumps, and their spheres.
+    fn keep_clumps(&mut self, clumps: &mut Clumps, to_clusters: &[usize], leaving: &[u32]) {
+        let mut at = 0;
+        let templates = &clumps.templates;
+        clumps.all.retain_mut(|clump| {
+            at += 1;
+            let leaves = leaving.binary_search(&clump.cluster).is_ok();
+            if leaves || to_clusters.binary_search(&(at - 1)).is_ok() {
+                return false;
+            }
+            let own = templates[clump.template as usize].spheres_from(clump.first);
+            clump.first = self.new.len() as u32;
+            for i in own {
+                self.numbers[i] = keep(self.old, i, &mut self.new);
+            }
+            self.label(clump.cluster, None);
+            true
+        });
+    }
+
+    /// Clusters that become clumps.
+    fn stiffen(
+        &mut self,
+        clumps: &mut Clumps,
+        to_clumps: Vec<(u32, Clump)>,
+        clusters: Option<&Clusters>,
+    ) {
+        for (id, mut clump) in to_clumps {
+            let template = Arc::clone(clumps.template(&clump));
+            Clumps::push_spheres(&template, &mut clump, &mut self.new);
+            // The spheres of its template stand in the order of its particles.
+            let members = clusters.map_or(&[][..], |clusters| clusters.members(id));
+            for (n, &sphere) in template.outer.iter().enumerate() {
+                self.numbers[members[sphere as usize] as usize] = clump.first + n as u32;
+            }
+            self.label(id, Some(template.material));
+            clumps.all.push(clump);
+        }
+    }
+
+    /// Clumps that come, each with a number of its own among the clusters.
+    fn receive(
+        &mut self,
+        clumps: &mut Clumps,
+        coming: Vec<Clump>,
+        history: &mut Vec<Cluster>,
+        time_s: f64,
+    ) {
+        for mut clump in coming {
+            let template = Arc::clone(clumps.template(&clump));
+            clump.cluster = history.len() as u32;
+            history.push(Cluster {
+                parent: None,
+                born_s: time_s,
+                ended_s: None,
+                particles: template.outer.len() as u32,
+            });
+            Clumps::push_spheres(&template, &mut clump, &mut self.new);
+            self.label(clump.cluster, Some(template.material));
+            clumps.all.push(clump);
+        }
     }
 }
 

@@ -46,53 +46,88 @@ pub fn judge(
         groups.entry(group(study, run, along)).or_default().push(at);
     }
     for members in groups.values() {
-        let named = |at: usize| runs[at].labels(study).join(", ");
-        if let Reference::Finest(_) = of.reference {
-            let finest = members
-                .iter()
-                .copied()
-                .min_by(|&a, &b| size(&runs[a]).total_cmp(&size(&runs[b])));
-            let Some(finest) = finest else { continue };
-            let Some(reference) = rows[finest].results.get(measure).map(|j| j.value) else {
-                notes.push(format!(
-                    "{}: the finest run failed ({}), so others have nothing to be compared with",
-                    of.name,
-                    named(finest)
-                ));
-                continue;
-            };
-            for &at in members {
-                if let Some(judged) = rows[at].results.get_mut(measure) {
-                    judged.is_reference = at == finest;
-                    if at == finest {
-                        continue;
-                    }
-                    set_error(judged, reference, None);
-                    let [Some(own), Some(other)] = [done[at], done[finest]] else {
-                        continue;
-                    };
-                    let [own, other] = [own, other].map(|done| &done.readings[measure]);
-                    match of.of {
-                        MeasureOf::Masses(_) => {
-                            let [own, other] = [own, other].map(|reading| &reading.masses_kg);
-                            judged.error = Some(distance(own, other, |_| 1.0));
-                            judged.uncertainty = Some(by_chance(own.len(), other.len()));
-                        }
-                        MeasureOf::Curve => {
-                            judged.error = Some(curves::distance(&own.curve, &other.curve));
-                        }
-                        _ => {}
-                    }
-                }
-                let [own_s, finest_s] = [rows[at].time_s, rows[finest].time_s];
-                if let (Some(judged), [Some(own_s), Some(finest_s)]) =
-                    (rows[at].results.get_mut(measure), [own_s, finest_s])
-                {
-                    judged.times_as_fast = Some(finest_s / own_s);
+        let group = Group {
+            study,
+            runs,
+            done,
+            measure,
+            members,
+        };
+        match of.reference {
+            Reference::Finest(_) => {
+                let finest = members.iter().copied();
+                let finest = finest.min_by(|&a, &b| size(&runs[a]).total_cmp(&size(&runs[b])));
+                if let Some(finest) = finest {
+                    group.compare_with(finest, rows, notes);
                 }
             }
-            continue;
+            _ => group.extrapolate(along, rows, notes),
         }
+    }
+}
+
+/// Runs that differ along one axis only.
+struct Group<'a> {
+    study: &'a Study,
+    runs: &'a [Run],
+    done: &'a [Option<&'a Done>],
+    measure: usize,
+    /// Numbers of its runs, from 0.
+    members: &'a [usize],
+}
+
+impl Group<'_> {
+    fn named(&self, at: usize) -> String {
+        self.runs[at].labels(self.study).join(", ")
+    }
+
+    /// Compares all with the finest of them.
+    fn compare_with(&self, finest: usize, rows: &mut [Row], notes: &mut Vec<String>) {
+        let of = &self.study.measures[self.measure];
+        let Some(reference) = rows[finest].results.get(self.measure).map(|j| j.value) else {
+            notes.push(format!(
+                "{}: the finest run failed ({}), so others have nothing to be compared with",
+                of.name,
+                self.named(finest)
+            ));
+            return;
+        };
+        for &at in self.members {
+            if let Some(judged) = rows[at].results.get_mut(self.measure) {
+                judged.is_reference = at == finest;
+                if at == finest {
+                    continue;
+                }
+                set_error(judged, reference, None);
+                let [Some(own), Some(other)] = [self.done[at], self.done[finest]] else {
+                    continue;
+                };
+                let [own, other] = [own, other].map(|done| &done.readings[self.measure]);
+                match of.of {
+                    MeasureOf::Masses(_) => {
+                        let [own, other] = [own, other].map(|reading| &reading.masses_kg);
+                        judged.error = Some(distance(own, other, |_| 1.0));
+                        judged.uncertainty = Some(by_chance(own.len(), other.len()));
+                    }
+                    MeasureOf::Curve => {
+                        judged.error = Some(curves::distance(&own.curve, &other.curve));
+                    }
+                    _ => {}
+                }
+            }
+            let [own_s, finest_s] = [rows[at].time_s, rows[finest].time_s];
+            if let (Some(judged), [Some(own_s), Some(finest_s)]) =
+                (rows[at].results.get_mut(self.measure), [own_s, finest_s])
+            {
+                judged.times_as_fast = Some(finest_s / own_s);
+            }
+        }
+    }
+
+    /// Compares all with the value that they tend to (Richardson).
+    fn extrapolate(&self, along: usize, rows: &mut [Row], notes: &mut Vec<String>) {
+        let (study, measure, members) = (self.study, self.measure, self.members);
+        let of = &study.measures[measure];
         let points: Vec<(f64, f64)> = members
             .iter()
             .filter_map(|&at| {
@@ -114,17 +149,17 @@ pub fn judge(
                     "{}: fewer than three runs along {} came to their end ({}): nothing to extrapolate from",
                     of.name,
                     study.axes[along].name,
-                    named(first)
+                    self.named(first)
                 ));
             }
-            continue;
+            return;
         };
         if let (Some(doubt), Some(&first)) = (doubt, members.first()) {
             notes.push(format!(
                 "{}: no extrapolation along {} ({}): {}; compared with the finest run, good to {}",
                 of.name,
                 study.axes[along].name,
-                named(first),
+                self.named(first),
                 doubt.text(),
                 significant(uncertainty, 2)
             ));
