@@ -1,13 +1,16 @@
 //! A bed of spheres that touch as those of a heap do.
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::law::ContactKind;
+use dem_run::physics::contact::law::Law;
+use dem_run::physics::contact::law::Rolling;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::stages::ledger::opened;
 use dem_run::stages::neighbours::near_pairs;
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
-use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use dem_run::state::contacts::Contacts;
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
 

@@ -4,13 +4,14 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use crate::physics::contact::Linearised;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics, torques};
-use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::{Linearised, NormalLaw, linearised};
+use crate::physics::contact::law::ContactKind;
+use crate::physics::contact::law::Law;
 use crate::physics::number::Vec3;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
-use crate::state::contacts::{ContactKind, ContactPartition, Law, Rolling};
+use crate::state::contacts::ContactPartition;
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
 
@@ -47,7 +48,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
                 found.push(LinearContact {
                     ends: pair.map(Some),
                     touch,
-                    answer: answer(kind, &touch),
+                    answer: kind.linearised(&touch),
                 });
             }
         }
@@ -73,7 +74,7 @@ fn at_wall(
     LinearContact {
         ends: [None, Some(there.particle)],
         touch,
-        answer: answer(kind, &touch),
+        answer: kind.linearised(&touch),
     }
 }
 
@@ -138,21 +139,6 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
         }
     }
     rates
-}
-
-fn answer(kind: &ContactKind, touch: &ContactKinematics) -> Linearised {
-    match &kind.law {
-        Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch),
-        Law::Linear(law) => with_law(law, &kind.rolling, touch),
-    }
-}
-
-fn with_law(law: &impl NormalLaw<f64>, rolling: &Rolling, touch: &ContactKinematics) -> Linearised {
-    match rolling {
-        Rolling::Free => linearised(law, &NoRolling, touch),
-        Rolling::Constant(rolling) => linearised(law, rolling, touch),
-        Rolling::Spring(rolling) => linearised(law, rolling, touch),
-    }
 }
 
 /// Weights of the two symmetric operators of a body in a sum of them.
@@ -270,15 +256,8 @@ impl Matters {
             return 0.0;
         };
         let stiffness_n_m = 0.5 * self.above_1_s2 / inverse_kg;
-        match law {
-            // It grows with the root of the overlap.
-            Law::HertzMindlin(law) => {
-                let root = stiffness_n_m / law.normal_n_m((0.5 * radius_m).sqrt());
-                root * root
-            }
-            Law::Linear(law) if law.normal_n_m > stiffness_n_m => 0.0,
-            Law::Linear(_) => f64::INFINITY,
-        }
+        law.at_impact()
+            .overlap_of_stiffness_m(stiffness_n_m, 0.5 * radius_m)
     }
 }
 
@@ -305,7 +284,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
         let per_mass = ends * inverse_kg;
-        let answer = answer(kind, &touch);
+        let answer = kind.linearised(&touch);
         let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
         let damping = answer
             .normal_damping_n_s_m
@@ -413,8 +392,6 @@ fn overlap_at_impact_m(
 ) -> f64 {
     let half = if at_wall { 1.0 } else { 0.5 };
     let mass_kg = half / inverse_kg;
-    match &kind.law {
-        Law::HertzMindlin(law) => law.overlap_at_impact_m(half * radius_m, mass_kg, speed_m_s),
-        Law::Linear(law) => speed_m_s * (mass_kg / law.normal_n_m).sqrt(),
-    }
+    let law = kind.law.at_impact();
+    law.overlap_at_impact_m(half * radius_m, mass_kg, speed_m_s)
 }

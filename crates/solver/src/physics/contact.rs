@@ -21,8 +21,10 @@
 //!
 //! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that.
 
+pub mod assembly;
 pub mod hertz_mindlin;
 pub mod kinematics;
+pub mod law;
 pub mod linear;
 pub mod pair_parameters;
 pub mod relaxation;
@@ -197,6 +199,24 @@ pub trait NormalLaw<T: Number> {
 
     /// How the pair damps and rubs.
     fn parameters(&self) -> &pair_parameters::PairParameters<T>;
+}
+
+/// What the choice of the time step asks of a law besides forces.
+pub trait ImpactLaw: NormalLaw<f64> {
+    /// Fraction of its own limit with which an impact is followed, at most, at the usual safety
+    /// factor: what keeps the energy error of a single impact small.
+    fn impact_fraction(&self) -> f64;
+
+    /// Tangent stiffness along the normal, N/m, at an overlap, m, above 0, with an effective
+    /// radius, m.
+    fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64;
+
+    /// Largest overlap at which the tangent stiffness is at most this, N/m, with an effective
+    /// radius, m; infinite where no contact is stiffer.
+    fn overlap_of_stiffness_m(&self, stiffness_n_m: f64, effective_radius_m: f64) -> f64;
+
+    /// Largest overlap of an impact at a speed, m/s, without damping, m: with damping it is less.
+    fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64;
 }
 
 /// The damping c, N s/m, of a force -c v that is computed with the velocity of half a step of `dt`,

@@ -5,6 +5,9 @@ use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scen
 use dem_io::{Diagnostic, Result};
 
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
+use crate::physics::contact::law::ContactKind;
+use crate::physics::contact::law::Law;
+use crate::physics::contact::law::Rolling;
 use crate::physics::contact::linear::Linear;
 use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
@@ -12,7 +15,7 @@ use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 use crate::state::clusters::Clusters;
-use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
+use crate::state::contacts::{ContactHistory, Contacts};
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise
 /// or things are fast; and the largest such share.

@@ -15,19 +15,10 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Clump;
 use crate::state::clusters::Clusters;
-use crate::state::contacts::{Contacts, Law};
+use crate::state::contacts::Contacts;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
-
-/// Fraction of its own limit with which an impact is followed, at most, at the usual safety; as
-/// much more or less at another: a sphere that bounces keeps its energy to some 3e-3 of it then,
-/// and to 4e-2 at 0.9 (second order). Bonds vibrate for long and keep their energy on the mean, a
-/// contact does not.
-const SHARE_OF_IMPACT: f64 = 0.25;
-/// The same where a linear law is among the contacts: its force begins with a corner. Restitution
-/// is within 1 % then, and within 4 % at twice the step.
-const SHARE_OF_LINEAR_IMPACT: f64 = 0.125;
 
 /// Fraction of the smallest radius that a particle may move in a step.
 pub const FARTHEST: f64 = 0.5;
@@ -418,12 +409,9 @@ pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
 
 fn share_of_impact(state: &State, safety: f64) -> f64 {
     let of_particles = state.contacts.iter().flat_map(|contacts| &contacts.kinds);
-    let mut kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.kinds));
-    let usual = if kinds.any(|kind| matches!(kind.law, Law::Linear(_))) {
-        SHARE_OF_LINEAR_IMPACT
-    } else {
-        SHARE_OF_IMPACT
-    };
+    let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.kinds));
+    let fractions = kinds.map(|kind| kind.law.at_impact().impact_fraction());
+    let usual = fractions.fold(1.0, f64::min);
     // A factor of exactly 1 at the usual safety.
     safety / SAFETY * usual
 }

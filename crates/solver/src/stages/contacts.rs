@@ -6,27 +6,23 @@ mod stored;
 
 pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n};
 
-pub(in crate::stages) use self::stored::{stored_energy_j, stored_force_n};
+pub(in crate::stages) use self::stored::{StoredEnergy, StoredForce};
 
 use self::close::{close_m, look};
 use self::input::StepInput;
 use super::bonds::any_bond;
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::physics::contact::hertz_mindlin::HertzMindlin;
-use crate::physics::contact::kinematics::{ContactSphere, contact_kinematics, torques};
-use crate::physics::contact::linear::Linear;
-use crate::physics::contact::pair_parameters::PairParameters;
-use crate::physics::contact::relaxation::relaxed;
-use crate::physics::contact::rolling::{
-    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
-};
-use crate::physics::contact::{ContactSprings, Damped, NormalLaw, Response, response};
+use crate::physics::contact::assembly::{Remembered, assemble};
+use crate::physics::contact::kinematics::{ContactSphere, contact_kinematics};
+use crate::physics::contact::law::{ContactWork, Rolling};
+use crate::physics::contact::rolling::RollingFriction;
+use crate::physics::contact::{ContactSprings, Damped, NormalLaw};
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{fetch_soon, rows, vectors};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
-use crate::state::contacts::{ContactHistory, ContactPartition, Contacts, Law, Rolling};
+use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
 use crate::state::particles::{Particles, Wrench};
 
 /// Contacts of particles.
@@ -287,7 +283,13 @@ impl LaneWork for PartitionWork<'_> {
         (self.partition.computed, self.partition.rolled) = (0, 0);
         for kind in 0..self.scene.contacts.kinds.len() {
             let before = self.partition.computed;
-            self.with_kind::<T>(proof, kind);
+            let contact = self.scene.contacts.kinds[kind];
+            let work = KindWork::<T> {
+                work: &mut self,
+                proof,
+                kind,
+            };
+            contact.with(|number| T::all(proof, number), work);
             if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
                 self.partition.rolled += self.partition.computed - before;
             }
@@ -295,68 +297,23 @@ impl LaneWork for PartitionWork<'_> {
     }
 }
 
-#[inline(always)]
-fn parameters<T: Lanes>(proof: T::Proof, parameters: &PairParameters) -> PairParameters<T> {
-    PairParameters {
-        damping_ratio: T::all(proof, parameters.damping_ratio),
-        tangential_damping_ratio: T::all(proof, parameters.tangential_damping_ratio),
-        friction: T::all(proof, parameters.friction),
-        least_n: T::all(proof, parameters.least_n),
-        kept: [
-            T::all(proof, parameters.kept[0]),
-            T::all(proof, parameters.kept[1]),
-        ],
+/// The work on the contacts of one kind in a partition.
+struct KindWork<'a, 'b, T: Lanes> {
+    work: &'a mut PartitionWork<'b>,
+    proof: T::Proof,
+    kind: usize,
+}
+
+impl<T: Lanes> ContactWork<T> for KindWork<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
+        self.work.of_kind::<T>(self.proof, self.kind, law, rolling);
     }
 }
 
 impl PartitionWork<'_> {
-    #[inline(always)]
-    fn with_kind<T: Lanes>(&mut self, proof: T::Proof, kind: usize) {
-        let contact = &self.scene.contacts.kinds[kind];
-        match &contact.law {
-            Law::HertzMindlin(law) => {
-                let law = HertzMindlin {
-                    young_modulus_pa: T::all(proof, law.young_modulus_pa),
-                    shear_modulus_pa: T::all(proof, law.shear_modulus_pa),
-                    parameters: parameters(proof, &law.parameters),
-                };
-                self.with_law::<T>(proof, kind, &law, &contact.rolling);
-            }
-            Law::Linear(law) => {
-                let law = Linear {
-                    normal_n_m: T::all(proof, law.normal_n_m),
-                    tangential_n_m: T::all(proof, law.tangential_n_m),
-                    parameters: parameters(proof, &law.parameters),
-                };
-                self.with_law::<T>(proof, kind, &law, &contact.rolling);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn with_law<T: Lanes>(
-        &mut self,
-        proof: T::Proof,
-        kind: usize,
-        law: &impl NormalLaw<T>,
-        rolling: &Rolling,
-    ) {
-        match rolling {
-            Rolling::Free => self.of_kind::<T>(proof, kind, law, &NoRolling),
-            Rolling::Constant(rolling) => {
-                let friction = T::all(proof, rolling.friction);
-                self.of_kind::<T>(proof, kind, law, &ConstantMoment { friction });
-            }
-            Rolling::Spring(rolling) => {
-                let rolling = ElasticPlastic {
-                    friction: T::all(proof, rolling.friction),
-                    damping_ratio: T::all(proof, rolling.damping_ratio),
-                };
-                self.of_kind::<T>(proof, kind, law, &rolling);
-            }
-        }
-    }
-
     /// The contacts of one kind: those of the border first, so that each particle meets its
     /// contacts in their order.
     #[inline(always)]
@@ -524,41 +481,39 @@ impl StepInput<'_> {
         } else {
             (none, none)
         };
-        let mut touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
-        let least_m = touch.effective_radius_m.scale(self.contacts.least_overlap);
-        let relaxed = relaxed(touch.overlap_m, origin_m, least_m);
+        let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
         let touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
-        touch.overlap_m = relaxed.overlap_m;
-        let springs = ContactSprings {
-            tangential_m: Vec3(sx, sy, sz),
-            rolling_rad,
-            overlap_m,
+        let before = Remembered {
+            springs: ContactSprings {
+                tangential_m: Vec3(sx, sy, sz),
+                rolling_rad,
+                overlap_m,
+            },
+            damped: Damped {
+                force_n: Vec3(dx, dy, dz),
+                moment_n_m,
+            },
+            origin_m,
         };
-        let damped_before = Damped {
-            force_n: Vec3(dx, dy, dz),
-            moment_n_m,
-        };
-        let Response {
+        let least_overlap = self.contacts.least_overlap;
+        let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
+        let Remembered {
             springs,
-            force_on_b,
-            moment_on_b,
-            lost,
-            damping,
-            ..
-        } = response(law, rolling, &touch, &springs, self.dt);
-        let damped = damping.total();
+            damped,
+            origin_m,
+        } = met.remembered;
         let Vec3(sx, sy, sz) = springs.tangential_m;
         let Vec3(dx, dy, dz) = damped.force_n;
         ContactOutput {
             touched,
-            excessive_overlap: (touch.overlap_m).above(a.radius_m.minimum(b.radius_m)),
+            excessive_overlap: met.overlap_m.above(a.radius_m.minimum(b.radius_m)),
             tangential: T::rows([sx, sy, sz, springs.overlap_m]),
-            damped: T::rows([dx, dy, dz, relaxed.origin_m]),
+            damped: T::rows([dx, dy, dz, origin_m]),
             rolled: R::REMEMBERS.then(|| [rows(springs.rolling_rad), rows(damped.moment_n_m)]),
-            friction_j: (lost.sliding + lost.rolling).values(),
-            damping_j: damped.lost_j(&damped_before, &touch, self.dt).values(),
-            forces: Forces::new(force_on_b, torques(&touch, force_on_b, moment_on_b)),
+            friction_j: met.friction_j.values(),
+            damping_j: met.damping_j.values(),
+            forces: Forces::new(met.response.force_on_b, met.torques),
         }
     }
 

@@ -5,6 +5,7 @@
 //! time step.
 
 use super::stage::{NO_SAVING, Need, Stage};
+use crate::physics::contact::law::ContactKind;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
@@ -12,7 +13,6 @@ use crate::stages::motion::{ordered_sum, ordered_sums, power_w};
 use crate::stages::supports::reactions_work_j;
 use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions};
 use crate::state::State;
-use crate::state::contacts::ContactKind;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;

@@ -6,18 +6,17 @@ use rayon::prelude::*;
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
-use crate::physics::contact::Damped;
+use crate::physics::contact::assembly::Remembered;
 use crate::physics::contact::kinematics::{
-    ContactKinematics, ContactSphere, WallPoint, torques, wall_contact_kinematics,
+    ContactKinematics, ContactSphere, WallPoint, wall_contact_kinematics,
 };
-use crate::physics::contact::relaxation::relaxed;
-use crate::physics::contact::rolling::NoRolling;
-use crate::physics::contact::{ContactSprings, NormalLaw, Response, response};
+use crate::physics::contact::law::ContactKind;
+use crate::physics::contact::{ContactSprings, Damped, Response};
 use crate::physics::number::Vec3;
 use crate::physics::rigid::turn;
-use crate::stages::contacts::{stored_energy_j, stored_force_n};
+use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
-use crate::state::contacts::{ContactHistory, ContactKind, Contacts, Law, Rolling};
+use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Push, Wall, WallContact};
@@ -300,31 +299,35 @@ fn meet_at(
         spin_rad_s: Vector3::from(motion.spin_rad_s).into(),
         ..particles.contact_sphere_at_rest(i)
     };
-    let mut touch = wall_contact_kinematics(&foot, ball, dt);
+    let touch = wall_contact_kinematics(&foot, ball, dt);
     let history = old.map_or(ContactHistory::default(), |old| old.history);
-    let least_m = least_overlap * touch.effective_radius_m;
-    let relaxed = relaxed(touch.overlap_m, history.origin_m(), least_m);
-    touch.overlap_m = relaxed.overlap_m;
     let vector = |[x, y, z, _]: [f64; 4]| Vec3(x, y, z);
-    let springs = ContactSprings {
-        tangential_m: vector(history.tangential),
-        rolling_rad: vector(history.rolling),
-        overlap_m: history.overlap_m(),
+    let before = Remembered {
+        springs: ContactSprings {
+            tangential_m: vector(history.tangential),
+            rolling_rad: vector(history.rolling),
+            overlap_m: history.overlap_m(),
+        },
+        damped: Damped {
+            force_n: vector(history.damping),
+            moment_n_m: vector(history.rolling_damping),
+        },
+        origin_m: history.origin_m(),
     };
-    let damped_before = Damped {
-        force_n: vector(history.damping),
-        moment_n_m: vector(history.rolling_damping),
-    };
-    let Response {
+    let met = kind.assemble(&touch, &before, least_overlap, dt);
+    let Remembered {
         springs,
+        damped,
+        origin_m,
+    } = met.remembered;
+    let [_, torque] = met.torques;
+    let Response {
         force_on_b,
         moment_on_b,
         energy,
-        lost,
         damping,
-    } = of_kind(kind, &touch, &springs, dt);
-    let damped = damping.total();
-    let [_, torque] = torques(&touch, force_on_b, moment_on_b);
+        ..
+    } = met.response;
     let row = |Vec3(x, y, z): Vec3<f64>, last: f64| [x, y, z, last];
     Met {
         old: old.map(|old| old.feature),
@@ -334,7 +337,7 @@ fn meet_at(
             normal: normal.into(),
             history: ContactHistory {
                 tangential: row(springs.tangential_m, springs.overlap_m),
-                damping: row(damped.force_n, relaxed.origin_m),
+                damping: row(damped.force_n, origin_m),
                 rolling: row(springs.rolling_rad, 0.0),
                 rolling_damping: row(damped.moment_n_m, 0.0),
             },
@@ -345,13 +348,10 @@ fn meet_at(
         torque: torque.into(),
         moments: [moment_on_b.into(), damping.rolling_n_m.into()],
         elastic_j: energy.normal + energy.tangential + energy.rolling,
-        lost_j: [
-            lost.sliding + lost.rolling,
-            damped.lost_j(&damped_before, &touch, dt),
-        ],
-        crossed: touch.overlap_m > ball.radius_m
+        lost_j: [met.friction_j, met.damping_j],
+        crossed: met.overlap_m > ball.radius_m
             || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
-        stiffness_n_m: kind.normal_n_m(touch.overlap_m, touch.effective_radius_m),
+        stiffness_n_m: kind.normal_n_m(met.overlap_m, touch.effective_radius_m),
     }
 }
 
@@ -413,10 +413,10 @@ pub fn touch_energy_j(
     touch: &WallContact,
 ) -> f64 {
     let kind = wall.kind(contacts.materials[touch.particle as usize]);
-    match &kind.law {
-        Law::HertzMindlin(law) => stored_j(law, &kind.rolling, particles, touch),
-        Law::Linear(law) => stored_j(law, &kind.rolling, particles, touch),
-    }
+    let (i, history) = (touch.particle as usize, &touch.history);
+    let mut touch = wall_contact(particles, i, &touch.normal.into(), history.overlap_m());
+    touch.overlap_m = history.overlap_m();
+    kind.with(|number| number, StoredEnergy { touch, history })
 }
 
 /// Force of a wall on a particle that touches it, as it was taken down, N.
@@ -429,10 +429,8 @@ pub fn touch_force_n(
     let (i, history) = (old.particle as usize, &old.history);
     let mut touch = wall_contact(particles, i, &old.normal.into(), history.overlap_m());
     touch.overlap_m = history.overlap_m();
-    match &wall.kind(contacts.materials[i]).law {
-        Law::HertzMindlin(law) => stored_force_n(law, &touch, history),
-        Law::Linear(law) => stored_force_n(law, &touch, history),
-    }
+    let kind = wall.kind(contacts.materials[i]);
+    kind.with(|number| number, StoredForce { touch, history })
 }
 
 /// How far a sphere is from a wall, m; infinite where that is more than its own radius.
@@ -445,46 +443,6 @@ pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
         .iter()
         .map(|touch| touch.distance_m - pose.radius_m());
     gaps.fold(f64::INFINITY, f64::min)
-}
-
-/// Elastic energy of a contact with a wall as it was taken down, J.
-fn stored_j(
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-    particles: &Particles,
-    old: &WallContact,
-) -> f64 {
-    let (i, history) = (old.particle as usize, &old.history);
-    let mut touch = wall_contact(particles, i, &old.normal.into(), history.overlap_m());
-    touch.overlap_m = history.overlap_m();
-    stored_energy_j(law, rolling, &touch, history)
-}
-
-/// The laws of a kind of contact.
-fn of_kind(
-    kind: &ContactKind,
-    touch: &ContactKinematics,
-    history: &ContactSprings,
-    dt: f64,
-) -> Response {
-    match &kind.law {
-        Law::HertzMindlin(law) => with_law(law, &kind.rolling, touch, history, dt),
-        Law::Linear(law) => with_law(law, &kind.rolling, touch, history, dt),
-    }
-}
-
-fn with_law(
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-    touch: &ContactKinematics,
-    history: &ContactSprings,
-    dt: f64,
-) -> Response {
-    match rolling {
-        Rolling::Free => response(law, &NoRolling, touch, history, dt),
-        Rolling::Constant(rolling) => response(law, rolling, touch, history, dt),
-        Rolling::Spring(rolling) => response(law, rolling, touch, history, dt),
-    }
 }
 
 /// Decides how the walls move in the step of `dt`, s, that begins at `time_s`.

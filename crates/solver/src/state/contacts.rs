@@ -1,54 +1,10 @@
 //! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of
 //! contacts are.
 
+use crate::physics::contact::law::ContactKind;
 use std::ops::Range;
 
-use crate::physics::contact::hertz_mindlin::HertzMindlin;
-use crate::physics::contact::linear::Linear;
-use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
-use crate::physics::number::Number;
 use serde::{Deserialize, Serialize};
-
-/// Normal law of a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// Hertz and Mindlin.
-    HertzMindlin(HertzMindlin),
-    /// Springs and dashpots.
-    Linear(Linear),
-}
-
-/// Rolling friction of a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rolling {
-    /// None.
-    Free,
-    /// Constant moment.
-    Constant(ConstantMoment),
-    /// Spring and dashpot.
-    Spring(ElasticPlastic),
-}
-
-impl ContactKind {
-    /// Stiffness along the normal at an overlap, m, with a reduced radius, m, in N/m; 0 where there
-    /// is no overlap.
-    pub fn normal_n_m(&self, overlap_m: f64, radius_m: f64) -> f64 {
-        let overlap_m = overlap_m.max(0.0);
-        match &self.law {
-            Law::HertzMindlin(law) => law.normal_n_m((radius_m * overlap_m).sqrt()),
-            Law::Linear(law) => overlap_m.if_positive(law.normal_n_m),
-        }
-    }
-}
-
-/// How a pair of materials meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactKind {
-    /// Along and across the normal.
-    pub law: Law,
-    /// Against rolling.
-    pub rolling: Rolling,
-}
 
 /// What a contact remembers. Two cache lines, of which contacts without rolling friction use the
 /// first.

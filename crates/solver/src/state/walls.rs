@@ -3,8 +3,9 @@
 use dem_io::scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
-use super::contacts::{ContactHistory, ContactKind};
+use super::contacts::ContactHistory;
 use crate::geometry::{Bounds, Frame, Shape};
+use crate::physics::contact::law::ContactKind;
 
 /// A wall of the scene.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,6 +2,7 @@
 
 use super::world::{Body, RIGID, World, Z, frictionless, material};
 use super::{assert_near, reference};
+use dem_run::physics::contact::ImpactLaw;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
 use dem_run::physics::contact::linear::Linear;

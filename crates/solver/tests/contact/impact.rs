@@ -2,6 +2,7 @@
 
 use super::reference;
 use super::world::{Body, RIGID, World, material};
+use dem_run::physics::contact::ImpactLaw;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::pair_parameters::{
     AttractiveDamping, PairInput, TangentialUnloading,

@@ -3,6 +3,7 @@
 use super::hertz::central_impact;
 use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
+use dem_run::physics::contact::ImpactLaw;
 use dem_run::physics::contact::NormalLaw;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::linear::Linear;

@@ -2,6 +2,9 @@
 //! often near pairs are looked for.
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::law::ContactKind;
+use dem_run::physics::contact::law::Law;
+use dem_run::physics::contact::law::Rolling;
 use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
@@ -11,7 +14,7 @@ use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
-use dem_run::state::contacts::{ContactKind, Contacts, Law, Rolling};
+use dem_run::state::contacts::Contacts;
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, interact, step};
 

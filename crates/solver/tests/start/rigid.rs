@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
+use dem_run::physics::contact::law::Law;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::plan::Plan;
-use dem_run::state::contacts::Law;
 use dem_run::step::step;
 
 use crate::{PAIR, assert_near, place, planned, try_planned};

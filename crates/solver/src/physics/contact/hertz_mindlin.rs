@@ -10,7 +10,7 @@
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{Elastic, PairInput, PairParameters};
-use super::{NormalLaw, NormalResponse};
+use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 
 /// The law for a pair of materials.
@@ -39,10 +39,14 @@ impl HertzMindlin {
         }
     }
 
-    /// Largest overlap of an impact at this speed without damping, m: with damping it is less.
-    pub fn overlap_at_impact_m(&self, radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
-        let k = 4.0 / 3.0 * self.young_modulus_pa * radius_m.sqrt();
-        (1.25 * mass_kg * speed_m_s * speed_m_s / k).powf(0.4)
+    /// The same for as many contacts at once as a number stands for.
+    #[inline(always)]
+    pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> HertzMindlin<T> {
+        HertzMindlin {
+            young_modulus_pa: all(self.young_modulus_pa),
+            shear_modulus_pa: all(self.shear_modulus_pa),
+            parameters: self.parameters.in_lanes(all),
+        }
     }
 }
 
@@ -91,5 +95,31 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
     #[inline(always)]
     fn parameters(&self) -> &PairParameters<T> {
         &self.parameters
+    }
+}
+
+/// Fraction of its own limit with which an impact is followed: a sphere that bounces keeps its
+/// energy to some 3e-3 of it then, and to 4e-2 at 0.9 (second order). Bonds vibrate for long and
+/// keep their energy on the mean, a contact does not.
+const IMPACT_FRACTION: f64 = 0.25;
+
+impl ImpactLaw for HertzMindlin {
+    fn impact_fraction(&self) -> f64 {
+        IMPACT_FRACTION
+    }
+
+    fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {
+        Self::normal_n_m(self, (effective_radius_m * overlap_m).sqrt())
+    }
+
+    fn overlap_of_stiffness_m(&self, stiffness_n_m: f64, effective_radius_m: f64) -> f64 {
+        // It grows with the root of the overlap.
+        let root = stiffness_n_m / Self::normal_n_m(self, effective_radius_m.sqrt());
+        root * root
+    }
+
+    fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
+        let k = 4.0 / 3.0 * self.young_modulus_pa * effective_radius_m.sqrt();
+        (1.25 * mass_kg * speed_m_s * speed_m_s / k).powf(0.4)
     }
 }

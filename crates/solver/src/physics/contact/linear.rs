@@ -10,7 +10,7 @@
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{PairInput, PairParameters};
-use super::{NormalLaw, NormalResponse};
+use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 
 /// The law for a pair of materials.
@@ -31,6 +31,16 @@ impl Linear {
             normal_n_m,
             tangential_n_m: tangential_ratio * normal_n_m,
             parameters: PairParameters::new(pair_input),
+        }
+    }
+
+    /// The same for as many contacts at once as a number stands for.
+    #[inline(always)]
+    pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> Linear<T> {
+        Linear {
+            normal_n_m: all(self.normal_n_m),
+            tangential_n_m: all(self.tangential_n_m),
+            parameters: self.parameters.in_lanes(all),
         }
     }
 }
@@ -83,4 +93,30 @@ fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt:
     let since_met = (touch.overlap_m / approached_m).minimum(one);
     let more = approached_m.if_positive(since_met.plus(-0.5));
     one + more - overlap_before_m.if_positive(more)
+}
+
+/// Fraction of its own limit with which an impact is followed: the force begins with a corner.
+/// Restitution is within 1 % then, and within 4 % at twice the step.
+const IMPACT_FRACTION: f64 = 0.125;
+
+impl ImpactLaw for Linear {
+    fn impact_fraction(&self) -> f64 {
+        IMPACT_FRACTION
+    }
+
+    fn normal_n_m(&self, overlap_m: f64, _effective_radius_m: f64) -> f64 {
+        overlap_m.if_positive(self.normal_n_m)
+    }
+
+    fn overlap_of_stiffness_m(&self, stiffness_n_m: f64, _effective_radius_m: f64) -> f64 {
+        if self.normal_n_m > stiffness_n_m {
+            0.0
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn overlap_at_impact_m(&self, _effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
+        speed_m_s * (mass_kg / self.normal_n_m).sqrt()
+    }
 }

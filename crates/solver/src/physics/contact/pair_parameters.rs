@@ -81,6 +81,18 @@ pub struct PairParameters<T = f64> {
 }
 
 impl PairParameters {
+    /// The same for as many contacts at once as a number stands for.
+    #[inline(always)]
+    pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> PairParameters<T> {
+        PairParameters {
+            damping_ratio: all(self.damping_ratio),
+            tangential_damping_ratio: all(self.tangential_damping_ratio),
+            friction: all(self.friction),
+            least_n: all(self.least_n),
+            kept: self.kept.map(all),
+        }
+    }
+
     /// Of a pair that behaves so.
     pub fn new(pair: &PairInput) -> Self {
         let (ratio, least_n) = match pair.pull {

@@ -70,6 +70,27 @@ impl ConstantMoment {
     pub const SHARE: f64 = 1.0 / 21.0;
 }
 
+impl ConstantMoment {
+    /// The same for as many contacts at once as a number stands for.
+    #[inline(always)]
+    pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> ConstantMoment<T> {
+        ConstantMoment {
+            friction: all(self.friction),
+        }
+    }
+}
+
+impl ElasticPlastic {
+    /// The same for as many contacts at once as a number stands for.
+    #[inline(always)]
+    pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> ElasticPlastic<T> {
+        ElasticPlastic {
+            friction: all(self.friction),
+            damping_ratio: all(self.damping_ratio),
+        }
+    }
+}
+
 impl<T: Number> RollingFriction<T> for NoRolling {
     const REMEMBERS: bool = false;
 

@@ -2,9 +2,10 @@
 
 use crate::physics::contact::NormalLaw;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics};
+use crate::physics::contact::law::ContactWork;
 use crate::physics::contact::rolling::RollingFriction;
 use crate::stages::motion::{ordered_sum, ordered_sums};
-use crate::state::contacts::{ContactHistory, Contacts, Law, Rolling};
+use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Particles, Pose};
 use nalgebra::Vector3;
 
@@ -34,27 +35,13 @@ pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -
         return 0.0;
     }
     let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
-    match &kind.law {
-        Law::HertzMindlin(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-        Law::Linear(law) => stored_j(contacts, particles, at, law, &kind.rolling),
-    }
-}
-
-/// Elastic energy of a contact as it was taken down, J.
-fn stored_j(
-    contacts: &Contacts,
-    particles: &Particles,
-    at: usize,
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-) -> f64 {
     let ends = contacts.pairs[at].map(|end| end as usize);
     let history = &contacts.histories[at];
     let [a, b] = ends.map(|i| particles.poses[i].place());
     let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
     let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
     touch.overlap_m = history.overlap_m();
-    stored_energy_j(law, rolling, &touch, history)
+    kind.with(|number| number, StoredEnergy { touch, history })
 }
 
 /// Force of a contact on the second of a pair, N, from what it remembers.
@@ -69,44 +56,51 @@ pub fn pair_force_n(
     let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
     let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
     touch.overlap_m = history.overlap_m();
-    match &contacts.kinds[contacts.kind(pair)].law {
-        Law::HertzMindlin(law) => stored_force_n(law, &touch, history),
-        Law::Linear(law) => stored_force_n(law, &touch, history),
+    let kind = &contacts.kinds[contacts.kind(pair)];
+    kind.with(|number| number, StoredForce { touch, history })
+}
+
+/// Force of a contact on its second end, be it of two particles or of a wall and a particle, from
+/// what it remembers, N.
+pub(in crate::stages) struct StoredForce<'a> {
+    /// At the overlap that is remembered.
+    pub(in crate::stages) touch: ContactKinematics,
+    pub(in crate::stages) history: &'a ContactHistory,
+}
+
+impl ContactWork<f64> for StoredForce<'_> {
+    type Output = Vector3<f64>;
+
+    fn with(self, law: &impl NormalLaw<f64>, _: &impl RollingFriction<f64>) -> Vector3<f64> {
+        let Self { touch, history } = self;
+        let normal_response = law.evaluate(&touch, touch.overlap_m, 0.0);
+        let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
+        let normal = Vector3::from(touch.normal) * normal_response.elastic_n;
+        normal - vector(history.tangential) * normal_response.tangential_n_m[1]
+            + vector(history.damping)
     }
 }
 
-/// Force of a touch on its second end, be it of two particles or of a wall and a particle, from
-/// what it remembers, N.
-pub(in crate::stages) fn stored_force_n(
-    law: &impl NormalLaw<f64>,
-    touch: &ContactKinematics,
-    history: &ContactHistory,
-) -> Vector3<f64> {
-    let normal_response = law.evaluate(touch, touch.overlap_m, 0.0);
-    let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
-    let normal = Vector3::from(touch.normal) * normal_response.elastic_n;
-    normal - vector(history.tangential) * normal_response.tangential_n_m[1]
-        + vector(history.damping)
+/// Elastic energy of a contact, be it of two particles or of one and a wall, from what it
+/// remembers, J.
+pub(in crate::stages) struct StoredEnergy<'a> {
+    /// At the overlap that is remembered.
+    pub(in crate::stages) touch: ContactKinematics,
+    pub(in crate::stages) history: &'a ContactHistory,
 }
 
-/// Elastic energy of a touch, be it of two particles or of one and a wall, from what it remembers,
-/// J.
-pub(in crate::stages) fn stored_energy_j(
-    law: &impl NormalLaw<f64>,
-    rolling: &Rolling,
-    touch: &ContactKinematics,
-    history: &ContactHistory,
-) -> f64 {
-    let normal_response = law.evaluate(touch, touch.overlap_m, 0.0);
-    let stiffness = match rolling {
-        Rolling::Free => 0.0,
-        Rolling::Constant(rolling) => rolling.linearised(&normal_response, touch)[0],
-        Rolling::Spring(rolling) => rolling.linearised(&normal_response, touch)[0],
-    };
-    let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
-    normal_response.energy_j
-        + 0.5 * normal_response.tangential_n_m[1] * square(history.tangential)
-        + 0.5 * stiffness * square(history.rolling)
+impl ContactWork<f64> for StoredEnergy<'_> {
+    type Output = f64;
+
+    fn with(self, law: &impl NormalLaw<f64>, rolling: &impl RollingFriction<f64>) -> f64 {
+        let Self { touch, history } = self;
+        let normal_response = law.evaluate(&touch, touch.overlap_m, 0.0);
+        let [stiffness, _] = rolling.linearised(&normal_response, &touch);
+        let square = |[x, y, z, _]: [f64; 4]| x * x + y * y + z * z;
+        normal_response.energy_j
+            + 0.5 * normal_response.tangential_n_m[1] * square(history.tangential)
+            + 0.5 * stiffness * square(history.rolling)
+    }
 }
 
 /// Energy that friction and that damping took so far, J.

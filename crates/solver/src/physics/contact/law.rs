@@ -1,0 +1,135 @@
+//! The contact laws and rolling frictions that a pair of materials can have: the one place that
+//! lists them. `doc/adding-a-model.md` tells how another one is added.
+
+use super::assembly::{Assembled, Remembered, assemble};
+use super::hertz_mindlin::HertzMindlin;
+use super::kinematics::ContactKinematics;
+use super::linear::Linear;
+use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
+use super::{ImpactLaw, Linearised, NormalLaw, linearised};
+use crate::physics::number::Number;
+
+/// Normal law of a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Hertz and Mindlin.
+    HertzMindlin(HertzMindlin),
+    /// Springs and dashpots.
+    Linear(Linear),
+}
+
+/// Rolling friction of a pair of materials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rolling {
+    /// None.
+    Free,
+    /// Constant moment.
+    Constant(ConstantMoment),
+    /// Spring and dashpot.
+    Spring(ElasticPlastic),
+}
+
+/// How a pair of materials meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactKind {
+    /// Along and across the normal.
+    pub law: Law,
+    /// Against rolling.
+    pub rolling: Rolling,
+}
+
+impl Law {
+    /// The law, for the choice of the time step.
+    pub fn at_impact(&self) -> &dyn ImpactLaw {
+        match self {
+            Self::HertzMindlin(law) => law,
+            Self::Linear(law) => law,
+        }
+    }
+}
+
+/// Something to be done with a law and a rolling friction, whichever they are.
+pub trait ContactWork<T: Number> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) -> Self::Output;
+}
+
+impl ContactKind {
+    /// Does something with the law and the rolling friction of this kind. `all` makes numbers of
+    /// the formulas from plain ones: one for each of several contacts at once, or the number itself.
+    #[inline(always)]
+    pub fn with<T: Number, W: ContactWork<T>>(
+        &self,
+        all: impl Fn(f64) -> T + Copy,
+        work: W,
+    ) -> W::Output {
+        match &self.law {
+            Law::HertzMindlin(law) => self.with_law(&law.in_lanes(all), all, work),
+            Law::Linear(law) => self.with_law(&law.in_lanes(all), all, work),
+        }
+    }
+
+    #[inline(always)]
+    fn with_law<T: Number, W: ContactWork<T>>(
+        &self,
+        law: &impl NormalLaw<T>,
+        all: impl Fn(f64) -> T,
+        work: W,
+    ) -> W::Output {
+        match &self.rolling {
+            Rolling::Free => work.with(law, &NoRolling),
+            Rolling::Constant(rolling) => work.with(law, &rolling.in_lanes(all)),
+            Rolling::Spring(rolling) => work.with(law, &rolling.in_lanes(all)),
+        }
+    }
+
+    /// Stiffness along the normal at an overlap, m, with an effective radius, m, in N/m; 0 where
+    /// there is no overlap.
+    pub fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {
+        let law = self.law.at_impact();
+        law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
+    }
+
+    /// The contact linearised: see [`linearised`].
+    pub fn linearised(&self, touch: &ContactKinematics) -> Linearised {
+        struct Linearise<'a>(&'a ContactKinematics);
+        impl ContactWork<f64> for Linearise<'_> {
+            type Output = Linearised;
+
+            fn with(
+                self,
+                law: &impl NormalLaw<f64>,
+                rolling: &impl RollingFriction<f64>,
+            ) -> Linearised {
+                linearised(law, rolling, self.0)
+            }
+        }
+        self.with(|number| number, Linearise(touch))
+    }
+
+    /// What comes of a contact after a step of `dt`, s: see [`assemble`].
+    pub fn assemble(
+        &self,
+        touch: &ContactKinematics,
+        before: &Remembered,
+        least_overlap: f64,
+        dt: f64,
+    ) -> Assembled {
+        struct Assemble<'a>(&'a ContactKinematics, &'a Remembered, f64, f64);
+        impl ContactWork<f64> for Assemble<'_> {
+            type Output = Assembled;
+
+            fn with(
+                self,
+                law: &impl NormalLaw<f64>,
+                rolling: &impl RollingFriction<f64>,
+            ) -> Assembled {
+                assemble(law, rolling, self.0, self.1, self.2, self.3)
+            }
+        }
+        self.with(|number| number, Assemble(touch, before, least_overlap, dt))
+    }
+}
