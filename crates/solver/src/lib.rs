@@ -21,3 +21,8 @@ pub mod state;
 pub mod step;
 pub mod stress;
 pub mod sweep;
+
+/// The code on the page is compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../doc/adding-a-model.md")]
+struct AddingAModel;

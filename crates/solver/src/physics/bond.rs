@@ -3,7 +3,9 @@
 pub mod damping;
 pub mod failure;
 pub mod incremental;
+pub mod models;
 pub mod pair;
+pub mod rod;
 pub mod scatter;
 pub mod stiffness;
 pub mod strain_rate;

@@ -1,9 +1,13 @@
-//! Stiffnesses of a bond in its four modes, and where along it shear acts, for five bond models.
-//!
-//! Sources: Chen et al. 2022, table 8 (parallel, Euler-Bernoulli, Timoshenko); MUSEN's elastic
-//! solid bond; Platzer 2022, eqs. 6-10 (shear-coefficient beam).
+//! The bond models: the one place that lists them. `doc/adding-a-model.md` tells how another one is
+//! added.
 
-use std::f64::consts::PI;
+use super::models::elastic_solid::ElasticSolid;
+use super::models::euler_bernoulli::EulerBernoulli;
+use super::models::parallel::Parallel;
+use super::models::shear_coefficient::ShearCoefficient;
+use super::models::timoshenko::Timoshenko;
+pub use super::rod::{BondShape, Stiffness};
+use super::rod::{Rod, RodModel};
 
 /// Which beam a bond is taken for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,33 +31,6 @@ pub enum BondModel {
     },
 }
 
-/// A bond before it is loaded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BondShape {
-    /// Distance between the centres, m.
-    pub length_m: f64,
-    /// Radius of the bond, m.
-    pub radius_m: f64,
-    /// Radii of the spheres at its two ends, m.
-    pub end_radii_m: [f64; 2],
-}
-
-/// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point
-/// lies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stiffness<T = f64> {
-    /// Along the bond, N/m.
-    pub normal: T,
-    /// Across the bond at the contact point, N/m.
-    pub shear: T,
-    /// Torsion, N m/rad.
-    pub torsion: T,
-    /// Bending, N m/rad.
-    pub bending: T,
-    /// Distances of the contact point from the two centres, m; together the bond's length.
-    pub levers_m: [T; 2],
-}
-
 /// Stiffness of a bond of Young's modulus `young_modulus_pa` and Poisson's ratio `poisson_ratio`.
 pub fn stiffness(
     model: BondModel,
@@ -61,66 +38,16 @@ pub fn stiffness(
     young_modulus_pa: f64,
     poisson_ratio: f64,
 ) -> Stiffness {
-    let (length, radius) = (shape.length_m, shape.radius_m);
-    let [radius_a, radius_b] = shape.end_radii_m;
-    let area = PI * radius.powi(2);
-    let second_moment = 0.25 * PI * radius.powi(4);
-    let shear_modulus = young_modulus_pa / (2.0 * (1.0 + poisson_ratio));
-    let normal = young_modulus_pa * area / length;
-    let middle = [0.5 * length; 2];
-    let beam = 12.0 * young_modulus_pa * second_moment / length.powi(3);
-    // A round rod: J = 2 I, I = A r^2 / 4.
-    let torsion = 2.0 * shear_modulus * second_moment / length;
-    let bending = young_modulus_pa * second_moment / length;
+    let rod = Rod {
+        shape: *shape,
+        young_modulus_pa,
+        poisson_ratio,
+    };
     match model {
-        BondModel::Parallel { kappa } => {
-            let shear = normal / kappa.unwrap_or(2.0 * (1.0 + poisson_ratio));
-            // The longer lever first: what is left for the other is then exact, and both together
-            // are the length to the last bit.
-            let longer = 0.5 * (length + (radius_a - radius_b).abs());
-            let shorter = length - longer;
-            Stiffness {
-                normal,
-                shear,
-                torsion: 0.5 * shear * radius.powi(2),
-                bending,
-                levers_m: if radius_a >= radius_b {
-                    [longer, shorter]
-                } else {
-                    [shorter, longer]
-                },
-            }
-        }
-        BondModel::EulerBernoulli => Stiffness {
-            normal,
-            shear: beam,
-            torsion,
-            bending,
-            levers_m: middle,
-        },
-        BondModel::Timoshenko => {
-            let phi = 20.0 * radius.powi(2) * (1.0 + poisson_ratio) / (3.0 * length.powi(2));
-            Stiffness {
-                normal,
-                shear: beam / (1.0 + phi),
-                torsion,
-                bending,
-                levers_m: middle,
-            }
-        }
-        BondModel::ElasticSolid => Stiffness {
-            normal,
-            shear: shear_modulus * area / length,
-            torsion,
-            bending,
-            levers_m: middle,
-        },
-        BondModel::ShearCoefficient { alpha } => Stiffness {
-            normal,
-            shear: alpha * shear_modulus * area / length,
-            torsion,
-            bending,
-            levers_m: middle,
-        },
+        BondModel::Parallel { kappa } => Parallel { kappa }.stiffness(&rod),
+        BondModel::EulerBernoulli => EulerBernoulli.stiffness(&rod),
+        BondModel::Timoshenko => Timoshenko.stiffness(&rod),
+        BondModel::ElasticSolid => ElasticSolid.stiffness(&rod),
+        BondModel::ShearCoefficient { alpha } => ShearCoefficient { alpha }.stiffness(&rod),
     }
 }

@@ -1,0 +1,7 @@
+//! Bond models, a file each.
+
+pub mod elastic_solid;
+pub mod euler_bernoulli;
+pub mod parallel;
+pub mod shear_coefficient;
+pub mod timoshenko;

@@ -1,0 +1,17 @@
+//! The beam with a shear coefficient (Platzer 2022, eqs. 6-10; Obermayr et al. 2013).
+
+use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
+
+/// As the elastic solid bond, with the shear stiffness times a coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearCoefficient {
+    /// Shear coefficient, 0.9 for a circular section.
+    pub alpha: f64,
+}
+
+impl RodModel for ShearCoefficient {
+    fn stiffness(&self, rod: &Rod) -> Stiffness {
+        let shear = self.alpha * rod.shear_modulus_pa() * rod.area_m2() / rod.shape.length_m;
+        rod.with_shear(shear)
+    }
+}

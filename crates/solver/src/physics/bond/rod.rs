@@ -1,0 +1,88 @@
+//! A bond as a round rod: what bond models have in common.
+
+use std::f64::consts::PI;
+
+/// A bond before it is loaded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondShape {
+    /// Distance between the centres, m.
+    pub length_m: f64,
+    /// Radius of the bond, m.
+    pub radius_m: f64,
+    /// Radii of the spheres at its two ends, m.
+    pub end_radii_m: [f64; 2],
+}
+
+/// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point
+/// lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiffness<T = f64> {
+    /// Along the bond, N/m.
+    pub normal: T,
+    /// Across the bond at the contact point, N/m.
+    pub shear: T,
+    /// Torsion, N m/rad.
+    pub torsion: T,
+    /// Bending, N m/rad.
+    pub bending: T,
+    /// Distances of the contact point from the two centres, m; together the bond's length.
+    pub levers_m: [T; 2],
+}
+
+/// A bond as a round rod.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rod {
+    /// Before it is loaded.
+    pub shape: BondShape,
+    /// Young's modulus, Pa.
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio.
+    pub poisson_ratio: f64,
+}
+
+impl Rod {
+    /// A, m2.
+    pub fn area_m2(&self) -> f64 {
+        PI * self.shape.radius_m.powi(2)
+    }
+
+    /// I, m4.
+    pub fn second_moment_m4(&self) -> f64 {
+        0.25 * PI * self.shape.radius_m.powi(4)
+    }
+
+    /// G, Pa.
+    pub fn shear_modulus_pa(&self) -> f64 {
+        self.young_modulus_pa / (2.0 * (1.0 + self.poisson_ratio))
+    }
+
+    /// E A/L, N/m.
+    pub fn normal_n_m(&self) -> f64 {
+        self.young_modulus_pa * self.area_m2() / self.shape.length_m
+    }
+
+    /// 12 E I/L^3, N/m: across a slender beam whose ends do not turn.
+    pub fn beam_n_m(&self) -> f64 {
+        12.0 * self.young_modulus_pa * self.second_moment_m4() / self.shape.length_m.powi(3)
+    }
+
+    /// Stiffness with this one across, N/m, along, in torsion and in bending that of a round rod
+    /// (J = 2 I, I = A r^2/4), and shear in the middle.
+    pub fn with_shear(&self, shear_n_m: f64) -> Stiffness {
+        let length = self.shape.length_m;
+        let second_moment = self.second_moment_m4();
+        Stiffness {
+            normal: self.normal_n_m(),
+            shear: shear_n_m,
+            torsion: 2.0 * self.shear_modulus_pa() * second_moment / length,
+            bending: self.young_modulus_pa * second_moment / length,
+            levers_m: [0.5 * length; 2],
+        }
+    }
+}
+
+/// A bond model: what it takes a rod for.
+pub trait RodModel {
+    /// Stiffness of the rod in its four modes, and where along it shear acts.
+    fn stiffness(&self, rod: &Rod) -> Stiffness;
+}
