@@ -1,7 +1,9 @@
 //! Stiffnesses of a bond in its four modes, and where along it shear acts, for five bond models.
 //!
-//! Sources: Chen et al. 2022, table 8 (parallel, Euler-Bernoulli, Timoshenko); MUSEN's elastic
-//! solid bond; Platzer 2022, eqs. 6-10 (shear-coefficient beam).
+//! Sources: Chen et al. 2022, table 9 (parallel, Euler-Bernoulli, Timoshenko); MUSEN's elastic
+//! solid bond; Platzer 2022, eqs. 6 and 8 (shear-coefficient beam). In this order they go back to
+//! Potyondy and Cundall 2004, Andre et al. 2012, Brown et al. 2014, Dosta et al. 2013 and Obermayr
+//! et al. 2013.
 
 use std::f64::consts::PI;
 
@@ -20,7 +22,8 @@ pub enum BondModel {
     Timoshenko,
     /// MUSEN's bond: each mode as for a rod of the bond's length.
     ElasticSolid,
-    /// The thesis' beam: as the elastic solid bond, with the shear stiffness times a coefficient.
+    /// Beam of Platzer 2022: as the elastic solid bond, with the shear stiffness times a
+    /// coefficient.
     ShearCoefficient {
         /// Shear coefficient, 0.9 for a circular section.
         alpha: f64,
