@@ -2,8 +2,8 @@
 //!
 //! Stands for algorithms 2 (detection) and 3 (triggers, in [`triggers`]) there. Algorithm 2 is not
 //! taken as printed: it reads the first partner of a bond twice, and a bond between two clusters
-//! found so far adds a particle to one of them instead of joining the two. Here sets are disjoint by
-//! construction (union-find).
+//! found so far adds a particle to one of them instead of joining the two. Here sets are disjoint
+//! by construction (union-find).
 //!
 //! Only clusters with a bond broken since are searched, at a cost that grows with their particles
 //! and bonds alone.
