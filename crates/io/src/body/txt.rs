@@ -1,8 +1,10 @@
-//! Bodies as the two text files of [Platzer 2022, algorithm 1]: `cake.particles.txt` and `cake.bonds.txt`.
+//! Bodies as the two text files of Platzer 2022, algorithm 1: `cake.particles.txt` and
+//! `cake.bonds.txt`.
 //!
-//! The thesis does not print their layout; this is the plainest: one line for each particle with x, y, z and radius in m,
-//! one line for each bond with the numbers of its two particles, counted from 1 as in MATLAB, without a head line.
-//! Positions and radii read back as the same bits. Bond radii, bond lengths and [`About`](super::About) have no place here.
+//! Their layout is not printed there; this is the plainest: one line for each particle with x, y, z
+//! and radius in m, one line for each bond with the numbers of its two particles, counted from 1 as
+//! in MATLAB, without a head line. Positions and radii read back as the same bits. Bond radii, bond
+//! lengths and [`About`](super::About) have no place here.
 
 use std::io::{self, BufRead, Write};
 

@@ -32,7 +32,7 @@ const FINE_GRID: &str = "#f2f2f2";
 /// Lines of a plot that each have a colour of their own.
 pub const MOST_LINES: usize = 7;
 
-/// Colours of the lines, told apart with any colour vision (Okabe and Ito).
+/// Colours of the lines, told apart with any colour vision (Okabe and Ito 2008).
 const COLOURS: [&str; MOST_LINES] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555",
 ];

@@ -127,8 +127,8 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The triangulation of a loop with the least area that makes no edge which exists already (Barequet and Sharir 1995, "Filling
-/// gaps in the boundary of a polyhedron"); `None` where there is none.
+/// The triangulation of a loop with the least area that makes no edge which exists already
+/// (Barequet and Sharir 1995); `None` where there is none.
 fn least_area(mesh: &Mesh, edges: &ExistingEdges, boundary: &[u32]) -> Option<Vec<[u32; 3]>> {
     let n = boundary.len();
     let point = |i: usize| mesh.vertices[boundary[i] as usize];

@@ -387,7 +387,7 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
             found.push(Figure::new(name, wanted / factor, "Pa", None));
         }
     }
-    // As the thesis does it, with all that gives way at the pins in it.
+    // As in Platzer 2022, section 4.5.3.3, with all that gives way at the pins in it.
     if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
         let name = "the same by eq. 18";
         let value = wanted / modulus * bonds.young_modulus_pa;

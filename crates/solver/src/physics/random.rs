@@ -15,7 +15,7 @@ pub fn uniform(seed: u64, words: &[u64]) -> f64 {
     ((hash >> 11) as f64 + 0.5) * (0.5 * f64::EPSILON)
 }
 
-/// One step of SplitMix64 (Steele, Lea and Flood 2014).
+/// One step of SplitMix64 (Steele et al. 2014).
 fn mixed(state: u64) -> u64 {
     let z = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -1,9 +1,9 @@
 //! Free rotation of a rigid body.
 //!
 //! The kinetic energy is split into parts that each turn the body about one axis, exactly, in a
-//! symmetric order (Reich 1994; Dullweber, Leimkuhler and McLachlan 1997). The step is of second
-//! order and reversible, and the error of the energy stays bounded. The angular momentum in space
-//! is never written, so it stays the same to the last bit.
+//! symmetric order (Reich 1994; Dullweber et al. 1997). The step is of second order and reversible,
+//! and the error of the energy stays bounded. The angular momentum in space is never written, so it
+//! stays the same to the last bit.
 //!
 //! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into
 //! space.

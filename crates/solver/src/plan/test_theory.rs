@@ -4,7 +4,7 @@
 /// symmetrically, by two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
-    /// Distance of the supports, m. The thesis calls it the length of the sample.
+    /// Distance of the supports, m. Platzer 2022 calls it the length of the sample.
     pub span_m: f64,
     /// Distance of the two loading pins, m; 0: one pin.
     pub load_distance_m: f64,
@@ -17,8 +17,7 @@ pub struct Beam {
 /// Shear coefficient of a rectangle: 5/6, from the energy of the parabolic shear stress.
 pub const KAPPA: f64 = 5.0 / 6.0;
 
-/// Shear coefficient of a rectangle by Cowper 1966,
-/// [doi:10.1115/1.3625046](https://doi.org/10.1115/1.3625046).
+/// Shear coefficient of a rectangle by Cowper 1966.
 pub fn kappa_cowper(poisson_ratio: f64) -> f64 {
     10.0 * (1.0 + poisson_ratio) / (12.0 + 11.0 * poisson_ratio)
 }
@@ -85,7 +84,7 @@ impl Beam {
             / (self.width_m * self.height_m * self.height_m)
     }
 
-    /// Force at which the largest bending stress is this, N: eq. 19 the other way.
+    /// Force at which the largest bending stress is this, N: Platzer 2022, eq. 19, the other way.
     pub fn force_n(&self, stress_pa: f64) -> f64 {
         stress_pa / self.stress_pa(1.0)
     }

@@ -38,9 +38,9 @@ pub struct StepChoice {
     pub impact_speed_m_s: f64,
     /// Largest stiffness over mass of a contact that the step allows for, 1/s2.
     pub contact_rate_1_s2: f64,
-    /// Rayleigh's estimate [Platzer 14], s; infinite where no modulus is known.
+    /// Rayleigh's estimate (Platzer 2022, eq. 14), s; infinite where no modulus is known.
     pub rayleigh_s: f64,
-    /// 0.17 sqrt(m/K) [Platzer 15], s; infinite without bonds.
+    /// 0.17 sqrt(m/K) (Platzer 2022, eq. 15), s; infinite without bonds.
     pub thesis_s: f64,
     /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
     /// by, unless it is adaptive.
@@ -291,7 +291,7 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
 }
 
 /// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest of all particles that are there or may be
-/// fed, each with its own material, s [Platzer 14]. Infinite: no particle has a modulus.
+/// fed, each with its own material, s (Platzer 2022, eq. 14). Infinite: no particle has a modulus.
 pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
     let of_material = |body: &str| {
         let material = scene.materials.get(&scene.bodies.get(body)?.material)?;
@@ -318,7 +318,7 @@ pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
 }
 
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all
-/// bonds [Platzer 15].
+/// bonds (Platzer 2022, eq. 15).
 fn thesis_s(state: &State) -> f64 {
     let motions = &state.particles.motions;
     let bonds = &state.bonds;

@@ -21,7 +21,7 @@ type Pair = (Vector3<f64>, Vector3<f64>, f64);
 /// Never a reflection. Where many rotations are as good (points on one line, or no points), it is
 /// the one with the smallest turn as a rule.
 ///
-/// Horn (1987) gives the start: the eigenvector of a symmetric 4 x 4 matrix. Newton steps on the
+/// Horn 1987 gives the start: the eigenvector of a symmetric 4 x 4 matrix. Newton steps on the
 /// distances themselves then bring it to rounding, and a last turn about the long axis does so for
 /// points near a line.
 pub fn best_rotation(from: &[[f64; 3]], to: &[[f64; 3]], weights: &[f64]) -> [f64; 4] {

@@ -262,8 +262,8 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
     new.len() as u32 - 1
 }
 
-/// All spheres of a clump, as particles that move with it (Platzer 2022, 4.5.4.1): x = c + R s, v =
-/// v_c + w x (R s).
+/// All spheres of a clump, as particles that move with it (Platzer 2022, section 4.5.4.1): x = c +
+/// R s, v = v_c + w x (R s).
 fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
     for (sphere, sub) in template.spheres.iter().enumerate() {
         let pose = template.pose(sphere, clump);

@@ -1,4 +1,4 @@
-//! Clumps that become bonded clusters (BPRM: Platzer 2022, 4.5.4).
+//! Clumps that become bonded clusters (BPRM: Platzer 2022, section 4.5.4).
 
 use nalgebra::Vector3;
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::regions::Region;
 
-/// When a clump becomes a bonded cluster (BPRM: Platzer 2022, 4.5.4).
+/// When a clump becomes a bonded cluster (BPRM: Platzer 2022, section 4.5.4).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trigger {
     /// Its centre of mass is in this region: number in [`Rules::regions`].

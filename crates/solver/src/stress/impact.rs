@@ -2,8 +2,8 @@
 //! form.
 //!
 //! Hertz: F = 4/3 E* sqrt(R*) d^(3/2) stops a reduced mass m* at the overlap (15 m* v^2 / (16 E*
-//! sqrt(R*)))^(2/5) and lets it go after 2.943 275 times that over v (Johnson 1985, Contact
-//! Mechanics, section 11.4). The restitution asked for is that of the speeds.
+//! sqrt(R*)))^(2/5) and lets it go after 2.943 275 times that over v (Johnson 1985,
+//! section 11.4). The restitution asked for is that of the speeds.
 
 use std::f64::consts::PI;
 

@@ -2,8 +2,7 @@
 //! which leaves nothing but rounding.
 //!
 //! A bond answers to stretch along a line linearly. Kick-drift-kick turns x'' = -w^2 x from rest
-//! into x_n = x_0 cos(n theta) with sin(theta / 2) = w dt / 2 exactly (Hairer, Lubich, Wanner 2003,
-//! Acta Numerica 12).
+//! into x_n = x_0 cos(n theta) with sin(theta / 2) = w dt / 2 exactly (Hairer et al. 2003).
 
 use std::f64::consts::PI;
 

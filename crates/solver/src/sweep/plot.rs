@@ -25,7 +25,7 @@ const LETTERS: usize = 28;
 const MOST_SERIES: usize = 16;
 
 const INK: &str = "#222222";
-/// Told apart with any colour vision (Okabe and Ito).
+/// Told apart with any colour vision (Okabe and Ito 2008).
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555",
 ];

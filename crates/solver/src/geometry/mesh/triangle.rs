@@ -26,8 +26,7 @@ impl Triangle {
         }
     }
 
-    /// The point nearest to `p`, and its region (Ericson, Real-Time Collision Detection, 2005,
-    /// section 5.1.5).
+    /// The point nearest to `p`, and its region (Ericson 2005, section 5.1.5).
     pub(super) fn nearest(&self, p: &Vector3<f64>) -> (Vector3<f64>, u32) {
         let [a, b, c] = &self.corners;
         let (ab, ac) = (b - a, c - a);

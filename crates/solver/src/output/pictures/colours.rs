@@ -6,7 +6,7 @@
 /// A single particle: light grey.
 pub const SINGLE: [u8; 3] = [196, 198, 201];
 
-/// After Okabe and Ito, without the yellow, which is hardly seen on white, and with wine red.
+/// After Okabe and Ito 2008, without the yellow, which is hardly seen on white, and with wine red.
 const VIVID: [[u8; 3]; 7] = [
     [0, 114, 178],
     [230, 140, 0],

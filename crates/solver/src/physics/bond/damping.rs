@@ -54,8 +54,8 @@ pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced 
     }
 }
 
-/// [Chen 9, 10]: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2 k_tor I_red) about
-/// all axes.
+/// Chen et al. 2022, eqs. 9 and 10: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2
+/// k_tor I_red) about all axes.
 #[inline(always)]
 pub fn chen(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
     let force = 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt();
@@ -81,10 +81,10 @@ pub fn chen_by_mode(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> Dampi
     }
 }
 
-/// [Platzer 7, 9]: `coefficient_n_s_m` times the whole relative velocity, and `moment_factor` (1 as
-/// printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
+/// Platzer 2022, eqs. 7 and 9: `coefficient_n_s_m` times the whole relative velocity, and
+/// `moment_factor` (1 as printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
 ///
-/// The thesis' table 1 gives its coefficient without a unit; eq. 7 needs N s/m.
+/// Table 1 there gives the coefficient without a unit; eq. 7 needs N s/m.
 #[inline(always)]
 pub fn platzer(
     stiffness: &Stiffness,

@@ -4,8 +4,8 @@
 //! Mises).
 //!
 //! MUSEN's normal force is a magnitude. Here it has its sign: bending pulls one edge of the section
-//! and presses the opposite one, and each of the two edges has a strength of its own. The thesis'
-//! eqs. 11 and 12 speak of strains of the bond; here the same stresses come from its forces and
+//! and presses the opposite one, and each of the two edges has a strength of its own. Platzer 2022,
+//! eqs. 11 and 12, speaks of strains of the bond; here the same stresses come from its forces and
 //! moments, each with its own stiffness. A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
 
 use super::BondLoad;
@@ -24,7 +24,7 @@ pub struct Criteria {
     pub compression_pa: f64,
     /// MUSEN's shear strength: largest shear stress of shear force and torsion, Pa.
     pub shear_pa: f64,
-    /// The thesis' equivalent stress, in which the axial part counts only while it pulls, Pa.
+    /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only while it pulls, Pa.
     pub von_mises_pa: f64,
 }
 

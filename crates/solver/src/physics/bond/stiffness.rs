@@ -24,7 +24,8 @@ pub enum BondModel {
     Timoshenko,
     /// MUSEN's bond: each mode as for a rod of the bond's length.
     ElasticSolid,
-    /// The thesis' beam: as the elastic solid bond, with the shear stiffness times a coefficient.
+    /// Beam of Platzer 2022: as the elastic solid bond, with the shear stiffness times a
+    /// coefficient.
     ShearCoefficient {
         /// Shear coefficient, 0.9 for a circular section.
         alpha: f64,

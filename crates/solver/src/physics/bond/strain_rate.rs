@@ -17,7 +17,7 @@ const HIGHEST_1_S: f64 = 50.0;
 /// Where the second branch begins, /s.
 const BRANCH_1_S: f64 = 0.1;
 
-/// The thesis' setting of the rate below which nothing is strengthened, so that the small
+/// The rate below which Platzer 2022, section 4.5.1.8, strengthens nothing, so that the small
 /// oscillations of a quasi-static test are not, /s.
 pub const THESIS_FROM_1_S: f64 = 1.1;
 
@@ -34,7 +34,7 @@ pub fn elongation_rate(
 }
 
 /// Dynamic over static strength at this rate of elongation: 1 while the bond gets shorter and below
-/// the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at the thesis' 1.1/s).
+/// the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at 1.1/s).
 /// Never below 1: the printed fit gives 0.999996 at its lower end.
 ///
 /// One logarithm. The factor is never below 1, so only a bond that would break without it needs it.

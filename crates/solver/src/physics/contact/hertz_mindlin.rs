@@ -3,7 +3,7 @@
 //! With 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b, 1/G* = (2 - nu_a)/G_a + (2 - nu_b)/G_b, 1/R* =
 //! 1/R_a + 1/R_b:
 //!
-//! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz);
+//! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz 1882);
 //! - k_t = 8 G* sqrt(R* d) (Mindlin 1949, no slip);
 //! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al.
 //!   1992), and the [ratio zeta](super::restitution) that gives the wanted restitution.

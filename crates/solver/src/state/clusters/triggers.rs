@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 /// When clusters are searched: every so many steps, if enough bonds have broken by then, or if any
 /// has and it is time to look anyway.
 ///
-/// The triggers that the thesis names are settings of these numbers: see the functions that make
-/// them.
+/// The four triggers of Platzer 2022, section 4.2.3, are settings of these numbers: see the
+/// functions that make them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Triggers {
     /// Steps from one question to the next; 0 is as 1.
@@ -25,23 +25,23 @@ impl Default for Triggers {
 }
 
 impl Triggers {
-    /// The thesis' first: in every step in which a bond has broken.
+    /// The first: in every step in which a bond has broken.
     pub fn every_step() -> Self {
         Self::at_interval(1)
     }
 
-    /// The thesis' second: as soon as more than so many bonds have broken.
+    /// The second: as soon as more than so many bonds have broken.
     pub fn after_more_than(broken: u64) -> Self {
         Self::combined(1, broken, 0)
     }
 
-    /// The thesis' third: every so many steps, if any bond has broken.
+    /// The third: every so many steps, if any bond has broken.
     pub fn at_interval(interval: u64) -> Self {
         Self::combined(interval, 0, 0)
     }
 
-    /// The thesis' fourth: every so many steps if more than so many bonds have broken, and at every
-    /// so manieth of these times if any has.
+    /// The fourth: every so many steps if more than so many bonds have broken, and at every so
+    /// manieth of these times if any has.
     pub fn combined(interval: u64, broken: u64, force_every: u64) -> Self {
         Self {
             interval,

@@ -1,4 +1,4 @@
-//! MUSEN's elastic solid bond.
+//! MUSEN's elastic solid bond (Dosta et al. 2013).
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 

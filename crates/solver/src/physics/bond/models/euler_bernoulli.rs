@@ -1,4 +1,5 @@
-//! The slender beam without shear deformation (Chen et al. 2022, table 9).
+//! The slender beam without shear deformation (Chen et al. 2022, table 9; Andre
+//! et al. 2012).
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 

@@ -1,4 +1,4 @@
-//! The beam with a shear coefficient (Platzer 2022, eqs. 6-10; Obermayr et al. 2013).
+//! The beam with a shear coefficient (Platzer 2022, eqs. 6 and 8; Obermayr et al. 2013).
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 

@@ -1,4 +1,4 @@
-//! The beam with shear deformation (Chen et al. 2022, table 9).
+//! The beam with shear deformation (Chen et al. 2022, table 9; Brown et al. 2014).
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
