@@ -1,22 +1,17 @@
 //! The bare front: every sphere leans on three others or on two and the wall, whatever its seeds.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid, prism};
-use super::solids::{distance_to_surface, icosphere, local_facets, surface_of};
-use dem_pack::pack::{PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::{Facets, cuboid, prism};
+use crate::helpers::packing::{pack_with, settings};
+use crate::helpers::solids::{distance_to_surface, icosphere, surface_of};
+use dem_pack::pack::{PackSettings, Packing};
 
 fn bare_front(facets: &Facets, diameter: &str, overlap: f64) -> (Facets, Packing) {
-    let (surface, boundary) = surface_of(facets);
     let settings = PackSettings {
-        sizes: Sizes::parse(diameter, By::Number).unwrap(),
-        overlap,
         seed: 3,
-        settle: Some(0.0),
-        seed_point_m: None,
+        ..settings(diameter, overlap, Some(0.0))
     };
-    let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
-    (local_facets(&surface), packing)
+    pack_with(facets, &settings)
 }
 
 /// Spheres that touch fewer than three others and walls.

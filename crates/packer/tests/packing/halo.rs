@@ -1,7 +1,7 @@
 //! Corners of a halo, against the three-sphere intersection worked out from scratch.
 
-use super::exact::largest_overlap;
-use super::solids::{between, point_between, random_numbers};
+use crate::helpers::exact::largest_overlap;
+use crate::helpers::solids::{between, point_between, random_numbers};
 use dem_pack::Vector3;
 use dem_pack::grid::Ball;
 use dem_pack::halo::{Halo, Neighbours};

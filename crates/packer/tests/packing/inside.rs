@@ -1,8 +1,8 @@
 //! Which points lie inside, against winding numbers and closed forms, and where rays meet the surface.
 
-use super::exact::{length, winding_number};
-use super::facets::{Facets, Point, cuboid, rounded};
-use super::solids::{
+use crate::helpers::exact::{length, winding_number};
+use crate::helpers::facets::{Facets, Point, cuboid, rounded};
+use crate::helpers::solids::{
     icosphere, local_facets, point_between, random_numbers, surface_of, torus, turned,
     turned_inside_out,
 };

@@ -1,27 +1,11 @@
 //! The whole packing, exact on shapes of many kinds, sizes and orientations.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid};
-use super::solids::{between, local_facets, random_numbers, random_solid, surface_of, turned};
-use dem_pack::pack::{PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::cuboid;
+use crate::helpers::packing::{pack_with, settings};
+use crate::helpers::solids::{between, random_numbers, random_solid, surface_of, turned};
+use dem_pack::pack::{PackSettings, pack};
 use rand::RngExt;
-
-fn pack_with(facets: &Facets, settings: &PackSettings) -> (Facets, Packing) {
-    let (surface, boundary) = surface_of(facets);
-    let packing = pack(&surface, &boundary, settings, &|_, _| Ok(())).unwrap();
-    (local_facets(&surface), packing)
-}
-
-fn settings(diameter: &str, overlap: f64, settle: Option<f64>) -> PackSettings {
-    PackSettings {
-        sizes: Sizes::parse(diameter, By::Number).unwrap(),
-        overlap,
-        seed: 1,
-        settle,
-        seed_point_m: None,
-    }
-}
 
 /// Packs solids of one kind with random sizes, orientations, diameters, overlaps and seeds.
 fn exact_on(kind: usize) {

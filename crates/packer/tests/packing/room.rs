@@ -1,7 +1,8 @@
 //! How full a body is by default: as full as spheres in random order can be without jamming, in shapes of any curvature and thickness.
 
-use super::facets::{Facets, cuboid};
-use super::solids::{icosphere, surface_of, torus};
+use crate::helpers::facets::{Facets, cuboid};
+use crate::helpers::packing::settings;
+use crate::helpers::solids::{icosphere, surface_of, torus};
 use dem_pack::pack::{PackSettings, pack};
 use dem_pack::room::Room;
 use dem_pack::sizes::{By, Sizes};
@@ -11,11 +12,8 @@ use std::f64::consts::PI;
 fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) -> f64 {
     let (surface, boundary) = surface_of(facets);
     let settings = PackSettings {
-        sizes: Sizes::parse(diameter, By::Number).unwrap(),
-        overlap,
         seed,
-        settle: None,
-        seed_point_m: None,
+        ..settings(diameter, overlap, None)
     };
     let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
     let case = format!("{diameter}, overlap {overlap}, seed {seed}");

@@ -1,8 +1,8 @@
 //! The deepest point, against closed forms and points tried at random; the first three spheres.
 
-use super::exact::winding_number;
-use super::facets::{Facets, cuboid};
-use super::solids::{
+use crate::helpers::exact::winding_number;
+use crate::helpers::facets::{Facets, cuboid};
+use crate::helpers::solids::{
     between, distance_to_surface, icosphere, local_facets, point_between, random_numbers,
     surface_of, torus, turned, turned_inside_out,
 };

@@ -1,8 +1,10 @@
 //! Settling: what overlaps is pushed apart and away from the wall, and where there is no room spheres are taken out.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid};
-use super::solids::{between, icosphere, local_facets, point_between, random_numbers, surface_of};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::{Facets, cuboid};
+use crate::helpers::solids::{
+    between, icosphere, local_facets, point_between, random_numbers, surface_of,
+};
 use dem_pack::Vector3;
 use dem_pack::boundary::Boundary;
 use dem_pack::grid::Ball;

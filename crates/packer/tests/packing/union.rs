@@ -1,8 +1,10 @@
 //! The wall of crossing parts: that it is closed, what it encloses, and how far it is, against closed forms.
 
-use super::exact::{cross, distance_to_triangle, dot, length, scaled, sub, winding_number};
-use super::facets::{Facets, Point};
-use super::solids::{
+use crate::helpers::exact::{
+    cross, distance_to_triangle, dot, length, scaled, sub, winding_number,
+};
+use crate::helpers::facets::{Facets, Point};
+use crate::helpers::solids::{
     icosphere, local_facets, point_between, random_numbers, random_solid, surface_of, turned,
     turned_inside_out,
 };

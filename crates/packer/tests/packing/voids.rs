@@ -1,12 +1,13 @@
 //! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes, without halos, grids or trees.
 
-use super::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
-use super::facets::{Facets, Point, cuboid, prism};
-use super::solids::{icosphere, local_facets, surface_of, torus};
+use crate::helpers::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
+use crate::helpers::facets::{Facets, Point, cuboid, prism};
+use crate::helpers::packing::settings;
+use crate::helpers::solids::{icosphere, local_facets, surface_of, torus};
 use dem_io::Surface;
 use dem_pack::boundary::Boundary;
 use dem_pack::pack::{PackHistory, PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
+use dem_pack::sizes::{Sizes, ks_distance_by_mass, ks_distance_by_number};
 
 /// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
 /// the smallest is found, a narrower one need not be.
@@ -115,16 +116,12 @@ fn voids(facets: &[[Point; 3]], packing: &Packing, overlap: f64, radius: f64) ->
 
 fn bare_front(surface: &Surface, diameter: &str, overlap: f64, seed: u64) -> (Sizes, Packing) {
     let boundary = Boundary::new(surface).unwrap();
-    let sizes = Sizes::parse(diameter, By::Number).unwrap();
     let settings = PackSettings {
-        sizes: sizes.clone(),
-        overlap,
         seed,
-        settle: Some(0.0),
-        seed_point_m: None,
+        ..settings(diameter, overlap, Some(0.0))
     };
     let packing = pack(surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
-    (sizes, packing)
+    (settings.sizes, packing)
 }
 
 fn assert_full_and_true(

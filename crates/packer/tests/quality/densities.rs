@@ -1,6 +1,8 @@
 //! Densities: lattices, lenses, layers, and the error that is stated beside them.
 
-use crate::{Case, Random, close, cubic};
+use super::{Case, close};
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use std::f64::consts::PI;
 

@@ -1,6 +1,8 @@
 //! Structure: fabric, pieces, contacts and the thinnest part.
 
-use crate::{Case, Random, cubic};
+use super::Case;
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, assess};
 use dem_pack::sizes::{By, Sizes};

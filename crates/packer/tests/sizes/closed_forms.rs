@@ -1,6 +1,6 @@
 //! Distribution functions by number and by mass, and their moments.
 
-use crate::{Below, laws, normal_below};
+use super::{Below, laws, normal_below};
 use dem_pack::sizes::{By, Sizes};
 use std::f64::consts::PI;
 

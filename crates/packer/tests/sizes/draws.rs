@@ -1,20 +1,8 @@
 //! Draws against the distribution, and the Kolmogorov-Smirnov distances that the report gives.
 
-use crate::{TextFile, laws};
+use super::{TextFile, laws};
+use crate::helpers::random::Random;
 use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
-
-/// Uniform numbers in [0, 1), splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-}
 
 fn draws(sizes: &Sizes, count: usize, seed: u64) -> Vec<f64> {
     let mut random = Random(seed);

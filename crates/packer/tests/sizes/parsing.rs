@@ -1,6 +1,6 @@
 //! What a user may type, and what a mistake is answered with.
 
-use crate::TextFile;
+use super::TextFile;
 use dem_pack::sizes::{By, Sizes};
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,7 +1,5 @@
 //! Size distributions against closed forms that are computed here, independently of the program's tables.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod closed_forms;
 mod draws;
 mod parsing;

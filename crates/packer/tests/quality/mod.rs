@@ -1,7 +1,5 @@
 //! The report against closed forms: lattices, lenses, lines, plates and necks.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod densities;
 mod structure;
 mod whole;
@@ -10,27 +8,6 @@ use dem_pack::Spheres;
 use dem_pack::bonds::find_bonds;
 use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, Report, Share, assess};
 use dem_pack::sizes::{By, Sizes};
-use std::f64::consts::PI;
-
-/// Uniform numbers in [0, 1), splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-
-    /// A direction, all equally likely.
-    fn direction(&mut self) -> [f64; 3] {
-        let (z, phi) = (2.0 * self.next() - 1.0, 2.0 * PI * self.next());
-        let rho = (1.0 - z * z).sqrt();
-        [rho * phi.cos(), rho * phi.sin(), z]
-    }
-}
 
 /// Spheres in a box whose walls are all six sides, or a solid given by its own distance.
 struct Case {
@@ -99,22 +76,6 @@ impl Case {
             parts: 1,
         })
         .unwrap()
-    }
-}
-
-/// n[0] x n[1] x n[2] spheres one apart, the first at (1/2, 1/2, 1/2).
-fn cubic(n: [usize; 3], radius: f64) -> Spheres {
-    let mut positions = Vec::new();
-    for z in 0..n[2] {
-        for y in 0..n[1] {
-            for x in 0..n[0] {
-                positions.push([x, y, z].map(|i| i as f64 + 0.5));
-            }
-        }
-    }
-    Spheres {
-        radii: vec![radius; positions.len()],
-        positions,
     }
 }
 

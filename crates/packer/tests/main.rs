@@ -2,16 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod depth_map;
-mod exact;
-mod facets;
-mod front;
-mod halo;
-mod inside;
-mod pack;
-mod room;
-mod seed;
-mod settle;
-mod solids;
-mod union;
-mod voids;
+mod bonds;
+mod helpers;
+mod packing;
+mod quality;
+mod sizes;
