@@ -12,9 +12,9 @@ use rayon::prelude::*;
 pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
 /// Beyond this bonding radius a bond would pass through other spheres.
-pub const LARGEST_BONDING_RADIUS: f64 = 2.0;
+pub(crate) const LARGEST_BONDING_RADIUS: f64 = 2.0;
 /// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres, 4.87).
-pub const WELL_BONDED: f64 = 5.0;
+pub(crate) const WELL_BONDED: f64 = 5.0;
 /// Spheres whose neighbours are counted to advise a bonding radius: enough for 1 % of the number of bonds.
 const SPHERES_TO_ADVISE: usize = 5000;
 /// Spheres that one task searches around: fixed, so that the order of results is the same for any number of threads.

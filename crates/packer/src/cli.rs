@@ -3,11 +3,11 @@
 mod report;
 
 use self::report::{summary_text, surface_summary, surface_text};
+use crate::body::{BodySettings, make_body};
 use crate::bonds::LARGEST_BONDING_RADIUS;
 use crate::density::LARGEST_OVERLAP;
-use crate::make::{MakeSettings, make_body};
 use crate::pack::PackSettings;
-use crate::sizes::{By, Sizes};
+use crate::sizes::{Basis, Sizes};
 use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
@@ -23,7 +23,7 @@ use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// As large as a share is chosen.
-const LARGEST_SETTLE: f64 = crate::room::SHARES[1];
+const LARGEST_SETTLE: f64 = crate::pack::shrink::SHRINK_RANGE[1];
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
 #[derive(Debug, Parser)]
@@ -274,7 +274,7 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
 fn pack_and_write(
     stl: &Path,
     arguments: &PackArguments,
-    settings: &MakeSettings,
+    settings: &BodySettings,
     output: &Path,
 ) -> Result<()> {
     let surface = read_surface(stl, &arguments.reading)?;
@@ -325,10 +325,10 @@ fn pack_and_write(
 
 impl PackArguments {
     /// The settings, with every value checked.
-    fn checked(&self) -> Result<MakeSettings> {
+    fn checked(&self) -> Result<BodySettings> {
         let by = match self.by {
-            ByArgument::Number => By::Number,
-            ByArgument::Mass => By::Mass,
+            ByArgument::Number => Basis::Number,
+            ByArgument::Mass => Basis::Mass,
         };
         let sizes = Sizes::parse(self.diameter.as_deref().unwrap_or_default(), by)?;
         check_range(
@@ -384,7 +384,7 @@ impl PackArguments {
             }
             Ok(Some(value))
         };
-        Ok(MakeSettings {
+        Ok(BodySettings {
             packing: PackSettings {
                 sizes,
                 overlap: self.overlap,

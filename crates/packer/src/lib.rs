@@ -1,26 +1,43 @@
-//! Fills a closed surface with overlapping spheres (advancing front, then settling) and joins them by bonds.
-//!
-//! Everything here works in the local units of the [`dem_io::Surface`], unless a name says otherwise.
+//! Fills a closed surface with overlapping spheres (advancing front, then settling) and joins them by
+//! bonds.
 
-pub mod bonds;
-pub mod boundary;
+mod body;
+mod bonds;
 pub mod cli;
-pub mod density;
-pub mod depth_map;
-pub mod front;
-pub mod grid;
-pub mod halo;
-pub mod inside;
-pub mod ledger;
-pub mod make;
-pub mod pack;
-pub mod quality;
-mod rims;
-pub mod room;
-pub mod seed;
-pub mod settle;
-pub mod sizes;
-pub mod union;
+mod density;
+mod front;
+mod geometry;
+mod grid;
+mod pack;
+mod quality;
+mod seed;
+mod sizes;
+
+pub use body::{BodyReport, BodySettings, StageSeconds, make_body};
+pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+pub use density::DensitySearch;
+pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};
+pub use quality::{Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
+pub use sizes::{Basis, Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
+
+/// Stages one by one, for the tests of this crate: they may change at any time.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::Vector3;
+    pub use crate::bonds::{close_pairs, suggested_bonding_radius};
+    pub use crate::front::halo::{Halo, Neighbours};
+    pub use crate::geometry::boundary::Boundary;
+    pub use crate::geometry::depth_map::DepthMap;
+    pub use crate::geometry::inside::{first_hit, is_inside};
+    pub use crate::geometry::union::outer_pieces;
+    pub use crate::grid::ReducedSphere;
+    pub use crate::pack::settle::{Settled, WhenJammed, minimise_overlaps};
+    pub use crate::pack::shrink::FillTarget;
+    pub use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, assess, depth_needed};
+    pub use crate::seed::{
+        InscribedSphere, deepest_point, first_spheres, inner_points, spread_points,
+    };
+}
 
 /// A point or direction in local units.
 pub type Vector3 = nalgebra::Vector3<f64>;

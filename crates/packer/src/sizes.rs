@@ -10,7 +10,7 @@
 //! | `sieve:FILE.csv`, `FILE.csv` | opening and cumulative passing, linear between the openings |
 //!
 //! MEAN, STD, SCALE and SHAPE are those of the whole distribution, before it is cut. Without MIN..MAX it is cut at the
-//! diameters that 0.1 % and 99.9 % of it lie below. The distribution counts particles or their mass, as [`By`] says;
+//! diameters that 0.1 % and 99.9 % of it lie below. The distribution counts particles or their mass, as [`Basis`] says;
 //! the two are converted into each other with the third power of the diameter.
 
 mod curve;
@@ -26,16 +26,16 @@ use parse::{Cut, Law};
 use serde::Serialize;
 
 /// The largest size may be so many times the smallest.
-pub const LARGEST_SIZE_RATIO: f64 = 1000.0;
+pub(crate) const LARGEST_SIZE_RATIO: f64 = 1000.0;
 /// Less than this share of a distribution between MIN and MAX is taken for a mistake.
 const SMALLEST_SHARE_KEPT: f64 = 0.01;
 /// The standard normal deviate that 99.9 % lie below.
 const NORMAL_DEVIATE_999: f64 = 3.090_232_306_167_813;
 
 /// What a distribution of sizes counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum By {
+pub enum Basis {
     /// Particles.
     Number,
     /// Mass (or volume): each particle with the third power of its diameter.
@@ -45,7 +45,7 @@ pub enum By {
 /// A distribution of particle diameters between two limits, in metres.
 #[derive(Debug, Clone)]
 pub struct Sizes {
-    by: By,
+    by: Basis,
     description: String,
     min_m: f64,
     max_m: f64,
@@ -66,7 +66,7 @@ impl Sizes {
     /// A text of another form; a size that is zero, negative or not finite; MIN above MAX; a standard deviation or
     /// shape that is not positive; less than 1 % of the distribution between MIN and MAX; MAX more than
     /// [`LARGEST_SIZE_RATIO`] times MIN; a sieve file that cannot be read or is not a cumulative curve.
-    pub fn parse(text: &str, by: By) -> Result<Self> {
+    pub fn parse(text: &str, by: Basis) -> Result<Self> {
         let place = format!("--diameter '{text}'");
         parse::law(text)
             .and_then(|law| Self::from_law(&law, by))
@@ -110,7 +110,7 @@ impl Sizes {
     }
 
     /// What the distribution was asked to count.
-    pub fn by(&self) -> By {
+    pub fn by(&self) -> Basis {
         self.by
     }
 
@@ -140,7 +140,7 @@ impl Sizes {
         &self.description
     }
 
-    fn from_law(law: &Law, by: By) -> Result<Self> {
+    fn from_law(law: &Law, by: Basis) -> Result<Self> {
         let mut note = String::new();
         let (name, knots, curves) = match law {
             Law::One(d) => (
@@ -240,8 +240,8 @@ impl Sizes {
             ));
         }
         let kept = curves.as_ref().map_or(0.0, |(number, mass)| match by {
-            By::Number => number.total,
-            By::Mass => mass.total,
+            Basis::Number => number.total,
+            Basis::Mass => mass.total,
         });
         let whole = matches!(law, Law::One(_) | Law::Uniform { .. } | Law::Sieve(_));
         let (number, mass) = match curves {
@@ -258,7 +258,11 @@ impl Sizes {
             Law::One(d) => format!("all {}", show_length(*d)),
             _ => format!(
                 "{name} by {}, {} to {}, mean {} by number and {} by mass{}{note}",
-                if by == By::Number { "number" } else { "mass" },
+                if by == Basis::Number {
+                    "number"
+                } else {
+                    "mass"
+                },
                 show_length(min_m),
                 show_length(max_m),
                 show_length(number.mean),
@@ -287,15 +291,15 @@ impl Sizes {
 
 /// The distributions by number and by mass from a density that counts by `by`; pieces as in [`Curve::from_density`].
 /// The mass of a particle is counted in that of the smallest.
-fn curves(knots: &[f64], by: By, density: impl Fn(usize, f64) -> f64) -> Option<(Curve, Curve)> {
+fn curves(knots: &[f64], by: Basis, density: impl Fn(usize, f64) -> f64) -> Option<(Curve, Curve)> {
     let smallest = knots[0];
     let volume = |d: f64| (d / smallest).powi(3);
     let (number, mass) = match by {
-        By::Number => (
+        Basis::Number => (
             Curve::from_density(knots, &density),
             Curve::from_density(knots, |i, d| density(i, d) * volume(d)),
         ),
-        By::Mass => (
+        Basis::Mass => (
             Curve::from_density(knots, |i, d| density(i, d) / volume(d)),
             Curve::from_density(knots, &density),
         ),

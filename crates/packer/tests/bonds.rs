@@ -3,9 +3,8 @@
 use crate::helpers::lattice::cubic;
 use crate::helpers::random::Random;
 use dem_pack::Spheres;
-use dem_pack::bonds::{
-    bond_lengths, bond_radii, bonding_radius_for, close_pairs, find_bonds, suggested_bonding_radius,
-};
+use dem_pack::internals::{close_pairs, suggested_bonding_radius};
+use dem_pack::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

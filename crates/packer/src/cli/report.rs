@@ -1,6 +1,6 @@
 //! What is printed for a person, and for a script.
 
-use crate::make::Made;
+use crate::body::BodyReport;
 use dem_io::Surface;
 use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
@@ -44,7 +44,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
 }
 
 /// What the body weighs, beside what its shape would, and where its centre is.
-fn mass_text(made: &Made) -> String {
+fn mass_text(made: &BodyReport) -> String {
     let [mass, centre] = match &made.mass {
         Some(mass) => mass.lines(),
         None => [
@@ -60,7 +60,7 @@ fn mass_text(made: &Made) -> String {
 }
 
 /// What a person wants to know: how good the body is, what to mind, where the time went.
-pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
+pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
     let name = if output == Path::new("-") {
         "standard output".to_owned()

@@ -1,6 +1,6 @@
 //! Who touches whom, and the exact checks: no overlap in r_gen, nothing outside the wall.
 
-use super::Packing;
+use super::bonded_packing::BondedPacking;
 use crate::bonds::{centre_distance, close_pairs};
 use dem_io::Result;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct Contacts {
     pub per_particle: f64,
     /// Number of spheres that touch the wall.
     pub at_wall: usize,
-    /// Share of the particles with fewer than 4 contacts; the wall counts as one.
+    /// Fraction of the particles with fewer than 4 contacts; the wall counts as one.
     pub rattlers: f64,
     /// Largest overlap of two spheres in r_gen, as a share of the smaller r_gen. 0 if none overlap.
     pub largest_overlap: f64,
@@ -27,7 +27,7 @@ pub struct Contacts {
 }
 
 /// Counts the contacts. `depths` of the centres below the wall, local units, one per sphere.
-pub(super) fn count(packing: &Packing, depths: &[f64]) -> Result<Contacts> {
+pub(super) fn count(packing: &BondedPacking, depths: &[f64]) -> Result<Contacts> {
     let spheres = packing.spheres;
     let shrink = 1.0 / (1.0 + packing.overlap);
     let radii = &spheres.radii;

@@ -4,8 +4,8 @@
 //! cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r at one - (c - f) r at the other)^2)/sum(r).
 //! Everything is counted in integers, so that the order of counting does not matter.
 
-use super::Packing;
-use super::depth::Question;
+use super::bonded_packing::BondedPacking;
+use super::depth::DepthQuery;
 use super::points::{Box3, Cells, over_pairs};
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ const FEWEST_POINTS: u64 = 100;
 
 /// A share found by sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Share {
+pub struct Fraction {
     /// The share, 0 to 1.
     pub value: f64,
     /// Its standard error.
@@ -37,14 +37,14 @@ pub struct Layer {
     /// Where it ends, m.
     pub to_m: f64,
     /// Its density. None if hardly a point fell into it.
-    pub density: Option<Share>,
+    pub density: Option<Fraction>,
 }
 
 /// What the points say.
 pub(super) struct Sampled {
-    pub(super) union_density: Share,
-    pub(super) interior_union_density: Option<Share>,
-    pub(super) interior_generating_density: Option<Share>,
+    pub(super) union_density: Fraction,
+    pub(super) interior_union_density: Option<Fraction>,
+    pub(super) interior_generating_density: Option<Fraction>,
     pub(super) wall_profile: Vec<Layer>,
     pub(super) slab_profile: Vec<Layer>,
 }
@@ -84,7 +84,7 @@ impl Tally {
         self.region_region += other.region_region;
     }
 
-    fn share(&self) -> Option<Share> {
+    fn share(&self) -> Option<Fraction> {
         if self.points < FEWEST_POINTS {
             return None;
         }
@@ -92,7 +92,7 @@ impl Tally {
         let value = self.covered as f64 / points;
         let squares = self.cover_cover as f64 - 2.0 * value * self.cover_region as f64
             + value * value * self.region_region as f64;
-        Some(Share {
+        Some(Fraction {
             value,
             error: squares.max(0.0).sqrt() / points,
         })
@@ -130,7 +130,7 @@ struct Interior {
 }
 
 /// Samples the packing. `interior_depth` and `mean_diameter` in local units.
-pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64) -> Sampled {
+pub(super) fn sample(packing: &BondedPacking, interior_depth: f64, mean_diameter: f64) -> Sampled {
     let layer = mean_diameter / LAYERS_PER_DIAMETER;
     let whole = whole(packing, interior_depth, layer);
     let longest = (0..3).fold(0, |best, k| {
@@ -154,7 +154,7 @@ pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64)
         tallies.iter().enumerate().map(layer).collect()
     };
     Sampled {
-        union_density: whole.union.share().unwrap_or(Share {
+        union_density: whole.union.share().unwrap_or(Fraction {
             value: 0.0,
             error: 1.0,
         }),
@@ -169,7 +169,7 @@ fn points_for(spheres: f64) -> f64 {
     (POINTS_PER_SPHERE * spheres).clamp(FEWEST_POINTS_IN_REGION, MOST_POINTS_IN_REGION)
 }
 
-fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
+fn whole(packing: &BondedPacking, interior_depth: f64, layer: f64) -> Whole {
     let within = Box3 {
         low: [0.0; 3],
         high: packing.extent,
@@ -177,7 +177,7 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
     let spheres = packing.spheres.radii.len() as f64;
     let cells = Cells::new(&within, packing.shape_volume, points_for(spheres));
     let diagonal = cells.step.iter().map(|s| s * s).sum::<f64>().sqrt();
-    let question = Question {
+    let question = DepthQuery {
         floor: 0.0,
         cap: interior_depth.max(layer * LAYERS as f64) * 1.01,
         layer,
@@ -217,7 +217,13 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
 }
 
 /// Slabs of thickness `slab` along the axis `longest`.
-fn interior(packing: &Packing, depth: f64, whole: &Whole, longest: usize, slab: f64) -> Interior {
+fn interior(
+    packing: &BondedPacking,
+    depth: f64,
+    whole: &Whole,
+    longest: usize,
+    slab: f64,
+) -> Interior {
     if whole.interior == 0 {
         return Interior::default();
     }
@@ -228,7 +234,7 @@ fn interior(packing: &Packing, depth: f64, whole: &Whole, longest: usize, slab: 
         share * packing.shape_volume,
         points_for(share * spheres),
     );
-    let question = Question {
+    let question = DepthQuery {
         floor: depth,
         cap: depth * (1.0 + 1e-12),
         layer: f64::INFINITY,

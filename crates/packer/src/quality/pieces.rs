@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Pieces {
     /// How many, single particles included.
     pub count: usize,
-    /// Share of the particles that are in the largest.
+    /// Fraction of the particles that are in the largest.
     pub largest_share: f64,
     /// Particles in all others.
     pub outside_largest: usize,

@@ -3,8 +3,8 @@
 //! The box is cut into equal cells with two random points each (stratified sampling, the same points for the
 //! same box).
 
-use super::Packing;
-use super::depth::{Probe, Question};
+use super::bonded_packing::BondedPacking;
+use super::depth::{DepthProbe, DepthQuery};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
@@ -122,7 +122,7 @@ const GENERATING: [u8; 2] = [1, 4];
 const UNION: [u8; 2] = [2, 8];
 
 /// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true radii.
-fn cover(packing: &Packing, cells: &Cells) -> Vec<AtomicU8> {
+fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     let covered: Vec<AtomicU8> = (0..cells.count.iter().product())
         .map(|_| AtomicU8::new(0))
         .collect();
@@ -162,11 +162,11 @@ fn cover(packing: &Packing, cells: &Cells) -> Vec<AtomicU8> {
 }
 
 /// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths answer
-/// the question, see [`Probe`].
+/// the question, see [`DepthProbe`].
 pub(super) fn over_pairs<T: Default + Send>(
-    packing: &Packing,
+    packing: &BondedPacking,
     cells: &Cells,
-    question: Question,
+    question: DepthQuery,
     add: impl Fn(&mut T, &Pair) + Sync,
 ) -> Vec<T> {
     let covered = cover(packing, cells);
@@ -174,7 +174,7 @@ pub(super) fn over_pairs<T: Default + Send>(
     rows.par_chunks(ROWS_PER_TASK)
         .map(|rows| {
             let mut part = T::default();
-            let mut probe = Probe::new(packing, question);
+            let mut probe = DepthProbe::new(packing, question);
             for row in rows {
                 let (y, z) = (row % cells.count[1], row / cells.count[1]);
                 for x in 0..cells.count[0] {

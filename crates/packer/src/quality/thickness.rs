@@ -9,14 +9,12 @@
 //! that the result is too small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
 //! in larger bodies. It does not see a fin that grows out of a thick part.
 
-use super::Packing;
-use super::depth::{Probe, Question};
+use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
+use super::depth::{DepthProbe, DepthQuery};
 use super::pieces::Sets;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Thicker than twice this is not measured.
-pub(super) const CAP_IN_MEAN_DIAMETERS: f64 = 10.0;
 /// Steps of depth up to the cap.
 const LEVELS: usize = 400;
 /// Where so many mean diameters fit across by the particles, the lattice is left out: two more or less do not matter.
@@ -42,7 +40,11 @@ pub struct Thinnest {
 }
 
 /// The thinnest part: see above. None without particles.
-pub(super) fn thinnest(packing: &Packing, depths: &[f64], mean_diameter: f64) -> Option<Thinnest> {
+pub(super) fn thinnest(
+    packing: &BondedPacking,
+    depths: &[f64],
+    mean_diameter: f64,
+) -> Option<Thinnest> {
     let cap = CAP_IN_MEAN_DIAMETERS * mean_diameter;
     let by_particles = neck(depths, packing.bonds, cap, FEWEST_PARTICLES)?;
     let are_many = by_particles > 0.5 * MANY_ACROSS * mean_diameter;
@@ -64,7 +66,7 @@ pub(super) fn thinnest(packing: &Packing, depths: &[f64], mean_diameter: f64) ->
 
 /// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of neighbours. A point is in the middle of the box, so
 /// that the middle of a symmetric shape is not missed.
-fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
+fn lattice(packing: &BondedPacking, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
     let box_volume: f64 = packing.extent.iter().product();
     let edge = (FINEST_EDGE * mean_diameter)
         .max((packing.shape_volume / MOST_POINTS).cbrt())
@@ -72,7 +74,7 @@ fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u
     let each_side = packing.extent.map(|e| (0.5 * e / edge) as usize);
     let [nx, ny, nz] = each_side.map(|n| 2 * n + 1);
     let smallest = (packing.spheres.radii.iter().copied()).fold(f64::INFINITY, f64::min);
-    let to_a_level = Question {
+    let to_a_level = DepthQuery {
         floor: smallest * (1.0 - 1e-9),
         cap,
         layer: cap / LEVELS as f64,
@@ -82,7 +84,7 @@ fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u
         (0..ny * nz)
             .into_par_iter()
             .flat_map_iter(|row| {
-                let mut probe = Probe::new(packing, to_a_level);
+                let mut probe = DepthProbe::new(packing, to_a_level);
                 (0..nx).map(move |x| {
                     let at = [x, row % ny, row / ny];
                     probe.depth([0, 1, 2].map(|k| {

@@ -4,7 +4,7 @@ use super::exact::{cross, distance_to_triangle, dot, length, scaled, sub};
 use super::facets::{Facets, Point, cuboid, prism, rounded, stl};
 use dem_io::Surface;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::boundary::Boundary;
+use dem_pack::internals::Boundary;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;

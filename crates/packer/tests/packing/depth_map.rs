@@ -5,7 +5,7 @@ use crate::helpers::facets::cuboid;
 use crate::helpers::solids::{
     distance_to_surface, icosphere, local_facets, point_between, random_numbers, surface_of, torus,
 };
-use dem_pack::depth_map::DepthMap;
+use dem_pack::internals::DepthMap;
 
 #[test]
 fn depths_are_exact_inside_and_never_too_far_outside() {

@@ -4,7 +4,7 @@ use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::{Facets, cuboid, prism};
 use crate::helpers::packing::{pack_with, settings};
 use crate::helpers::solids::{distance_to_surface, icosphere, surface_of};
-use dem_pack::pack::{PackSettings, Packing};
+use dem_pack::{PackSettings, Packing};
 
 fn bare_front(facets: &Facets, diameter: &str, overlap: f64) -> (Facets, Packing) {
     let settings = PackSettings {

@@ -7,9 +7,9 @@ use crate::helpers::solids::{
     turned_inside_out,
 };
 use dem_io::Surface;
-use dem_pack::Vector3;
-use dem_pack::boundary::Boundary;
-use dem_pack::inside::{self, first_hit};
+use dem_pack::internals::Boundary;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::{self, first_hit};
 
 /// A point of the file (mm) in local units.
 fn local(surface: &Surface, p: Point) -> Vector3 {
@@ -17,7 +17,7 @@ fn local(surface: &Surface, p: Point) -> Vector3 {
 }
 
 fn is_inside((surface, boundary): &(Surface, Boundary), p: Point) -> bool {
-    inside::is_inside(boundary, &local(surface, p))
+    internals::is_inside(boundary, &local(surface, p))
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn agrees_with_the_winding_number_everywhere_around_a_torus() {
             );
             let wanted = winding_number(&facets, &p) > 0;
             assert_eq!(
-                inside::is_inside(&boundary, &Vector3::from(p)),
+                internals::is_inside(&boundary, &Vector3::from(p)),
                 wanted,
                 "{p:?}"
             );
@@ -243,7 +243,7 @@ fn near_the_wall_the_nearest_triangle_tells_the_side() {
                 let near = boundary.triangles_near(&p, 2.0 * off + 1e-6);
                 tried += 1;
                 if let Some(behind) = boundary.is_behind_nearest(near, &p) {
-                    assert_eq!(behind, inside::is_inside(&boundary, &p), "{p:?}");
+                    assert_eq!(behind, internals::is_inside(&boundary, &p), "{p:?}");
                     decided += 1;
                 }
             }

@@ -4,7 +4,7 @@ use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::cuboid;
 use crate::helpers::packing::{pack_with, settings};
 use crate::helpers::solids::{between, random_numbers, random_solid, surface_of, turned};
-use dem_pack::pack::{PackSettings, pack};
+use dem_pack::{PackSettings, pack};
 use rand::RngExt;
 
 /// Packs solids of one kind with random sizes, orientations, diameters, overlaps and seeds.
@@ -184,19 +184,18 @@ fn exact_from_a_seed_almost_on_the_wall() {
 
 #[test]
 fn the_front_begins_at_the_point_given() {
-    let (surface, boundary) = surface_of(&cuboid([20.0, 10.0, 10.0]));
+    let (surface, _) = surface_of(&cuboid([20.0, 10.0, 10.0]));
     let given = [3e-3, 4e-3, 5e-3];
     let settings = PackSettings {
         seed_point_m: Some(given),
         ..settings("1mm..1.5mm", 0.2, Some(0.0))
     };
-    let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
+    let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
     for (found, wanted) in packing.history.seed_point_m.iter().zip(given) {
         assert!((found - wanted).abs() < 1e-15);
     }
     let elsewhere = pack(
         &surface,
-        &boundary,
         &PackSettings {
             seed_point_m: None,
             ..settings.clone()
@@ -209,13 +208,13 @@ fn the_front_begins_at_the_point_given() {
         seed_point_m: Some([-1e-3, 4e-3, 5e-3]),
         ..settings
     };
-    let error = pack(&surface, &boundary, &outside, &|_, _| Ok(())).unwrap_err();
+    let error = pack(&surface, &outside, &|_, _| Ok(())).unwrap_err();
     assert_eq!(error.place, "--seed-point");
 }
 
 #[test]
 fn a_stop_asked_for_by_progress_stops_it() {
-    let (surface, boundary) = surface_of(&cuboid([20.0, 10.0, 10.0]));
+    let (surface, _) = surface_of(&cuboid([20.0, 10.0, 10.0]));
     for stage in ["front", "settling", "filling voids"] {
         let stop = |now: &str, _: f64| {
             if now == stage {
@@ -224,12 +223,7 @@ fn a_stop_asked_for_by_progress_stops_it() {
                 Ok(())
             }
         };
-        let stopped = pack(
-            &surface,
-            &boundary,
-            &settings("1mm..1.5mm", 0.2, Some(0.034)),
-            &stop,
-        );
+        let stopped = pack(&surface, &settings("1mm..1.5mm", 0.2, Some(0.034)), &stop);
         assert_eq!(stopped.unwrap_err().problem, "stopped", "{stage}");
     }
 }

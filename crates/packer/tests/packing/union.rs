@@ -9,9 +9,9 @@ use crate::helpers::solids::{
     turned_inside_out,
 };
 use dem_io::Surface;
-use dem_pack::Vector3;
-use dem_pack::boundary::Boundary;
-use dem_pack::union::outer_pieces;
+use dem_pack::internals::Boundary;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::outer_pieces;
 use rand::rngs::ChaCha8Rng;
 use std::f64::consts::PI;
 
@@ -165,7 +165,7 @@ fn gap(triangles: &[[Point; 3]]) -> f64 {
 
 /// The volume that the wall encloses, in mm3. Checked: the wall is closed, and each piece has the solid behind it and nothing before it.
 fn enclosed_mm3(surface: &Surface, boundary: &Boundary) -> f64 {
-    let wall = outer_pieces(surface, boundary);
+    let wall = outer_pieces(surface, boundary.facets());
     assert!(gap(&wall) < 1e-12, "open by {:e}", gap(&wall));
     let facets = local_facets(surface);
     for [a, b, c] in &wall {
@@ -445,7 +445,7 @@ fn of_random_solids_is_closed() {
             turned_about(&mut random, facets)
         });
         let (surface, boundary) = surface_of(&[first, second].concat());
-        let wall = outer_pieces(&surface, &boundary);
+        let wall = outer_pieces(&surface, boundary.facets());
         // Pieces narrower than 1e-7 stay on both sides of a crossing.
         assert!(gap(&wall) < 1e-7, "{round}: open by {:e}", gap(&wall));
         let volume = signed_volume(&wall) * surface.unit_m.powi(3);

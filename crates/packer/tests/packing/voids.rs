@@ -5,9 +5,8 @@ use crate::helpers::facets::{Facets, Point, cuboid, prism};
 use crate::helpers::packing::settings;
 use crate::helpers::solids::{icosphere, local_facets, surface_of, torus};
 use dem_io::Surface;
-use dem_pack::boundary::Boundary;
-use dem_pack::pack::{PackHistory, PackSettings, Packing, pack};
-use dem_pack::sizes::{Sizes, ks_distance_by_mass, ks_distance_by_number};
+use dem_pack::{PackHistory, PackSettings, Packing, pack};
+use dem_pack::{Sizes, ks_distance_by_mass, ks_distance_by_number};
 
 /// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
 /// the smallest is found, a narrower one need not be.
@@ -115,12 +114,11 @@ fn voids(facets: &[[Point; 3]], packing: &Packing, overlap: f64, radius: f64) ->
 }
 
 fn bare_front(surface: &Surface, diameter: &str, overlap: f64, seed: u64) -> (Sizes, Packing) {
-    let boundary = Boundary::new(surface).unwrap();
     let settings = PackSettings {
         seed,
         ..settings(diameter, overlap, Some(0.0))
     };
-    let packing = pack(surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
+    let packing = pack(surface, &settings, &|_, _| Ok(())).unwrap();
     (settings.sizes, packing)
 }
 

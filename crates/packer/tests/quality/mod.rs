@@ -5,9 +5,10 @@ mod structure;
 mod whole;
 
 use dem_pack::Spheres;
-use dem_pack::bonds::find_bonds;
-use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, Report, Share, assess};
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::find_bonds;
+use dem_pack::internals::{BondedPacking, DEFAULT_GAP_LIMIT, assess};
+use dem_pack::{Basis, Sizes};
+use dem_pack::{Fraction, Report};
 
 /// Spheres in a box whose walls are all six sides, or a solid given by its own distance.
 struct Case {
@@ -58,12 +59,12 @@ impl Case {
     ) -> Report {
         let open = |_: u32, _: u32| false;
         let bonds = find_bonds(&self.spheres, self.bonding_radius, &open).unwrap();
-        assess(&Packing {
+        assess(&BondedPacking {
             spheres: &self.spheres,
             overlap: self.overlap,
             bonds: &bonds,
             bonding_radius: self.bonding_radius,
-            sizes: &Sizes::parse(&self.sizes, By::Number).unwrap(),
+            sizes: &Sizes::parse(&self.sizes, Basis::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: self.extent.iter().product(),
             extent: self.extent,
@@ -81,7 +82,7 @@ impl Case {
 
 /// Within four of the stated errors, which is small.
 #[track_caller]
-fn close(share: Share, wanted: f64) {
+fn close(share: Fraction, wanted: f64) {
     assert!(share.error > 0.0 && share.error < 0.003, "{share:?}");
     assert!(
         (share.value - wanted).abs() < 4.0 * share.error,

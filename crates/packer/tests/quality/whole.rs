@@ -3,8 +3,9 @@
 use super::{Case, close};
 use crate::helpers::lattice::cubic;
 use crate::helpers::random::Random;
+use dem_pack::Report;
 use dem_pack::Spheres;
-use dem_pack::quality::{Report, depth_needed};
+use dem_pack::internals::depth_needed;
 use std::f64::consts::PI;
 
 #[test]

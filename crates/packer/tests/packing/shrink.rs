@@ -3,24 +3,24 @@
 use crate::helpers::facets::{Facets, cuboid};
 use crate::helpers::packing::settings;
 use crate::helpers::solids::{icosphere, surface_of, torus};
-use dem_pack::pack::{PackSettings, pack};
-use dem_pack::room::Room;
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::internals::FillTarget;
+use dem_pack::{Basis, Sizes};
+use dem_pack::{PackSettings, pack};
 use std::f64::consts::PI;
 
 /// Packs with the default share. Volume of the reduced spheres over that which is wanted.
 fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) -> f64 {
-    let (surface, boundary) = surface_of(facets);
+    let (surface, _) = surface_of(facets);
     let settings = PackSettings {
         seed,
         ..settings(diameter, overlap, None)
     };
-    let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
+    let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
     let case = format!("{diameter}, overlap {overlap}, seed {seed}");
     assert_eq!(packing.history.taken_out, 0, "{case}");
     let reduced = packing.spheres.radii.iter().map(|r| r / (1.0 + overlap));
     let filled: f64 = reduced.map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
-    filled / Room::of(&surface, &settings.sizes, overlap).wanted
+    filled / FillTarget::new(&surface, &settings.sizes, overlap).volume
 }
 
 /// A ball took out up to 4 % of its spheres and fell into pieces; shapes of ten spheres across were less dense than the bare front.
@@ -51,11 +51,11 @@ fn bodies_are_as_full_as_can_be_without_jamming() {
 /// Far from walls 0.6 % below jamming is 0.634 for diameters of 2 to 3.
 #[test]
 fn walls_and_overlaps_take_room() {
-    let sizes = Sizes::parse("2mm..3mm", By::Number).unwrap();
+    let sizes = Sizes::parse("2mm..3mm", Basis::Number).unwrap();
     let wanted = |edge: f64, overlap: f64| {
         let (surface, _) = surface_of(&cuboid([edge; 3]));
         let volume = surface.volume_m3() / surface.unit_m.powi(3);
-        Room::of(&surface, &sizes, overlap).wanted / volume
+        FillTarget::new(&surface, &sizes, overlap).volume / volume
     };
     assert!(
         (wanted(1e5, 0.0) - 0.634).abs() < 0.001,
@@ -68,12 +68,12 @@ fn walls_and_overlaps_take_room() {
 
 #[test]
 fn a_front_that_leaves_too_little_room_runs_at_less_small_radii() {
-    let room = Room { wanted: 100.0 };
-    assert_eq!(room.better_share(0.04, 100.2), None);
-    assert_eq!(room.better_share(0.04, 99.6), None);
-    let better = room.better_share(0.04, 103.0).unwrap();
+    let target = FillTarget { volume: 100.0 };
+    assert_eq!(target.better_shrink(0.04, 100.2), None);
+    assert_eq!(target.better_shrink(0.04, 99.6), None);
+    let better = target.better_shrink(0.04, 103.0).unwrap();
     assert!((103.0 * (0.96 / (1.0 - better)).powi(3) - 100.0).abs() < 1e-9);
-    assert!(better < 0.04 && room.better_share(0.04, 97.0).unwrap() > 0.04);
+    assert!(better < 0.04 && target.better_shrink(0.04, 97.0).unwrap() > 0.04);
     // Nothing to gain beyond the limits.
-    assert_eq!(room.better_share(0.08, 50.0), None);
+    assert_eq!(target.better_shrink(0.08, 50.0), None);
 }

@@ -4,9 +4,9 @@
 //! every part. A piece is wall if the solid lies behind it and not before it, by the winding numbers on both sides of its middle.
 //! Where these do not tell (parts that touch with their outer sides), it stays: a wall too many is harmless, a hole is not.
 
+use super::tree::{Corners, TriangleTree};
+use super::winding::winding;
 use crate::Vector3;
-use crate::boundary::Boundary;
-use crate::inside::winding;
 use dem_io::Surface;
 use rayon::prelude::*;
 
@@ -21,7 +21,7 @@ type Segment = [Vector3; 2];
 type Polygon = Vec<Vector3>;
 
 /// The corners of the triangles that bound the union, in local units. `facets` is the tree over the surface.
-pub fn outer_pieces(surface: &Surface, facets: &Boundary) -> Vec<[[f64; 3]; 3]> {
+pub fn outer_pieces(surface: &Surface, facets: &TriangleTree) -> Vec<Corners> {
     let segments: Vec<Vec<Segment>> = (0..surface.triangles.len())
         .into_par_iter()
         .map(|facet| segments_on(surface, facets, facet))
@@ -40,7 +40,7 @@ pub fn outer_pieces(surface: &Surface, facets: &Boundary) -> Vec<[[f64; 3]; 3]> 
         })
         .flatten()
         .collect();
-    let cut: Vec<[[f64; 3]; 3]> = segments
+    let cut: Vec<Corners> = segments
         .into_par_iter()
         .enumerate()
         .filter(|(_, segments)| !segments.is_empty())
@@ -62,7 +62,7 @@ fn corners(surface: &Surface, facet: usize) -> Polygon {
 }
 
 /// Normal of a triangle, twice its area long.
-fn normal(corners: [[f64; 3]; 3]) -> Vector3 {
+fn normal(corners: Corners) -> Vector3 {
     let [a, b, c] = corners.map(Vector3::from);
     (b - a).cross(&(c - a))
 }
@@ -75,12 +75,12 @@ fn normal_of(surface: &Surface, facet: usize) -> Vector3 {
 }
 
 /// Where other facets meet this one, except along an edge that they share.
-fn segments_on(surface: &Surface, facets: &Boundary, facet: usize) -> Vec<Segment> {
+fn segments_on(surface: &Surface, facets: &TriangleTree, facet: usize) -> Vec<Segment> {
     let polygon = corners(surface, facet);
     let normal = normal_of(surface, facet);
     let own = surface.triangles[facet];
     let mut segments = Vec::new();
-    for other in facets.facets_near_facet(facet as u32) {
+    for other in facets.beside(facet as u32) {
         let other = other as usize;
         let shared = surface.triangles[other]
             .iter()
@@ -94,7 +94,7 @@ fn segments_on(surface: &Surface, facets: &Boundary, facet: usize) -> Vec<Segmen
 }
 
 /// Adds the segments in which a triangle meets a polygon.
-fn meet(polygon: &Polygon, normal: &Vector3, triangle: [[f64; 3]; 3], segments: &mut Vec<Segment>) {
+fn meet(polygon: &Polygon, normal: &Vector3, triangle: Corners, segments: &mut Vec<Segment>) {
     let triangle = triangle.map(Vector3::from);
     let heights = triangle.map(|p| flushed((p - polygon[0]).dot(normal)));
     let mut add = |segment: Segment| {
@@ -265,7 +265,7 @@ fn divide(polygon: &Polygon, [start, end]: &Segment, normal: &Vector3) -> Option
 }
 
 /// Whether the solid lies behind a piece of a facet and not before it. Also where that cannot be told.
-fn bounds_solid(facets: &Boundary, piece: &Polygon, normal: &Vector3) -> bool {
+fn bounds_solid(facets: &TriangleTree, piece: &Polygon, normal: &Vector3) -> bool {
     let middle = piece.iter().sum::<Vector3>() / piece.len() as f64;
     let behind = winding(facets, &(middle - OFF * normal));
     let before = winding(facets, &(middle + OFF * normal));
@@ -276,7 +276,7 @@ fn bounds_solid(facets: &Boundary, piece: &Polygon, normal: &Vector3) -> bool {
 }
 
 /// The triangles of a convex polygon, except those without area.
-fn triangles(polygon: Polygon) -> impl Iterator<Item = [[f64; 3]; 3]> {
+fn triangles(polygon: Polygon) -> impl Iterator<Item = Corners> {
     (2..polygon.len())
         .map(move |k| [polygon[0], polygon[k - 1], polygon[k]])
         .filter(|[a, b, c]| {

@@ -1,13 +1,10 @@
-//! Distance to the surface. The only module that knows parry3d.
+//! The wall of the solid: how far it is from a point, on which side of it a point lies, and what of it
+//! a ball would meet.
 
+use super::tree::{Corners, TriangleTree};
+use super::union::outer_pieces;
 use crate::Vector3;
-use crate::union::outer_pieces;
 use dem_io::{Diagnostic, Result, Surface};
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::BvhNode;
-use parry3d_f64::query::{PointQueryWithLocation, Ray};
-use parry3d_f64::shape::TriMesh;
 
 /// The point of the surface nearest to some other point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,9 +18,9 @@ pub struct Nearest {
 /// The facets of a surface in a tree, for distance queries and rays.
 pub struct Boundary {
     /// All facets of the surface, in its order: what rays are counted against.
-    facets: TriMesh,
+    facets: TriangleTree,
     /// What bounds the solid, where that is not all facets: parts of the surface may lie inside others.
-    union: Option<TriMesh>,
+    union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
 }
@@ -40,7 +37,7 @@ struct Plane {
 const THINNEST: f64 = 1e-6;
 
 impl Plane {
-    fn new(corners: [[f64; 3]; 3]) -> Self {
+    fn new(corners: Corners) -> Self {
         let [a, b, c] = corners.map(Vector3::from);
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.cross(&edge_v);
@@ -78,38 +75,39 @@ impl Boundary {
     /// # Errors
     /// A surface without triangles.
     pub fn new(surface: &Surface) -> Result<Self> {
-        let refused = |e| {
+        let refused = |e: String| {
             Diagnostic::input(
                 surface.source.clone(),
                 format!("the surface cannot be used: {e}"),
                 "",
             )
         };
-        let vertices = surface.vertices.iter().map(|v| Vector::from(*v)).collect();
-        let facets = TriMesh::new(vertices, surface.triangles.clone()).map_err(refused)?;
-        let mut boundary = Self {
-            facets,
-            union: None,
-            planes: Vec::new(),
-        };
+        let vertices = surface.vertices.iter().copied();
+        let facets = TriangleTree::new(vertices, surface.triangles.clone()).map_err(refused)?;
+        let mut union = None;
         if surface.repairs.self_intersections > 0 || surface.overlap_volume_m3 != 0.0 {
-            let pieces = outer_pieces(surface, &boundary);
+            let pieces = outer_pieces(surface, &facets);
             let triangles = (0..pieces.len() as u32)
                 .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
                 .collect();
-            let corners = pieces.into_iter().flatten().map(Vector::from).collect();
-            boundary.union = Some(TriMesh::new(corners, triangles).map_err(refused)?);
+            let corners = pieces.into_iter().flatten();
+            union = Some(TriangleTree::new(corners, triangles).map_err(refused)?);
         }
-        boundary.planes = boundary
-            .wall()
-            .triangles()
-            .map(|t| Plane::new([t.a, t.b, t.c].map(Into::into)))
-            .collect();
-        Ok(boundary)
+        let planes = union.as_ref().unwrap_or(&facets).all().map(Plane::new);
+        Ok(Self {
+            planes: planes.collect(),
+            facets,
+            union,
+        })
+    }
+
+    /// All facets of the surface, in its order.
+    pub fn facets(&self) -> &TriangleTree {
+        &self.facets
     }
 
     /// The triangles that bound the solid.
-    fn wall(&self) -> &TriMesh {
+    fn wall(&self) -> &TriangleTree {
         self.union.as_ref().unwrap_or(&self.facets)
     }
 
@@ -120,12 +118,9 @@ impl Boundary {
 
     /// As [`Boundary::nearest`], with the triangle of the wall that the nearest point lies on.
     pub fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
-        let (triangle, (_, near)) = self.wall().bvh().find_best(
-            cut_off,
-            |node, _| distance_to_box(node, point),
-            |triangle, closest| self.nearest_below(triangle, point, closest),
-        )?;
-        Some((triangle, near))
+        self.wall().nearest(point, cut_off, |triangle, closest| {
+            self.nearest_below(triangle, point, closest)
+        })
     }
 
     /// Whether a point is behind the triangle of the wall that is nearest to it, on the inner side: then it is inside. None
@@ -143,20 +138,11 @@ impl Boundary {
 
     /// Whether the surface leaves a ball of this radius (local units) free.
     pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
-        // The first triangle within the radius decides: no box is worth a look after it.
-        let distance = |node: &BvhNode, closest: f64| {
-            if closest < radius {
-                f64::MAX
-            } else {
-                distance_to_box(node, centre)
-            }
-        };
-        self.wall()
-            .bvh()
-            .find_best(radius, distance, |triangle, closest| {
+        !self
+            .wall()
+            .reaches_into(centre, radius, |triangle, closest| {
                 self.nearest_below(triangle, centre, closest)
             })
-            .is_none()
     }
 
     /// The nearest point of a triangle of the wall with its distance, unless its plane is farther away than `closest`.
@@ -177,34 +163,7 @@ impl Boundary {
 
     /// The triangles of the wall whose boxes come within `reach` (local units) of `point`.
     pub fn triangles_near(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
-        let (centre, half) = (to_parry(point), Vector::splat(reach));
-        let query = BvhNode::leaf(Aabb::new(centre - half, centre + half), 0);
-        self.wall()
-            .bvh()
-            .leaves(move |node| node.intersects(&query))
-    }
-
-    /// The facets of the surface whose boxes meet that of `facet`, itself among them.
-    pub fn facets_near_facet(&self, facet: u32) -> impl Iterator<Item = u32> + '_ {
-        let query = BvhNode::leaf(self.facets.triangle(facet).local_aabb(), 0);
-        self.facets
-            .bvh()
-            .leaves(move |node| node.intersects(&query))
-    }
-
-    /// The facets of the surface whose boxes a ray passes, as indices of the surface's triangles.
-    pub fn facets_on_ray(
-        &self,
-        origin: &Vector3,
-        direction: &Vector3,
-    ) -> impl Iterator<Item = u32> + '_ {
-        on_ray(&self.facets, origin, direction)
-    }
-
-    /// The corners of a facet of the surface, local units.
-    pub fn facet_corners(&self, facet: u32) -> [[f64; 3]; 3] {
-        let triangle = self.facets.triangle(facet);
-        [triangle.a, triangle.b, triangle.c].map(Into::into)
+        self.wall().within(point, reach)
     }
 
     /// The triangles of the wall whose boxes a ray passes, by their corners.
@@ -212,8 +171,9 @@ impl Boundary {
         &self,
         origin: &Vector3,
         direction: &Vector3,
-    ) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
-        on_ray(self.wall(), origin, direction).map(|t| self.corners_of_wall(t))
+    ) -> impl Iterator<Item = Corners> + '_ {
+        let wall = self.wall();
+        wall.on_ray(origin, direction).map(|t| wall.corners(t))
     }
 
     /// The planes of the triangles that come within `reach` (local units) of a point inside, as directions to them and distances, if the
@@ -238,7 +198,7 @@ impl Boundary {
             .enumerate()
             .all(|(k, triangle)| {
                 k < MOST
-                    && self.corners_of_wall(triangle).iter().all(|corner| {
+                    && self.wall().corners(triangle).iter().all(|corner| {
                         let from_point = Vector3::from(*corner) - point;
                         // NaN, of a thin triangle, is behind nothing.
                         found.iter().all(|(normal, distance)| {
@@ -246,11 +206,6 @@ impl Boundary {
                         })
                     })
             })
-    }
-
-    fn corners_of_wall(&self, triangle: u32) -> [[f64; 3]; 3] {
-        let triangle = self.wall().triangle(triangle);
-        [triangle.a, triangle.b, triangle.c].map(Into::into)
     }
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
@@ -305,22 +260,14 @@ impl Boundary {
                 distance: height.abs(),
             };
         }
-        let from = to_parry(point);
-        let (projection, _) = self
-            .wall()
-            .triangle(triangle)
-            .project_local_point_and_get_location(from, false);
-        let point = from_parry(&projection.point);
-        Nearest {
-            point,
-            distance: (projection.point - from).length(),
-        }
+        let (point, distance) = self.wall().projection(triangle, point);
+        Nearest { point, distance }
     }
 
     /// Whether a point (local units) lies inside the solid, judged by the normal of the nearest triangle: much faster than a ray.
     /// `triangles` must hold the nearest one and all that are as near.
     ///
-    /// `None` where this decides nothing, and [`is_inside`](crate::inside::is_inside) does: the nearest place is an edge or a
+    /// `None` where this decides nothing, and [`is_inside`](super::inside::is_inside) does: the nearest place is an edge or a
     /// corner, or several triangles within 1e-9 of the nearest contradict each other (as where two parts touch).
     pub fn is_behind_nearest(
         &self,
@@ -342,31 +289,4 @@ impl Boundary {
         let (_, first) = *near.first()?;
         near.iter().all(|n| n.1 == first).then_some(first)?
     }
-}
-
-fn on_ray<'a>(
-    mesh: &'a TriMesh,
-    origin: &Vector3,
-    direction: &Vector3,
-) -> impl Iterator<Item = u32> + use<'a> {
-    let ray = Ray::new(to_parry(origin), to_parry(direction));
-    mesh.bvh()
-        .leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
-}
-
-/// Distance from a point to the box of a node.
-fn distance_to_box(node: &BvhNode, point: &Vector3) -> f64 {
-    let from = to_parry(point);
-    (node.mins() - from)
-        .max(from - node.maxs())
-        .max(Vector::ZERO)
-        .length()
-}
-
-fn to_parry(v: &Vector3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
-}
-
-fn from_parry(v: &Vector) -> Vector3 {
-    Vector3::new(v.x, v.y, v.z)
 }

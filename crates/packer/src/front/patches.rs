@@ -1,7 +1,7 @@
 //! Whether anything on a halo is free, walls of any shape included: the halo is cut into patches, and those into smaller ones, as long as
 //! neither a cap nor the wall is sure to cover them.
 
-use super::Halo;
+use super::halo::Halo;
 use crate::Vector3;
 
 /// What the wall leaves of a patch: a ball around its middle.

@@ -1,11 +1,11 @@
-//! Is a point inside the solid? A ray is cast and its crossings with the facets are counted (Moeller and Trumbore 1997;
-//! Platzer 2022, section 4.1.1).
+//! Winding numbers: a ray is cast and its crossings with the facets are counted (Moeller and Trumbore
+//! 1997; Platzer 2022, section 4.1.1).
 //!
 //! A ray that grazes a facet, an edge or a vertex decides nothing: the next direction is tried.
 //! Crossings are counted with their sense (out of the solid +1, into it -1), so that shells that cross each other form their union.
 
+use super::tree::{Corners, TriangleTree};
 use crate::Vector3;
-use crate::boundary::Boundary;
 
 /// Directions in no special position to any axis or to each other.
 const DIRECTIONS: [[f64; 3]; 7] = [
@@ -20,7 +20,7 @@ const DIRECTIONS: [[f64; 3]; 7] = [
 
 /// What a ray does with one triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Crossing {
+pub(super) enum Crossing {
     Miss,
     /// Crosses the inner part; the sign tells whether the ray leaves (+1) or enters (-1) the side of the normal.
     Hit(i32),
@@ -29,7 +29,11 @@ enum Crossing {
 }
 
 /// Moeller-Trumbore intersection of the ray `origin + t * direction`, t > 0, with a triangle. Lengths in local units.
-fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 3]) -> Crossing {
+pub(super) fn moeller_trumbore(
+    origin: &Vector3,
+    direction: &Vector3,
+    corners: &Corners,
+) -> Crossing {
     const MARGIN: f64 = 1e-10;
     let [a, b, c] = corners.map(Vector3::from);
     let (edge_1, edge_2) = (b - a, c - a);
@@ -64,49 +68,23 @@ fn moeller_trumbore(origin: &Vector3, direction: &Vector3, corners: &[[f64; 3]; 
     Crossing::Hit(if determinant < 0.0 { 1 } else { -1 })
 }
 
-/// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
-/// A point on the surface itself is not inside.
-pub fn is_inside(boundary: &Boundary, point: &Vector3) -> bool {
-    winding(boundary, point).is_some_and(|winding| winding > 0)
-}
-
 /// How often the surface winds around a point (local units): 1 inside one shell, 0 outside. `None` when it cannot be told,
 /// as on the surface itself.
-pub fn winding(boundary: &Boundary, point: &Vector3) -> Option<i32> {
+pub(super) fn winding(facets: &TriangleTree, point: &Vector3) -> Option<i32> {
     DIRECTIONS
         .iter()
-        .find_map(|d| crossings(boundary, point, &Vector3::from(*d)))
+        .find_map(|d| crossings(facets, point, &Vector3::from(*d)))
 }
 
 /// Signed crossings of a ray; `None` when a facet was grazed.
-fn crossings(boundary: &Boundary, origin: &Vector3, direction: &Vector3) -> Option<i32> {
+fn crossings(facets: &TriangleTree, origin: &Vector3, direction: &Vector3) -> Option<i32> {
     let mut winding = 0;
-    for facet in boundary.facets_on_ray(origin, direction) {
-        match moeller_trumbore(origin, direction, &boundary.facet_corners(facet)) {
+    for facet in facets.on_ray(origin, direction) {
+        match moeller_trumbore(origin, direction, &facets.corners(facet)) {
             Crossing::Miss => {}
             Crossing::Hit(sign) => winding += sign,
             Crossing::Unsure => return None,
         }
     }
     Some(winding)
-}
-
-/// Distance along a ray (unit direction, local units) to the first wall that it meets farther away than `beyond`.
-pub fn first_hit(
-    boundary: &Boundary,
-    origin: &Vector3,
-    direction: &Vector3,
-    beyond: f64,
-) -> Option<f64> {
-    let plane_distance = |corners: [[f64; 3]; 3]| {
-        let [a, b, c] = corners.map(Vector3::from);
-        let normal = (b - a).cross(&(c - a));
-        let distance = (a - origin).dot(&normal) / direction.dot(&normal);
-        (moeller_trumbore(origin, direction, &corners) != Crossing::Miss && distance > beyond)
-            .then_some(distance)
-    };
-    boundary
-        .walls_on_ray(origin, direction)
-        .filter_map(plane_distance)
-        .min_by(f64::total_cmp)
 }

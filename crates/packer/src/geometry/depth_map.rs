@@ -5,9 +5,9 @@
 //! d(p)^2 - |p|^2 is the minimum of |q|^2 - 2 p.q, so concave: it is at least what is interpolated between the corners. And
 //! d(p) is at most the distance to the point of the surface that is nearest to a corner.
 
+use super::boundary::Boundary;
+use super::inside::is_inside;
 use crate::Vector3;
-use crate::boundary::Boundary;
-use crate::inside::is_inside;
 use dem_io::Surface;
 use rayon::prelude::*;
 

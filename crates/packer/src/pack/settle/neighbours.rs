@@ -1,8 +1,8 @@
 //! What each sphere could come to touch: other spheres and triangles of the wall, listed from a grid of cells and from the tree of the facets.
 
 use crate::Vector3;
-use crate::boundary::Boundary;
-use crate::grid::{Ball, Lattice};
+use crate::geometry::boundary::Boundary;
+use crate::grid::{Lattice, ReducedSphere};
 use rayon::prelude::*;
 
 /// Cells of a search at most, for each sphere.
@@ -12,15 +12,20 @@ pub(super) const CHUNK: usize = 1024;
 
 /// What each sphere could come to touch before the lists are made again: other spheres, triangles of the wall.
 #[derive(Default)]
-pub(super) struct Near {
+pub(super) struct NeighbourLists {
     pub(super) spheres: Lists,
     pub(super) walls: Lists,
 }
 
-impl Near {
+impl NeighbourLists {
     /// Lists, for each of `balls`, the spheres less than `skin` (local units) away from it and the triangles less than half that away from its
     /// radius times `enlarge`: nothing else can touch it before one sphere has moved by half the skin.
-    pub(super) fn list(boundary: &Boundary, balls: &[Ball], enlarge: f64, skin: f64) -> Self {
+    pub(super) fn new(
+        boundary: &Boundary,
+        balls: &[ReducedSphere],
+        enlarge: f64,
+        skin: f64,
+    ) -> Self {
         let largest = balls.iter().map(|b| b[3]).fold(0.0, f64::max);
         // Cells of half the largest reach: nearer to a ball in shape than 3 x 3 x 3 cells of all of it.
         let cells = Cells::new(balls, largest + 0.5 * skin);
@@ -63,7 +68,10 @@ impl Lists {
 }
 
 /// For each sphere the list that `fill` makes.
-fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -> Lists {
+fn lists_of(
+    balls: &[ReducedSphere],
+    fill: impl Fn(usize, &ReducedSphere, &mut Vec<u32>) + Sync,
+) -> Lists {
     let parts: Vec<(Vec<u32>, Vec<u32>)> = balls
         .par_chunks(CHUNK)
         .enumerate()
@@ -91,11 +99,11 @@ fn lists_of(balls: &[Ball], fill: impl Fn(usize, &Ball, &mut Vec<u32>) + Sync) -
     Lists { all, first }
 }
 
-pub(super) fn squared_distance(a: &Ball, b: &Ball) -> f64 {
+pub(super) fn squared_distance(a: &ReducedSphere, b: &ReducedSphere) -> f64 {
     (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)
 }
 
-fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
+fn bounds(balls: &[ReducedSphere]) -> ([f64; 3], [f64; 3]) {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for ball in balls {
@@ -112,12 +120,12 @@ struct Cells {
     lattice: Lattice,
     /// For each cell where its spheres begin; and where the last ends.
     first: Vec<u32>,
-    balls: Vec<Ball>,
+    balls: Vec<ReducedSphere>,
     numbers: Vec<u32>,
 }
 
 impl Cells {
-    fn new(balls: &[Ball], cell: f64) -> Self {
+    fn new(balls: &[ReducedSphere], cell: f64) -> Self {
         let (low, high) = bounds(balls);
         // Balls that fill little of their box would have too many cells: fewer, larger ones hold them as well.
         let most = MOST_CELLS_PER_SPHERE * (balls.len() as f64 + 1.0);
@@ -152,7 +160,12 @@ impl Cells {
     }
 
     /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of `ball`, and their numbers.
-    fn near(&self, ball: &Ball, reach: f64, mut visit: impl FnMut(&[Ball], &[u32])) {
+    fn near(
+        &self,
+        ball: &ReducedSphere,
+        reach: f64,
+        mut visit: impl FnMut(&[ReducedSphere], &[u32]),
+    ) {
         self.lattice
             .rows_near([ball[0], ball[1], ball[2]], reach, |row| {
                 let spheres = self.first[row.start] as usize..self.first[row.end] as usize;

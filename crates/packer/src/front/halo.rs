@@ -5,11 +5,9 @@
 //! A place on the halo is a unit vector p; the cap around the unit vector u is p . u > c.
 //! Candidate points are the corners of the free area: where the rims of two caps meet and no other cap covers the point.
 
-pub mod patches;
-
+use super::rims::{LANES, Rims};
 use crate::Vector3;
-use crate::grid::Ball;
-use crate::rims::{LANES, Rims};
+use crate::grid::ReducedSphere;
 use pulp::Arch;
 
 /// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.
@@ -18,12 +16,12 @@ const RIM_TOLERANCE: f64 = 1e-12;
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
 /// What a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
 #[derive(Debug, Clone, Copy)]
-struct Cap {
-    axis: Vector3,
+pub(super) struct Cap {
+    pub(super) axis: Vector3,
     /// Cosine of the cap's angle.
-    rim: f64,
+    pub(super) rim: f64,
     /// Its sine, squared.
-    sine_squared: f64,
+    pub(super) sine_squared: f64,
 }
 
 /// The caps on the halo of one sphere for one radius of the new sphere. Reused from call to call.
@@ -34,7 +32,7 @@ pub struct Halo {
     /// Radius of the halo, local units.
     pub radius: f64,
     /// Largest first, nearly: they cover most.
-    caps: Vec<Cap>,
+    pub(super) caps: Vec<Cap>,
     /// The same in single precision.
     rims: Rims,
     /// The least order of any point on a rim in the upper half, the number of its cap in the lower one.
@@ -65,7 +63,7 @@ impl Neighbours {
     }
 
     /// Adds those of `balls` that a new sphere of reduced radius `largest` on the halo of `ball` could touch.
-    pub fn gather(&mut self, ball: &Ball, balls: &[Ball], largest: f64) {
+    pub fn gather(&mut self, ball: &ReducedSphere, balls: &[ReducedSphere], largest: f64) {
         for other in balls {
             let d = Vector3::new(other[0] - ball[0], other[1] - ball[1], other[2] - ball[2]);
             let squared = d.norm_squared();
@@ -93,7 +91,7 @@ impl Neighbours {
 
 impl Halo {
     /// The halo of `ball` for a new sphere of reduced radius `new`, with the caps of its neighbours.
-    pub fn set(&mut self, ball: &Ball, new: f64, neighbours: &Neighbours) {
+    pub fn set(&mut self, ball: &ReducedSphere, new: f64, neighbours: &Neighbours) {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
         self.caps.clear();

@@ -1,12 +1,14 @@
-//! The whole job: surface and settings -> body and report.
+//! A bonded body from a surface: spheres, bonds, and a report of how good they are.
 
 use crate::Vector3;
 use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance, find_bonds};
-use crate::boundary::Boundary;
 use crate::density::{DensitySearch, pack_to_density};
-use crate::depth_map::DepthMap;
-use crate::pack::{PackHistory, PackSettings, Progress, can_fill_voids, pack, to_metres};
-use crate::quality::{self, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
+use crate::geometry::boundary::Boundary;
+use crate::geometry::depth_map::DepthMap;
+use crate::pack::{
+    PackHistory, PackSettings, Packing, Progress, Solid, can_fill_voids, pack_solid,
+};
+use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::sizes::Sizes;
 use dem_io::body::About;
 use dem_io::body::mass::{BodyMass, of_body, of_named_density, volume_m3};
@@ -19,9 +21,9 @@ use std::time::Instant;
 /// Spheres whose distance to the wall one task measures.
 const SPHERES_PER_TASK: usize = 256;
 
-/// What body is wanted.
+/// How a body is to be made.
 #[derive(Debug, Clone)]
-pub struct MakeSettings {
+pub struct BodySettings {
     /// The spheres.
     pub packing: PackSettings,
     /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
@@ -36,12 +38,27 @@ pub struct MakeSettings {
     pub solid_density_kg_m3: Option<f64>,
 }
 
-/// More spheres than this share taken out are worth a warning.
+impl BodySettings {
+    /// Bonds between spheres up to 1.1 times the sum of their radii apart, as thick as the smaller of the
+    /// two, as the program makes them unless told otherwise.
+    pub fn new(packing: PackSettings) -> Self {
+        Self {
+            packing,
+            bonding_radius: 1.1,
+            bonds_per_particle: None,
+            bond_radius_factor: 1.0,
+            particle_density_kg_m3: None,
+            solid_density_kg_m3: None,
+        }
+    }
+}
+
+/// More spheres than this fraction taken out are worth a warning.
 const MANY_TAKEN_OUT: f64 = 0.005;
 
 /// Times of the stages, s.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Seconds {
+pub struct StageSeconds {
     /// Front, settling, filling, and every packing of a density search.
     pub packing: f64,
     /// Finding the bonds.
@@ -50,9 +67,9 @@ pub struct Seconds {
     pub report: f64,
 }
 
-/// All that is known of a new body, for `--json`.
+/// All that is known of a new body.
 #[derive(Debug, Clone, Serialize)]
-pub struct Made {
+pub struct BodyReport {
     /// How good it is.
     pub quality: Report,
     /// What it weighs, beside its shape filled with the density of the particles, if that is given.
@@ -70,46 +87,34 @@ pub struct Made {
     /// What was repaired in the surface.
     pub repairs: dem_io::surface::Repairs,
     /// Where the time went.
-    pub seconds: Seconds,
+    pub seconds: StageSeconds,
 }
 
 /// Packs, bonds and judges.
 ///
 /// # Errors
-/// As [`pack`], [`find_bonds`] and [`pack_to_density`].
+/// As [`crate::pack()`] and [`find_bonds`]; a density that no overlap gives.
 pub fn make_body(
     surface: &Surface,
-    settings: &MakeSettings,
+    settings: &BodySettings,
     progress: Progress,
-) -> Result<(Body, Made)> {
-    let mut seconds = Seconds::default();
+) -> Result<(Body, BodyReport)> {
     let started = Instant::now();
-    let boundary = Boundary::new(surface)?;
-    let mut packing_settings = settings.packing.clone();
-    let (packing, density_search) = match (
-        settings.solid_density_kg_m3,
-        settings.particle_density_kg_m3,
-    ) {
-        (Some(solid), Some(particle)) => {
-            let (packing, search) = pack_to_density(
-                surface,
-                &boundary,
-                &mut packing_settings,
-                solid,
-                particle,
-                progress,
-            )?;
-            (packing, Some(search))
-        }
-        _ => (pack(surface, &boundary, &packing_settings, progress)?, None),
+    let solid = Solid::new(surface)?;
+    let prepared = started.elapsed().as_secs_f64();
+    let mut packed = packed(&solid, settings, progress)?;
+    packed.packing.history.front_seconds += prepared;
+    let mut seconds = StageSeconds {
+        packing: started.elapsed().as_secs_f64(),
+        ..StageSeconds::default()
     };
-    seconds.packing = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
     progress("report", 0.0)?;
-    let spheres = &packing.spheres;
+    let spheres = &packed.packing.spheres;
     let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
-    let map = DepthMap::new(surface, &boundary, depth_needed(spheres), 4.0 * mean_radius);
+    let (reach, edge) = (depth_needed(spheres), 4.0 * mean_radius);
+    let map = DepthMap::new(surface, &solid.boundary, reach, edge);
     let wall_distance: Vec<f64> = spheres
         .positions
         .par_iter()
@@ -124,7 +129,7 @@ pub fn make_body(
         let (p, q) = (spheres.positions[a as usize], spheres.positions[b as usize]);
         // Balls that clear the surface and cover the line between their centres.
         let clear = wall_distance[a as usize] + wall_distance[b as usize];
-        clear <= centre_distance(spheres, a, b) && crosses_surface(&boundary, p, q)
+        clear <= centre_distance(spheres, a, b) && crosses_surface(&solid.boundary, p, q)
     };
     let bonding_radius = match settings.bonds_per_particle {
         Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
@@ -135,9 +140,9 @@ pub fn make_body(
 
     let started = Instant::now();
     progress("report", 0.0)?;
-    let mut quality = assess(&quality::Packing {
+    let mut quality = assess(&BondedPacking {
         spheres,
-        overlap: packing_settings.overlap,
+        overlap: packed.settings.overlap,
         bonds: &bonds,
         bonding_radius,
         sizes: &settings.packing.sizes,
@@ -150,34 +155,87 @@ pub fn make_body(
         distance_bounds: &|p| map.bounds(p),
         crosses_surface: &crosses,
         gap_limit: DEFAULT_GAP_LIMIT,
-        parts: if surface.repairs.self_intersections > 0 {
-            1
-        } else {
-            surface.parts()
-        },
+        parts: parts(surface),
     })?;
-    quality
-        .warnings
-        .extend(density_search.as_ref().and_then(DensitySearch::warning));
-    let history = &packing.history;
-    let jammed = jam_warning(history, spheres.radii.len());
-    let open = void_warning(history, &settings.packing.sizes);
-    quality.warnings.extend(jammed.into_iter().chain(open));
+    quality.warnings.extend(packed.warnings());
     seconds.report += started.elapsed().as_secs_f64();
 
-    let body = Body {
-        bond_radii: bond_radii(spheres, &bonds, settings.bond_radius_factor)
-            .into_iter()
-            .map(|r| r * surface.unit_m)
-            .collect(),
-        bond_lengths: bond_lengths(spheres, &bonds)
-            .into_iter()
-            .map(|l| l * surface.unit_m)
-            .collect(),
+    let body = body_of(&solid, settings, &packed, bonds, bonding_radius, &quality);
+    let report = BodyReport {
+        mass: of_named_density(&body),
+        mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
+        centre_m: of_body(&body, 1.0).centre_m,
+        quality,
+        history: packed.packing.history,
+        bonding_radius,
+        density_search: packed.density_search,
+        repairs: surface.repairs.clone(),
+        seconds,
+    };
+    Ok((body, report))
+}
+
+/// Spheres, and how they were packed.
+struct Packed {
+    packing: Packing,
+    /// With the overlap that was found, if it was looked for.
+    settings: PackSettings,
+    density_search: Option<DensitySearch>,
+}
+
+fn packed(solid: &Solid, settings: &BodySettings, progress: Progress) -> Result<Packed> {
+    let densities = settings
+        .solid_density_kg_m3
+        .zip(settings.particle_density_kg_m3);
+    let mut settings = settings.packing.clone();
+    let (packing, density_search) = match densities {
+        Some((wanted, particle)) => {
+            let (packing, search) =
+                pack_to_density(solid, &mut settings, wanted, particle, progress)?;
+            (packing, Some(search))
+        }
+        None => (pack_solid(solid, &settings, progress)?, None),
+    };
+    Ok(Packed {
+        packing,
+        settings,
+        density_search,
+    })
+}
+
+impl Packed {
+    /// What a user should know of the packing.
+    fn warnings(&self) -> impl Iterator<Item = String> {
+        let history = &self.packing.history;
+        let density = self
+            .density_search
+            .as_ref()
+            .and_then(DensitySearch::warning);
+        let jammed = jam_warning(history, self.packing.spheres.radii.len());
+        let open = void_warning(history, &self.settings.sizes);
+        density.into_iter().chain(jammed).chain(open)
+    }
+}
+
+/// The body in metres.
+fn body_of(
+    solid: &Solid,
+    settings: &BodySettings,
+    packed: &Packed,
+    bonds: Vec<[u32; 2]>,
+    bonding_radius: f64,
+    quality: &Report,
+) -> Body {
+    let surface = solid.surface;
+    let spheres = &packed.packing.spheres;
+    let in_metres = |lengths: Vec<f64>| lengths.into_iter().map(|l| l * surface.unit_m).collect();
+    Body {
+        bond_radii: in_metres(bond_radii(spheres, &bonds, settings.bond_radius_factor)),
+        bond_lengths: in_metres(bond_lengths(spheres, &bonds)),
         positions: spheres
             .positions
             .iter()
-            .map(|p| to_metres(surface, &Vector3::from(*p)))
+            .map(|p| solid.to_metres(&Vector3::from(*p)))
             .collect(),
         radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
         bonds,
@@ -187,41 +245,41 @@ pub fn make_body(
             source_hash: Some(surface.source_hash),
             shape_volume_m3: Some(surface.volume_m3()),
             particle_density_kg_m3: settings.particle_density_kg_m3,
-            overlap: Some(packing_settings.overlap),
+            overlap: Some(packed.settings.overlap),
             bonding_radius: Some(bonding_radius),
-            seed: Some(packing_settings.seed),
+            seed: Some(packed.settings.seed),
             warnings: quality.warnings.clone(),
         },
-    };
-    let spheres_m3: f64 = body.radii.iter().map(|radius| volume_m3(*radius)).sum();
-    let made = Made {
-        mass: of_named_density(&body),
-        mass_over_shape: spheres_m3 / surface.volume_m3(),
-        centre_m: of_body(&body, 1.0).centre_m,
-        quality,
-        history: packing.history,
-        bonding_radius,
-        density_search,
-        repairs: surface.repairs.clone(),
-        seconds,
-    };
-    Ok((body, made))
+    }
 }
 
-/// What a person should know if many spheres jammed.
+fn spheres_volume_m3(body: &Body) -> f64 {
+    body.radii.iter().map(|radius| volume_m3(*radius)).sum()
+}
+
+/// Separate parts of the solid; parts that cross each other are taken for one.
+fn parts(surface: &Surface) -> usize {
+    if surface.repairs.self_intersections > 0 {
+        1
+    } else {
+        surface.parts()
+    }
+}
+
+/// A warning if many spheres jammed.
 fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
-    let share = history.taken_out as f64 / particles.max(1) as f64;
-    (share > MANY_TAKEN_OUT).then(|| {
+    let fraction = history.taken_out as f64 / particles.max(1) as f64;
+    (fraction > MANY_TAKEN_OUT).then(|| {
         format!(
             "{} spheres ({} %) jammed while settling and were taken out: --settle {} leaves them more room",
             history.taken_out,
-            significant(100.0 * share, 2),
+            significant(100.0 * fraction, 2),
             significant(0.8 * history.settle, 2)
         )
     })
 }
 
-/// What a person should know if voids are left although the sizes would not forbid to fill them.
+/// A warning if voids are left although the sizes would not forbid to fill them.
 fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
     (can_fill_voids(sizes) && history.voids_left > 0).then(|| {
         format!(
@@ -239,6 +297,6 @@ fn crosses_surface(boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
     if boundary.clears(&middle, 0.5 * length) {
         return false;
     }
-    crate::inside::first_hit(boundary, &a, &((b - a) / length), 0.0)
+    crate::geometry::inside::first_hit(boundary, &a, &((b - a) / length), 0.0)
         .is_some_and(|distance| distance < length)
 }
