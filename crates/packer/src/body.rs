@@ -1,6 +1,5 @@
 //! A bonded body from a surface: spheres, bonds, and a report of how good they are.
 
-use crate::Vector3;
 use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance, find_bonds};
 use crate::density::{DensitySearch, pack_to_density};
 use crate::geometry::boundary::Boundary;
@@ -10,6 +9,7 @@ use crate::pack::{
 };
 use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::sizes::Sizes;
+use crate::spheres::Vector3;
 use dem_io::body::About;
 use dem_io::body::mass::{BodyMass, of_body, of_named_density, volume_m3};
 use dem_io::units::significant;

@@ -3,7 +3,7 @@
 //! A pair is joined when the distance of its centres is at most `bonding_radius * (R_a + R_b)`, true radii (thesis 4.1:
 //! 1.0 and 1.1), and no surface lies between: two fingers of one shape stay two.
 
-use crate::Spheres;
+use crate::spheres::Spheres;
 use dem_io::{Diagnostic, Result};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;

@@ -1,10 +1,7 @@
 //! A dense grid of cells over a box: which spheres lie near a point.
 
-use crate::Vector3;
+use crate::spheres::{ReducedSphere, Vector3};
 use std::ops::Range;
-
-/// A sphere as the front sees it: centre x, y, z and reduced radius r_gen, local units.
-pub type ReducedSphere = [f64; 4];
 
 /// Equal cubic cells over a box, numbered along x first.
 pub(crate) struct Lattice {
@@ -101,14 +98,4 @@ impl Grid {
             }
         });
     }
-}
-
-/// Centre of a sphere.
-pub(crate) fn centre_of(sphere: &ReducedSphere) -> Vector3 {
-    Vector3::new(sphere[0], sphere[1], sphere[2])
-}
-
-/// Distance from the centre of a sphere to a point.
-pub(crate) fn distance(sphere: &ReducedSphere, point: &Vector3) -> f64 {
-    (centre_of(sphere) - point).norm()
 }

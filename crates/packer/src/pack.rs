@@ -1,5 +1,6 @@
 //! From a solid and sizes to spheres, in four acts: [`shrink`], [`grow`], [`settle`] and [`fill`].
 
+mod attempt;
 mod fill;
 mod grow;
 mod job;
@@ -10,18 +11,17 @@ pub(crate) mod settle;
 pub(crate) mod shrink;
 mod solid;
 
+pub(crate) use self::attempt::can_fill_voids;
 use self::fill::fill;
 use self::grow::grow;
 use self::job::Job;
 use self::order::sort_along_curve;
-pub(crate) use self::retry::can_fill_voids;
-use self::retry::{Attempt, Retry};
+use self::retry::Retry;
 pub use self::settings::{PackHistory, PackSettings, Packing, Progress};
 use self::settle::settle;
 use self::shrink::choose_shrink;
 pub(crate) use self::solid::Solid;
-use crate::Spheres;
-use crate::grid::ReducedSphere;
+use crate::spheres::{ReducedSphere, Spheres};
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result, Surface};
 use std::time::Instant;
@@ -66,7 +66,7 @@ pub(crate) fn pack_if(
 ) -> Result<Option<Packing>> {
     let started = Instant::now();
     let job = Job::new(solid, settings)?;
-    let mut attempt = Attempt::new(choose_shrink(settings), &settings.sizes);
+    let mut attempt = Retry::first(choose_shrink(settings), &settings.sizes);
     let mut retry = Retry::new(&job);
     let mut settle_seconds = 0.0;
     let (mut spheres, grown, settled) = loop {

@@ -1,8 +1,8 @@
 //! Where a front begins: the deepest point of the solid, and the first three spheres (Platzer 2022, section 4.1.1).
 
-use crate::Vector3;
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::{first_hit, is_inside};
+use crate::spheres::Vector3;
 use dem_io::Surface;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

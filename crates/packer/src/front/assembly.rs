@@ -1,9 +1,9 @@
 //! The spheres placed so far (the source's assemblyList and grid), and what room they and the wall
 //! leave.
 
-use crate::Vector3;
 use crate::geometry::boundary::Boundary;
-use crate::grid::{Grid, ReducedSphere, distance};
+use crate::grid::Grid;
+use crate::spheres::{ReducedSphere, Vector3, distance};
 use rayon::prelude::*;
 
 /// The sizes that are to be placed, and how near to each other and to the wall. Lengths in local

@@ -5,8 +5,7 @@ use super::cells::block_of;
 use super::draws::{Draws, any_size};
 use super::fillers::{BlockFillers, FilledVoids, FillingRules};
 use super::places::{Place, Workspace};
-use crate::Vector3;
-use crate::grid::{ReducedSphere, distance};
+use crate::spheres::{ReducedSphere, Vector3, distance};
 
 /// What is done around the spheres of the front.
 #[derive(Debug, Clone, Copy, PartialEq)]

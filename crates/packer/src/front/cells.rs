@@ -1,7 +1,8 @@
 //! Blocks of cells in eight colours: blocks of one colour are too far apart to disturb each other.
 
 use super::assembly::FrontSphere;
-use crate::grid::{Lattice, ReducedSphere};
+use crate::grid::Lattice;
+use crate::spheres::ReducedSphere;
 use std::collections::BTreeMap;
 
 /// Cells along the edge of a block.

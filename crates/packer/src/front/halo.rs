@@ -6,8 +6,7 @@
 //! Candidate points are the corners of the free area: where the rims of two caps meet and no other cap covers the point.
 
 use super::rims::{LANES, Rims};
-use crate::Vector3;
-use crate::grid::ReducedSphere;
+use crate::spheres::{ReducedSphere, Vector3};
 use pulp::Arch;
 
 /// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.

@@ -2,7 +2,7 @@
 //! neither a cap nor the wall is sure to cover them.
 
 use super::halo::Halo;
-use crate::Vector3;
+use crate::spheres::Vector3;
 
 /// What the wall leaves of a patch: a ball around its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,9 +3,8 @@
 
 use super::assembly::Assembly;
 use super::halo::{Halo, Neighbours};
-use crate::Vector3;
 use crate::geometry::boundary::Nearest;
-use crate::grid::{ReducedSphere, centre_of};
+use crate::spheres::{ReducedSphere, Vector3, centre_of};
 
 /// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it fills the first layer at the wall.
 const WALL_PREFERENCE: f64 = 0.5;

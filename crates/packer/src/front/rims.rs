@@ -4,7 +4,7 @@
 //! such arc is covered, and once all 64 are, the rim holds no corner of the free area. Most rims end so after a few caps.
 //! What is called covered here is covered; what is called open may still be covered: the caller looks at it in double precision.
 
-use crate::Vector3;
+use crate::spheres::Vector3;
 
 /// Caps handled at once, without a branch.
 pub(crate) const LANES: usize = 8;

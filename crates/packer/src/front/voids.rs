@@ -3,10 +3,9 @@
 use super::assembly::{Assembly, cells_near_wall};
 use super::patches::Wall;
 use super::places::{Place, Workspace};
-use crate::Vector3;
 use crate::geometry::inside::is_inside;
-use crate::grid::{ReducedSphere, centre_of, distance};
 use crate::seed::climb;
+use crate::spheres::{ReducedSphere, Vector3, centre_of, distance};
 use rayon::prelude::*;
 
 /// Voids are counted up to this number, and extrapolated from there.

@@ -3,7 +3,7 @@
 
 use super::tree::{Corners, TriangleTree};
 use super::union::outer_pieces;
-use crate::Vector3;
+use crate::spheres::Vector3;
 use dem_io::{Diagnostic, Result, Surface};
 
 /// The point of the surface nearest to some other point.

@@ -7,7 +7,7 @@
 
 use super::boundary::Boundary;
 use super::inside::is_inside;
-use crate::Vector3;
+use crate::spheres::Vector3;
 use dem_io::Surface;
 use rayon::prelude::*;
 

@@ -3,7 +3,7 @@
 use super::boundary::Boundary;
 use super::tree::Corners;
 use super::winding::{Crossing, moeller_trumbore, winding};
-use crate::Vector3;
+use crate::spheres::Vector3;
 
 /// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
 /// A point on the surface itself is not inside.

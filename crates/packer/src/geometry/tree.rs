@@ -1,6 +1,6 @@
 //! Triangles in a tree of boxes. The only module that knows parry3d.
 
-use crate::Vector3;
+use crate::spheres::Vector3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::BvhNode;

@@ -6,7 +6,7 @@
 
 use super::tree::{Corners, TriangleTree};
 use super::winding::winding;
-use crate::Vector3;
+use crate::spheres::Vector3;
 use dem_io::Surface;
 use rayon::prelude::*;
 

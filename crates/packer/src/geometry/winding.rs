@@ -5,7 +5,7 @@
 //! Crossings are counted with their sense (out of the solid +1, into it -1), so that shells that cross each other form their union.
 
 use super::tree::{Corners, TriangleTree};
-use crate::Vector3;
+use crate::spheres::Vector3;
 
 /// Directions in no special position to any axis or to each other.
 const DIRECTIONS: [[f64; 3]; 7] = [

@@ -3,7 +3,7 @@
 use super::job::Job;
 use super::settings::Progress;
 use crate::front::{Assembly, first_draw};
-use crate::grid::ReducedSphere;
+use crate::spheres::ReducedSphere;
 use dem_io::Result;
 
 /// Spheres around which voids are searched at a time.

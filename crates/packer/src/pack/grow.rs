@@ -1,15 +1,14 @@
 //! Second act: fronts that begin at seeds spread over the solid, and again wherever room is left that
 //! none has reached.
 
+use super::attempt::Attempt;
 use super::job::Job;
-use super::retry::Attempt;
 use super::settings::Progress;
 use super::solid::sphere_volumes;
-use crate::Vector3;
 use crate::front::{FillingSettings, Front, SizeQuota};
 use crate::geometry::inside::is_inside;
-use crate::grid::ReducedSphere;
 use crate::seed::{climb, first_spheres, spread_points};
+use crate::spheres::{ReducedSphere, Vector3};
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use rayon::prelude::*;

@@ -2,10 +2,10 @@
 
 use super::settings::PackSettings;
 use super::solid::Solid;
-use crate::Vector3;
 use crate::front::{Assembly, SizeSettings};
 use crate::geometry::inside::is_inside;
 use crate::sizes::Sizes;
+use crate::spheres::Vector3;
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 

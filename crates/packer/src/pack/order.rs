@@ -1,6 +1,6 @@
 //! The order of spheres in memory.
 
-use crate::grid::ReducedSphere;
+use crate::spheres::ReducedSphere;
 
 /// Sorts spheres by the Morton code of cells of edge 4 `radius`, so that neighbours in space are
 /// neighbours in memory.

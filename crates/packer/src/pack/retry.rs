@@ -9,15 +9,12 @@
 //! Where the fraction by which radii are smaller was asked for, nothing is tried again but the sizes of
 //! a bare front.
 
+use super::attempt::{Attempt, can_fill_voids};
 use super::grow::Grown;
 use super::job::Job;
 use super::settle::{Settled, WhenJammed};
 use super::shrink::{FillTarget, rounded};
-use crate::front::SizeQuota;
 use crate::sizes::Sizes;
-
-/// The largest size over the smallest up to which the bare front fills all voids.
-const WIDEST_FILLED: f64 = 1.5 + 1e-6;
 
 /// How many small spheres too many there may be in a bare front for voids to be filled, in roots of the
 /// number of spheres: at first many times what chance does, to learn how many voids there are (10 in a
@@ -43,21 +40,6 @@ const MOST_FRONTS: usize = 4;
 const AFTER_JAM: f64 = 0.93;
 const MOST_JAMS: usize = 3;
 
-/// What one front is run with.
-#[derive(Debug, Clone)]
-pub(super) struct Attempt {
-    /// Its radii are smaller by this fraction.
-    pub(super) shrink: f64,
-    /// Voids are filled as it goes: only then the rest counts.
-    pub(super) fills_voids: bool,
-    /// Spheres placed by the attempt before, if there was one.
-    pub(super) expected: Option<f64>,
-    /// How many small spheres too many there may be, in roots of the number of spheres.
-    pub(super) most_too_many: f64,
-    /// The sizes to begin with, which keep back those of which there were too many.
-    pub(super) quota: Option<SizeQuota>,
-}
-
 /// What has been tried, and what may still be.
 pub(super) struct Retry {
     /// How full the body is to be, if its shrink is chosen here.
@@ -71,25 +53,6 @@ pub(super) struct Retry {
     last_imbalance: f64,
 }
 
-/// Whether sizes are so alike that all voids can be filled. Wider ones have fewer small spheres than
-/// voids: to place them all would change the sizes.
-pub(crate) fn can_fill_voids(sizes: &Sizes) -> bool {
-    sizes.max_m() <= WIDEST_FILLED * sizes.min_m()
-}
-
-impl Attempt {
-    /// The first attempt.
-    pub(super) fn new(shrink: f64, sizes: &Sizes) -> Self {
-        Self {
-            shrink,
-            fills_voids: shrink == 0.0 && can_fill_voids(sizes),
-            expected: None,
-            most_too_many: MOST_TOO_MANY[0],
-            quota: None,
-        }
-    }
-}
-
 impl Retry {
     /// The policy for a packing.
     pub(super) fn new(job: &Job) -> Self {
@@ -101,6 +64,17 @@ impl Retry {
             jams: 0,
             is_last: false,
             last_imbalance: f64::INFINITY,
+        }
+    }
+
+    /// The first attempt.
+    pub(super) fn first(shrink: f64, sizes: &Sizes) -> Attempt {
+        Attempt {
+            shrink,
+            fills_voids: shrink == 0.0 && can_fill_voids(sizes),
+            expected: None,
+            most_too_many: MOST_TOO_MANY[0],
+            quota: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! What packing is asked for, and what it tells.
 
-use crate::Spheres;
 use crate::sizes::Sizes;
+use crate::spheres::Spheres;
 use dem_io::Result;
 use serde::Serialize;
 

@@ -16,7 +16,7 @@ mod neighbours;
 pub use self::minimiser::{Settled, WhenJammed, minimise_overlaps};
 use super::job::Job;
 use super::settings::Progress;
-use crate::grid::ReducedSphere;
+use crate::spheres::ReducedSphere;
 use dem_io::Result;
 
 /// Third act: spheres of a front whose radii were smaller by `shrink`, at full size, are moved until none

@@ -9,8 +9,8 @@
 //! uniform and lognormal diameters: it tells jamming bodies from others within 0.5 %.
 
 use super::settings::PackSettings;
-use crate::Vector3;
 use crate::sizes::Sizes;
+use crate::spheres::Vector3;
 use dem_io::Surface;
 
 /// Volume fraction at which one size jams, and what spread and skewness add to it.

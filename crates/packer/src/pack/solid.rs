@@ -1,8 +1,8 @@
 //! The solid inside a surface, which all its packings have in common.
 
-use crate::Vector3;
 use crate::geometry::boundary::Boundary;
 use crate::seed::{InscribedSphere, deepest_point, inner_points};
+use crate::spheres::Vector3;
 use dem_io::{Diagnostic, Result, Surface};
 
 /// A surface, prepared for packing.

@@ -1,8 +1,8 @@
 //! What is judged: spheres, their bonds, and the solid that they fill.
 
-use crate::Spheres;
 use crate::bonds::CrossesSurface;
 use crate::sizes::Sizes;
+use crate::spheres::Spheres;
 
 /// Contacts are counted up to a gap of this share of the smaller radius: settled spheres keep moving a little until none overlaps, and
 /// so stay apart by a few thousandths, seldom more than this.

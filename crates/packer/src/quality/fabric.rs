@@ -5,7 +5,7 @@
 //! follows chi-squared with 5 degrees of freedom. The largest of the three eigenvalue deviations is by itself about 2
 //! sigma for such directions, so that the chance says more than the sigmas.
 
-use crate::Spheres;
+use crate::spheres::Spheres;
 use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -11,7 +11,7 @@
 
 use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
 use super::depth::{DepthProbe, DepthQuery};
-use super::pieces::Sets;
+use dem_io::disjoint::DisjointSets;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -129,7 +129,7 @@ fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f
     let levels: Vec<u16> = depths.iter().map(|d| level(*d) as u16).collect();
     let crumb = fewest.max((SMALLEST_PART * depths.len() as f64) as usize) as u32;
 
-    let mut sets = Sets::new(depths.len());
+    let mut sets = DisjointSets::new(depths.len());
     let mut thinnest = LEVELS;
     for bond in deepest_first(bonds, &levels) {
         let [a, b] = bonds[bond as usize];

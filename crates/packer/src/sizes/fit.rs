@@ -1,6 +1,6 @@
 //! How well placed particles follow the sizes asked for: one-sample Kolmogorov-Smirnov distances.
 
-use super::Sizes;
+use super::distribution::Sizes;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,8 @@
 //! Forces of overlaps, and the largest overlap: the loop in which settling spends its time.
 
 use super::neighbours::NeighbourLists;
-use crate::Vector3;
 use crate::geometry::boundary::Boundary;
-use crate::grid::ReducedSphere;
+use crate::spheres::{ReducedSphere, Vector3};
 use pulp::NullaryFnOnce;
 
 /// Relative surplus of the radii while settling.

@@ -4,7 +4,7 @@ use super::forces::{ForcesOn, MARGIN, wall_overlap};
 use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::is_inside;
-use crate::grid::{ReducedSphere, centre_of};
+use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
 use pulp::Arch;
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! What each sphere could come to touch: other spheres and triangles of the wall, listed from a grid of cells and from the tree of the facets.
 
-use crate::Vector3;
 use crate::geometry::boundary::Boundary;
-use crate::grid::{Lattice, ReducedSphere};
+use crate::grid::Lattice;
+use crate::spheres::{ReducedSphere, Vector3};
 use rayon::prelude::*;
 
 /// Cells of a search at most, for each sphere.
