@@ -1,5 +1,21 @@
-//! Fills a closed surface with overlapping spheres (advancing front, then settling) and joins them by
-//! bonds.
+//! Fills the solid of an STL file with overlapping spheres and joins them by bonds.
+//!
+//! [`pack()`] gives the spheres of a [`dem_io::Surface`] in its local units, [`make_body`] a whole
+//! body in metres with its bonds and a report of how good it is. The spheres are placed by an
+//! advancing front (Lozano et al. 2016; Platzer 2022) and settled.
+//!
+//! ```
+//! use dem_io::surface::{ReadSettings, surface_from_stl};
+//! use dem_pack::{Basis, PackSettings, Sizes, pack};
+//!
+//! let stl = std::fs::read("../../data/shapes/bar.stl")?;
+//! let reading = ReadSettings { unit_m: 1e-3, scale: 1.0, fill_holes: false };
+//! let surface = surface_from_stl(&stl, "bar.stl", reading)?;
+//! let sizes = Sizes::parse("6mm..8mm", Basis::Number)?;
+//! let packing = pack(&surface, &PackSettings::new(sizes), &|_stage, _done| Ok(()))?;
+//! assert!(packing.spheres.radii.len() > 300);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod body;
 mod bonds;
