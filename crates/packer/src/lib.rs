@@ -13,7 +13,7 @@
 //! let surface = surface_from_stl(&stl, "bar.stl", reading)?;
 //! let sizes = Sizes::parse("6mm..8mm", Basis::Number)?;
 //! let packing = pack(&surface, &PackSettings::new(sizes), &|_stage, _done| Ok(()))?;
-//! assert!(packing.spheres.radii.len() > 300);
+//! assert!(packing.spheres.radii.len() > 200);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
