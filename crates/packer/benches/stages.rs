@@ -1,8 +1,9 @@
-//! The stages of dem-pack apart, in the bending sample with 14,000 and 87,000 spheres, on one thread and on all:
-//! `cargo bench -p dem-pack`.
+//! The stages of dem-pack apart, in the bending sample with 14,000 and 87,000 spheres, on one
+//! thread and on all: `cargo bench -p dem-pack`.
 //!
-//! The stages between the surface and the body are timed by the program's own clock, as the report of dem-pack tells it:
-//! whole bodies are made, and each stage has its times from all of them. The rest is timed from outside.
+//! The stages between the surface and the body are timed by the program's own clock, as the report
+//! of dem-pack tells it: whole bodies are made, and each stage has its times from all of them. The
+//! rest is timed from outside.
 #![allow(
     missing_docs,
     clippy::expect_used,
@@ -84,7 +85,8 @@ fn surface_reading(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Each stage with its times from the same `SAMPLES` bodies, which are made when the first stage is asked for.
+/// Each stage with its times from the same `SAMPLES` bodies, which are made when the first stage is
+/// asked for.
 fn by_own_clock(
     group: &mut BenchmarkGroup<WallTime>,
     surface: &Surface,

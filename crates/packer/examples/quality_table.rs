@@ -6,7 +6,8 @@
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
 //! ```
 //!
-//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux only).
+//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux
+//! only).
 
 use std::io::{Error, Write};
 use std::process::Command;
@@ -166,7 +167,8 @@ fn make(surface: &Surface, diameter: &str, settle: Option<f64>, seed: u64) -> Re
     make_body(surface, &settings(diameter, settle, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
 }
 
-/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the contacts.
+/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the
+/// contacts.
 fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettings> {
     Ok(BodySettings {
         packing: PackSettings {

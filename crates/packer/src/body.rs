@@ -21,7 +21,7 @@ use std::time::Instant;
 /// Spheres whose distance to the wall one task measures.
 const SPHERES_PER_TASK: usize = 256;
 
-/// How a body is to be made.
+/// Settings of a body.
 #[derive(Debug, Clone)]
 pub struct BodySettings {
     /// The spheres.
@@ -39,8 +39,8 @@ pub struct BodySettings {
 }
 
 impl BodySettings {
-    /// Bonds between spheres up to 1.1 times the sum of their radii apart, as thick as the smaller of the
-    /// two, as the program makes them unless told otherwise.
+    /// Bonds between spheres up to 1.1 times the sum of their radii apart, as thick as the smaller
+    /// of the two, as the program makes them unless told otherwise.
     pub fn new(packing: PackSettings) -> Self {
         Self {
             packing,
@@ -70,23 +70,24 @@ pub struct StageSeconds {
 /// All that is known of a new body.
 #[derive(Debug, Clone, Serialize)]
 pub struct BodyReport {
-    /// How good it is.
+    /// Its quality.
     pub quality: Report,
-    /// What it weighs, beside its shape filled with the density of the particles, if that is given.
+    /// Its mass, beside that of its shape filled with the density of the particles, if that is
+    /// given.
     pub mass: Option<BodyMass>,
     /// Mass of the particles over that of the shape filled with their density, whatever it is.
     pub mass_over_shape: f64,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],
-    /// How it came about. Its seconds are those of all packings of a density search.
+    /// The course of its packing. Its seconds are those of all packings of a density search.
     pub history: PackHistory,
     /// The bonding radius that was used.
     pub bonding_radius: f64,
     /// The search for the overlap, if there was one.
     pub density_search: Option<DensitySearch>,
-    /// What was repaired in the surface.
+    /// Repairs of the surface.
     pub repairs: dem_io::surface::Repairs,
-    /// Where the time went.
+    /// Times of the stages.
     pub seconds: StageSeconds,
 }
 
@@ -204,7 +205,7 @@ fn packed(solid: &Solid, settings: &BodySettings, progress: Progress) -> Result<
 }
 
 impl Packed {
-    /// What a user should know of the packing.
+    /// Warnings about the packing.
     fn warnings(&self) -> impl Iterator<Item = String> {
         let history = &self.packing.history;
         let density = self
@@ -289,7 +290,7 @@ fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
     })
 }
 
-/// Whether the straight line between two points inside the solid (local units) meets the surface.
+/// True if the straight line between two points inside the solid (local units) meets the surface.
 fn crosses_surface(boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
     let (a, b) = (Vector3::from(a), Vector3::from(b));
     let length = (b - a).norm();

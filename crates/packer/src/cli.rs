@@ -57,7 +57,8 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         ));
     }
     let settings = arguments.checked()?;
-    // The whole job runs in the pool: a parallel loop that is begun outside it puts the beginner to sleep and wakes it again.
+    // The whole job runs in the pool: a parallel loop that is begun outside it puts the beginner to
+    // sleep and wakes it again.
     thread_pool(arguments.threads)?.install(|| pack_and_write(stl, arguments, &settings, output))
 }
 

@@ -1,4 +1,5 @@
-//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search over packings.
+//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search
+//! over packings.
 
 use crate::pack::{PackSettings, Packing, Progress, Solid, pack_if};
 use dem_io::units::significant;
@@ -13,14 +14,16 @@ pub(crate) const NEAR_ENOUGH: f64 = 1e-3;
 const NEAR: f64 = 0.01;
 /// Packings begun at most.
 const MOST_PACKINGS: usize = 30;
-/// Overlaps nearer to each other than this are not tried twice: they change the density by less than chance does.
+/// Overlaps nearer to each other than this are not tried twice: they change the density by less
+/// than chance does.
 const FINEST_STEP: f64 = 1e-5;
 /// Overlaps are below this: a sphere must not swallow its neighbour's centre.
 pub(crate) const LARGEST_OVERLAP: f64 = 1.0;
-/// The largest overlap that is tried: so near to the limit that the density is nearly the largest there is.
+/// The largest overlap that is tried: so near to the limit that the density is nearly the largest
+/// there is.
 const LARGEST_TRIED: f64 = 0.999;
 
-/// What was looked for and how close it came.
+/// The density that was wanted, and the one found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DensitySearch {
     /// Wanted mass of the particles / volume of the shape, kg/m3.
@@ -31,14 +34,14 @@ pub struct DensitySearch {
     pub relative_error: f64,
     /// The overlap that gives it.
     pub overlap: f64,
-    /// How many packings were begun.
+    /// Number of packings begun.
     pub packings: usize,
-    /// How many of them were made to the end: those whose front was of nearly the density wanted.
+    /// Number of them made to the end: those whose front was of nearly the density wanted.
     pub finished: usize,
 }
 
 impl DensitySearch {
-    /// What a user should know, if the density was missed.
+    /// A warning, if the density was missed.
     pub fn warning(&self) -> Option<String> {
         (self.relative_error.abs() > NEAR_ENOUGH).then(|| {
             format!(
@@ -56,8 +59,8 @@ impl DensitySearch {
 #[derive(Debug, Clone, Copy)]
 struct Try {
     overlap: f64,
-    /// Sum of the spheres' volumes over that of the shape; expected if the packing was not made to the
-    /// end.
+    /// Sum of the spheres' volumes over that of the shape; expected if the packing was not made to
+    /// the end.
     filled: f64,
 }
 
@@ -71,8 +74,8 @@ struct Begun {
     filled: Option<f64>,
 }
 
-/// Final fraction over that of the front, as expected: the mean of the packings that were made to the
-/// end.
+/// Final fraction over that of the front, as expected: the mean of the packings that were made to
+/// the end.
 fn gain(begun: &[Begun]) -> f64 {
     let gains = begun.iter().filter_map(|b| Some(b.filled? / b.front));
     let (sum, count) = gains.fold((0.0, 0.0), |(sum, count), gain| (sum + gain, count + 1.0));
@@ -89,8 +92,8 @@ fn judged(begun: &[Begun]) -> Vec<Try> {
     begun.iter().map(judge).collect()
 }
 
-/// How far off a front may be to be settled and filled, relative, when the nearest finished packing is
-/// off by this: the first shows what settling and filling do to the density, each later one must
+/// Largest relative error of a front that is settled and filled, when the nearest finished packing
+/// is off by this: the first shows what settling and filling do to the density, each later one must
 /// promise to be twice as near, if not near enough.
 fn largest_promising(nearest: Option<f64>) -> f64 {
     nearest.map_or(NEAR, |off| (0.5 * off).max(NEAR_ENOUGH))
@@ -108,12 +111,12 @@ struct Search {
 }
 
 impl Search {
-    /// How far a fraction is off the target, relative.
+    /// Relative error of a fraction against the target.
     fn off(&self, filled: f64) -> f64 {
         (filled / self.target - 1.0).abs()
     }
 
-    /// Whether a front that filled this fraction is worth settling and filling.
+    /// True if a front that filled this fraction is worth settling and filling.
     fn is_promising(&self, overlap: f64, front: f64) -> bool {
         let is_limit = overlap == 0.0 || overlap == LARGEST_TRIED;
         let is_last = self.begun.len() + 1 == MOST_PACKINGS;
@@ -123,8 +126,8 @@ impl Search {
             || self.off(front * gain(&self.begun)) <= largest_promising(nearest)
     }
 
-    /// Packs with an overlap, as far as the front promises. Returns the fraction filled, if the packing
-    /// was made to the end.
+    /// Packs with an overlap, as far as the front promises. Returns the fraction filled, if the
+    /// packing was made to the end.
     fn try_overlap(
         &mut self,
         solid: &Solid,
@@ -169,9 +172,9 @@ impl Search {
 
 /// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`; sets it in
 /// `settings`. Two packings of nearly the same overlap differ by chance, so that the search goes on
-/// around the root of their mean until one is near enough, and keeps the nearest of all. The front tells
-/// the density nearly: most tries end with it. The seconds in the history of the packing are those of
-/// all tries.
+/// around the root of their mean until one is near enough, and keeps the nearest of all. The front
+/// tells the density nearly: most tries end with it. The seconds in the history of the packing are
+/// those of all tries.
 ///
 /// # Errors
 /// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
@@ -232,8 +235,9 @@ pub(crate) fn pack_to_density(
     Ok((packing, found))
 }
 
-/// The overlap to try after these: a Newton step on the mean of the tries near the target, so that chance averages out, or
-/// else on the nearest. The fraction filled in r_gen hardly changes, so that the density goes with (1 + overlap)^3.
+/// The overlap to try after these: a Newton step on the mean of the tries near the target, so that
+/// chance averages out, or else on the nearest. The fraction filled in r_gen hardly changes, so
+/// that the density goes with (1 + overlap)^3.
 fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
@@ -253,14 +257,15 @@ fn next_overlap(tries: &[Try], target: f64) -> f64 {
     next
 }
 
-/// Fraction of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 + overlap)^3 as large.
+/// Fraction of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 +
+/// overlap)^3 as large.
 const USUAL_FRACTION: f64 = 0.59;
 
 fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }
 
-/// What was asked for lies beyond the packing of the least or the largest overlap.
+/// The error for a density that lies beyond the packing of the least or the largest overlap.
 fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
     let has = particle * limit.filled;
     let most_or_least = if limit.overlap == 0.0 {
@@ -281,7 +286,8 @@ fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
 mod tests {
     use super::*;
 
-    /// Overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by up to `scatter`.
+    /// Overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by up
+    /// to `scatter`.
     fn search(target: f64, scatter: f64) -> Vec<Try> {
         let mut tries = vec![];
         let mut overlap = overlap_for(target, USUAL_FRACTION).max(0.0);

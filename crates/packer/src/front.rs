@@ -1,9 +1,9 @@
 //! The advancing front (Lozano et al. 2016; Platzer 2022, algorithm 1; see [`algorithm`]).
 //!
-//! Front spheres are taken from a queue, nearest to the seed first. Beside a front sphere a new sphere
-//! is placed where it touches the front sphere and two neighbours (or one neighbour and the wall),
-//! overlaps none and stays inside the surface; of all such places the one nearest to the seed is taken.
-//! A front sphere beside which nothing fits any more leaves the queue.
+//! Front spheres are taken from a queue, nearest to the seed first. Beside a front sphere a new
+//! sphere is placed where it touches the front sphere and two neighbours (or one neighbour and the
+//! wall), overlaps none and stays inside the surface; of all such places the one nearest to the
+//! seed is taken. A front sphere beside which nothing fits any more leaves the queue.
 //!
 //! Deviations from the sources:
 //! - A size that does not fit waits until it does, so that the sizes placed are the sizes drawn.
@@ -50,14 +50,14 @@ pub(crate) struct Front<'a> {
     pub(crate) assembly: Assembly<'a>,
     /// For each sphere, the number of the seed that its front grew from.
     grew_from: Vec<u32>,
-    /// Where fronts began, local units.
+    /// Starting points of the fronts, local units.
     seeds: Vec<Vector3>,
     /// Draws, as quantiles of the radius, that have found no place yet.
     pub(crate) waiting: Vec<f64>,
     /// Seed of the random numbers, and how many streams of them have been used.
     random_seed: u64,
     streams: u64,
-    /// What fills voids as the front goes; none before settling.
+    /// The fillers of voids as the front goes; none before settling.
     fillers: Option<Fillers>,
 }
 
@@ -106,8 +106,8 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Begins at a seed with spheres that are known to fit: centres and (not reduced) radii. Returns
-    /// their indices.
+    /// Begins at a seed with spheres that are known to fit: centres and (not reduced) radii.
+    /// Returns their indices.
     pub(crate) fn begin(
         &mut self,
         seed: &Vector3,
@@ -164,7 +164,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// What the blocks of one colour begin with.
+    /// The tasks of the blocks of one colour.
     fn tasks(&mut self, blocks: BTreeMap<usize, Vec<FrontSphere>>, work: Work) -> Vec<Task> {
         let stream = self.streams;
         self.streams += blocks.len() as u64;
@@ -264,7 +264,7 @@ impl Front<'_> {
         self.fillers.as_ref().map(|fillers| &fillers.quota)
     }
 
-    /// Whether voids were left that take the smallest sphere.
+    /// True if voids were left that take the smallest sphere.
     pub(crate) fn has_left_voids(&self) -> bool {
         (self.fillers.as_ref()).is_some_and(|fillers| !fillers.left_open.is_empty())
     }
@@ -286,7 +286,7 @@ impl Front<'_> {
     }
 }
 
-/// What a front leaves.
+/// The result of a front.
 #[derive(Debug, Default)]
 pub(crate) struct FinishedFront {
     /// The spheres in order of placement.

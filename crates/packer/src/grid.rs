@@ -31,7 +31,8 @@ impl Lattice {
         Vector3::from([0, 1, 2].map(|k| self.low[k] + (cell[k] as f64 + 0.5) * self.cell))
     }
 
-    /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around the point touches.
+    /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around
+    /// the point touches.
     #[inline]
     pub(crate) fn rows_near(
         &self,
@@ -83,7 +84,8 @@ impl Grid {
         self.cells[at].push(ball);
     }
 
-    /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the point touches.
+    /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the
+    /// point touches.
     pub(crate) fn near(
         &self,
         x: f64,

@@ -52,9 +52,9 @@ pub(crate) fn pack_solid(
     packing.ok_or_else(|| Diagnostic::failed(solid.surface.source.clone(), "given up", ""))
 }
 
-/// Fills a solid with spheres, unless the front shows that the packing is not wanted: `is_wanted` is told
-/// the sum of the spheres' volumes over the volume of the solid before settling and filling, which take
-/// most of the time and change it little. None if it was not.
+/// Fills a solid with spheres, unless the front shows that the packing is not wanted: `is_wanted`
+/// is told the sum of the spheres' volumes over the volume of the solid before settling and
+/// filling, which take most of the time and change it little. None if it was not.
 ///
 /// # Errors
 /// As [`pack`].

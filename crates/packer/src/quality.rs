@@ -1,4 +1,4 @@
-//! How good a packing is: density, sizes, bonds, contacts, fabric, and what a user should know before using it.
+//! The quality of a packing: density, sizes, bonds, contacts, fabric, and warnings.
 
 mod bonded_packing;
 mod contacts;

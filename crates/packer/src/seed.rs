@@ -1,4 +1,5 @@
-//! Where a front begins: the deepest point of the solid, and the first three spheres (Platzer 2022, section 4.1.1).
+//! The beginning of a front: the deepest point of the solid, and the first three spheres (Platzer
+//! 2022, section 4.1.1).
 
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::{first_hit, is_inside};
@@ -22,8 +23,9 @@ const MOST_PROBES: usize = 4_000;
 /// Grid points along the longest edge of the bounding box.
 const GRID_POINTS: f64 = 16.0;
 
-/// Points spread over the inside of the solid with their distances to the surface, deepest first: middles of the chords that begin
-/// at facets and run inwards (they find every part, however thin), and the points of a coarse grid.
+/// Points spread over the inside of the solid with their distances to the surface, deepest first:
+/// middles of the chords that begin at facets and run inwards (they find every part, however thin),
+/// and the points of a coarse grid.
 pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<InscribedSphere> {
     let stride = surface.triangles.len().div_ceil(MOST_PROBES);
     let chords: Vec<Vector3> = (0..surface.triangles.len())
@@ -69,8 +71,8 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<InscribedSphe
     inner
 }
 
-/// One random point in each cell of a lattice of about `spacing` over the box from the origin to `extent`, local units,
-/// none nearer to another than a third of a cell.
+/// One random point in each cell of a lattice of about `spacing` over the box from the origin to
+/// `extent`, local units, none nearer to another than a third of a cell.
 pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3> {
     let counts = extent.map(|e| (e / spacing).round().max(1.0) as usize);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -90,8 +92,8 @@ pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3>
         .collect()
 }
 
-/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps
-/// that halve from `first_step` to `last_step`.
+/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is
+/// largest nearby, by steps that halve from `first_step` to `last_step`.
 pub(crate) fn climb(
     start: &Vector3,
     first_step: f64,
@@ -133,8 +135,8 @@ fn directions() -> impl Iterator<Item = Vector3> {
 
 /// The triangles of the wall that may be nearest to a point within `reach` of `base`.
 ///
-/// A distance changes by no more than the way between two points, so that those farther away than the nearest one by twice
-/// the reach are none.
+/// A distance changes by no more than the way between two points, so that those farther away than
+/// the nearest one by twice the reach are none.
 struct NearestAround {
     base: Vector3,
     reach: f64,
@@ -197,7 +199,8 @@ impl NearestAround {
     }
 }
 
-/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the wall, so that the climb stays inside.
+/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the
+/// wall, so that the climb stays inside.
 fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSphere {
     let mut best = *start;
     let mut step = 0.5 * start.radius;
@@ -218,8 +221,8 @@ fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSph
     best
 }
 
-/// The largest ball that fits into the solid, as well as climbing from the deepest of `inner_points` finds it;
-/// of several equal ones the nearest to the middle of the bounding box.
+/// The largest ball that fits into the solid, as well as climbing from the deepest of
+/// `inner_points` finds it; of several equal ones the nearest to the middle of the bounding box.
 pub fn deepest_point(
     boundary: &Boundary,
     surface: &Surface,
@@ -250,7 +253,8 @@ pub fn deepest_point(
         .find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
 }
 
-/// Centres for the first spheres of a front around `centre`: as many of the three (radii and reduced radii, local units) as fit, mutually touching.
+/// Centres for the first spheres of a front around `centre`: as many of the three (radii and
+/// reduced radii, local units) as fit, mutually touching.
 pub fn first_spheres(
     centre: &Vector3,
     radii: [f64; 3],
@@ -268,7 +272,8 @@ pub fn first_spheres(
     ];
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let mut best: Vec<(Vector3, f64)> = Vec::new();
-    // Around the centre first, then with the first sphere on it, each in a fixed set of orientations.
+    // Around the centre first, then with the first sphere on it, each in a fixed set of
+    // orientations.
     for origin in [middle, Vector3::zeros()] {
         for turn in 0..64 {
             let rotation = nalgebra::UnitQuaternion::from_euler_angles(

@@ -89,7 +89,8 @@ fn bond_radius_is_a_share_of_the_smaller_sphere() {
 
 #[test]
 fn two_fingers_stay_two() {
-    // Two columns side by side, a wall between them at x = 1.15, spheres on both sides 0.3 from each other.
+    // Two columns side by side, a wall between them at x = 1.15, spheres on both sides 0.3 from
+    // each other.
     let mut spheres = Spheres::default();
     for i in 0..20 {
         for x in [0.0, 2.3] {
@@ -112,7 +113,8 @@ fn two_fingers_stay_two() {
         20,
         "touching pairs are bonded without a question"
     );
-    // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2) are the next.
+    // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2)
+    // are the next.
     let radius = bonding_radius_for(&spheres, 38.0 / 40.0, &wall).unwrap();
     assert_eq!(find_bonds(&spheres, radius, &wall).unwrap(), bonds);
 }

@@ -49,7 +49,8 @@ pub(super) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Turn a body file into one of another kind (.vtp, .data, .csv, .txt, - for a .vtp through a pipe)
+    /// Turn a body file into one of another kind (.vtp, .data, .csv, .txt, - for a .vtp through a
+    /// pipe)
     Convert {
         /// The body to read
         from: PathBuf,
@@ -100,7 +101,8 @@ pub(super) struct PackArguments {
     #[command(flatten)]
     pub(super) reading: Reading,
 
-    /// Sphere diameters: 2.5mm | 2mm..3mm | normal:MEAN,STD,MIN..MAX | lognormal:MEAN,STD,MIN..MAX | weibull:SCALE,SHAPE,MIN..MAX | sieve:FILE.csv
+    /// Sphere diameters: 2.5mm | 2mm..3mm | normal:MEAN,STD,MIN..MAX | lognormal:MEAN,STD,MIN..MAX
+    /// | weibull:SCALE,SHAPE,MIN..MAX | sieve:FILE.csv
     #[arg(
         short,
         long,
@@ -123,7 +125,8 @@ pub(super) struct PackArguments {
     /// Density of the particles' material (kg/m3 unless given)
     #[arg(long, allow_hyphen_values = true, help_heading = "Spheres")]
     pub(super) particle_density: Option<String>,
-    /// Find the overlap that gives this mass of particles / volume of the shape (kg/m3 unless given)
+    /// Find the overlap that gives this mass of particles / volume of the shape (kg/m3 unless
+    /// given)
     #[arg(
         long,
         requires = "particle_density",
@@ -149,8 +152,9 @@ pub(super) struct PackArguments {
         help_heading = "Spheres"
     )]
     pub(super) seed_point: Option<String>,
-    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the bare front, at most 0.08.
-    /// If not given, as much as leaves the spheres just short of jamming, 0.02 to 0.08
+    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the
+    /// bare front, at most 0.08. If not given, as much as leaves the spheres just short of jamming,
+    /// 0.02 to 0.08
     #[arg(
         long,
         allow_negative_numbers = true,
@@ -210,7 +214,8 @@ impl Arguments {
     }
 }
 
-/// What clap says, without its `error:`, the usage and the hint to the help, which stand in paragraphs of their own.
+/// The message of clap, without its `error:`, the usage and the hint to the help, which stand in
+/// paragraphs of their own.
 fn on_one_line(said: &str) -> String {
     let paragraphs = said.trim_start_matches("error:").split("\n\n");
     let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));

@@ -1,4 +1,4 @@
-//! What is printed for a person, and for a script.
+//! The printed reports: human-readable, and JSON.
 
 use crate::body::BodyReport;
 use dem_io::Surface;
@@ -6,7 +6,7 @@ use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
 use std::path::Path;
 
-/// What is known of a surface, for `--json`.
+/// A surface as JSON.
 pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
     serde_json::json!({
         "source": surface.source,
@@ -21,7 +21,7 @@ pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
     })
 }
 
-/// The same for a person.
+/// The same, human-readable.
 pub(super) fn surface_text(surface: &Surface) -> String {
     let size = surface
         .extent()
@@ -43,7 +43,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     text
 }
 
-/// What the body weighs, beside what its shape would, and where its centre is.
+/// The mass of the body, beside that of its filled shape, and its centre.
 fn mass_text(made: &BodyReport) -> String {
     let [mass, centre] = match &made.mass {
         Some(mass) => mass.lines(),
@@ -59,7 +59,7 @@ fn mass_text(made: &BodyReport) -> String {
     format!("mass             {mass}\ncentre           {centre}\n")
 }
 
-/// What a person wants to know: how good the body is, what to mind, where the time went.
+/// The summary of a new body: its quality, warnings, and times.
 pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
     let name = if output == Path::new("-") {

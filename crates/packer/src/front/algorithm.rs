@@ -1,5 +1,5 @@
-//! The filling algorithm: Algorithm 1 of Platzer 2022, section 4.1.4, adapted from Lozano et al. 2016
-//! (Computers & Mathematics with Applications 71, 1586-1601).
+//! The filling algorithm: Algorithm 1 of Platzer 2022, section 4.1.4, adapted from Lozano et al.
+//! 2016 (Computers & Mathematics with Applications 71, 1586-1601).
 
 use super::assembly::Assembly;
 use super::block::Block;

@@ -91,7 +91,7 @@ impl<'a> Assembly<'a> {
         gap
     }
 
-    /// Whether a sphere of this (not reduced) radius with its centre here, known to be inside the
+    /// True if a sphere of this (not reduced) radius with its centre here, known to be inside the
     /// solid, overlaps neither sphere nor wall.
     pub(crate) fn fits(&self, centre: &Vector3, radius: f64) -> bool {
         let reduced = self.reduced(radius);
@@ -105,19 +105,19 @@ impl<'a> Assembly<'a> {
         self.gap(point, cut_off) * (1.0 + self.settings.overlap)
     }
 
-    /// Whether a sphere of this (not reduced) radius lies inside the surface, given that its centre
+    /// True if a sphere of this (not reduced) radius lies inside the surface, given that its centre
     /// does not lie beyond it.
     pub(super) fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
         !self.is_near_wall(&[centre.x, centre.y, centre.z, 0.0])
             || self.boundary.clears(centre, self.wall_clearance(radius))
     }
 
-    /// How far from the wall the centre of a sphere of this (not reduced) radius must be.
+    /// Least distance from the wall of the centre of a sphere of this (not reduced) radius.
     pub(super) fn wall_clearance(&self, radius: f64) -> f64 {
         radius * self.settings.wall_factor
     }
 
-    /// Whether the cell that the sphere's centre lies in is near the wall.
+    /// True if the cell that the sphere's centre lies in is near the wall.
     pub(super) fn is_near_wall(&self, sphere: &ReducedSphere) -> bool {
         self.near_wall[self.cell_of(sphere)]
     }

@@ -7,7 +7,7 @@ use super::fillers::{BlockFillers, FilledVoids, FillingRules};
 use super::places::{Place, Workspace};
 use crate::spheres::{ReducedSphere, Vector3, distance};
 
-/// What is done around the spheres of the front.
+/// The work around the spheres of the front.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Work {
     /// Sizes drawn are placed around spheres up to this distance from their seeds, local units.
@@ -16,18 +16,18 @@ pub(super) enum Work {
     Voids,
 }
 
-/// What all blocks that work at the same time share.
+/// Rules shared by all blocks that work at the same time.
 pub(super) struct Rules<'a> {
     pub(super) work: Work,
-    /// Where fronts began, local units.
+    /// Starting points of the fronts, local units.
     pub(super) seeds: &'a [Vector3],
     /// Seed of the random numbers.
     pub(super) random_seed: u64,
-    /// How voids are filled, if the front does that.
+    /// Rules for filling voids, if the front does that.
     pub(super) filling: Option<FillingRules<'a>>,
 }
 
-/// What a block begins with.
+/// The task of a block.
 pub(super) struct Task {
     /// Its number.
     pub(super) block: usize,
@@ -39,14 +39,14 @@ pub(super) struct Task {
     pub(super) stream: u64,
 }
 
-/// What a block did.
+/// The result of a block.
 #[derive(Default)]
 pub(super) struct BlockResult {
     /// Spheres placed.
     pub(super) placed: Vec<Placed>,
     /// A draw that waits for a place.
     pub(super) waiting: Option<f64>,
-    /// What was done about voids.
+    /// Voids filled and left.
     pub(super) filled: FilledVoids,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct Block<'a> {
     queue: Vec<FrontSphere>,
     taken: usize,
     draws: Draws,
-    /// What fills voids, if the front does that.
+    /// The fillers of voids, if the front fills them.
     fillers: Option<BlockFillers<'a>>,
     /// Spheres placed by this block: the grid does not hold them yet.
     pub(super) assembled: Vec<ReducedSphere>,

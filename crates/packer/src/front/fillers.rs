@@ -2,8 +2,9 @@
 //! the spheres anyway.
 //!
 //! Where a front sphere would leave the queue although a smaller sphere than the one drawn fits
-//! around it, about the largest that fits is placed, and its size is drawn less often afterwards: so
-//! no void is left that takes the smallest sphere, and the sizes placed still follow the distribution.
+//! around it, about the largest that fits is placed, and its size is drawn less often afterwards:
+//! so no void is left that takes the smallest sphere, and the sizes placed still follow the
+//! distribution.
 
 use super::assembly::{Assembly, FrontSphere};
 use super::draws::Draws;
@@ -15,19 +16,21 @@ use rand::rngs::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// For a void the next smaller quantile is this part of the last: half of it on average, but never the same part. Halves of halves would fill
-/// all voids with a few sizes only, and so many more of those than can be kept back: in a ball, where the front comes to the whole wall last.
+/// For a void the next smaller quantile is this part of the last: half of it on average, but never
+/// the same part. Halves of halves would fill all voids with a few sizes only, and so many more of
+/// those than can be kept back: in a ball, where the front comes to the whole wall last.
 const SMALLER: Range<f64> = 1.0 / 3.0..2.0 / 3.0;
 /// Quantiles tried at most: the last is some five hundredth of the first.
 const FILLERS_TRIED: usize = 9;
-/// As long as small spheres are not more than expected by this many roots of the number of spheres (a fifth of what chance does), voids are
-/// filled at once. Others wait until the front is `LAG` shells farther: draws that were made meanwhile may have filled them.
+/// As long as small spheres are not more than expected by this many roots of the number of spheres
+/// (a fifth of what chance does), voids are filled at once. Others wait until the front is `LAG`
+/// shells farther: draws that were made meanwhile may have filled them.
 const MOST_AT_ONCE: f64 = 0.27;
 const LAG: u32 = 3;
 /// Voids filled in a block, about: of some 70 spheres one in eight fills a void.
 const FILLERS_OF_BLOCK: f64 = 10.0;
 
-/// How far voids are to be filled.
+/// Limits to the filling of voids.
 #[derive(Debug, Clone)]
 pub(crate) struct FillingSettings {
     /// Spheres expected, about.
@@ -70,7 +73,7 @@ impl Fillers {
         }
     }
 
-    /// What holds for blocks that draw sizes (`draws`), or else only fill voids, and begin with so many
+    /// Rules for blocks that draw sizes (`draws`), or else only fill voids, and begin with so many
     /// front spheres.
     pub(super) fn rules(&self, draws: bool, front_spheres: usize) -> FillingRules<'_> {
         let most_too_many = if draws {
@@ -86,14 +89,14 @@ impl Fillers {
         }
     }
 
-    /// How many more voids may be filled if there may be so many roots of the number of spheres too
-    /// many small ones.
+    /// Number of voids that may still be filled if there may be so many roots of the number of
+    /// spheres too many small ones.
     fn allowed(&self, most_too_many: f64) -> f64 {
         most_too_many * self.settings.expected.sqrt() - self.quota.too_many()
     }
 
-    /// How many blocks may work until the next look at the quota: no more than fill the voids that
-    /// may be filled at all.
+    /// Number of blocks that may work until the next look at the quota: no more than fill the voids
+    /// that may be filled at all.
     pub(super) fn blocks_at_once(&self) -> usize {
         let allowed = self.allowed(self.settings.most_too_many);
         if allowed > 0.0 {
@@ -103,8 +106,8 @@ impl Fillers {
         }
     }
 
-    /// The spheres of the next shell, `LAG` shells and more behind `shell`, that left the queue with
-    /// room around them.
+    /// The spheres of the next shell, `LAG` shells and more behind `shell`, that left the queue
+    /// with room around them.
     pub(super) fn next_behind(&mut self, shell: u32) -> Option<Vec<FrontSphere>> {
         let entry = self.with_room.first_entry()?;
         (*entry.key() <= shell.saturating_sub(LAG)).then(|| entry.remove())
@@ -131,7 +134,7 @@ impl Fillers {
     }
 }
 
-/// What holds for all blocks that work at the same time.
+/// Rules for all blocks that work at the same time.
 pub(super) struct FillingRules<'a> {
     /// Sizes are drawn, and not only voids filled.
     draws: bool,
@@ -155,12 +158,12 @@ impl FillingRules<'_> {
     }
 }
 
-/// What a block did about voids.
+/// The voids of a block, filled and left.
 #[derive(Default)]
 pub(super) struct FilledVoids {
     /// Quantiles of all spheres placed.
     quantiles: Vec<f64>,
-    /// How many of them were chosen to fill voids.
+    /// Number of them chosen to fill voids.
     placed: usize,
     /// Those of them that touch no three others or walls.
     loose: usize,
@@ -227,8 +230,8 @@ impl<'a> BlockFillers<'a> {
         })
     }
 
-    /// A sphere for a void beside the front sphere `initial`: the first that fits as quantiles become
-    /// smaller, if one of some does.
+    /// A sphere for a void beside the front sphere `initial`: the first that fits as quantiles
+    /// become smaller, if one of some does.
     fn smaller(
         &mut self,
         assembly: &Assembly,

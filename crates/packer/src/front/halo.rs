@@ -1,9 +1,11 @@
-//! The halo of a sphere: the places where a new sphere would touch it and two neighbours (Lozano 2016; Platzer 2022, section 4.1.2).
+//! The halo of a sphere: the places where a new sphere would touch it and two neighbours (Lozano
+//! 2016; Platzer 2022, section 4.1.2).
 //!
-//! The centre of a sphere of reduced radius g that touches sphere i lies on a sphere around x_i of radius g_i + g, the halo.
-//! Every neighbour cuts a cap out of the halo, where the new sphere would overlap it, and so does a wall.
-//! A place on the halo is a unit vector p; the cap around the unit vector u is p . u > c.
-//! Candidate points are the corners of the free area: where the rims of two caps meet and no other cap covers the point.
+//! The centre of a sphere of reduced radius g that touches sphere i lies on a sphere around x_i of
+//! radius g_i + g, the halo. Every neighbour cuts a cap out of the halo, where the new sphere would
+//! overlap it, and so does a wall. A place on the halo is a unit vector p; the cap around the unit
+//! vector u is p . u > c. Candidate points are the corners of the free area: where the rims of two
+//! caps meet and no other cap covers the point.
 
 use super::rims::{LANES, Rims};
 use crate::spheres::{ReducedSphere, Vector3};
@@ -13,7 +15,7 @@ use pulp::Arch;
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
-/// What a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
+/// The part that a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cap {
     pub(super) axis: Vector3,
@@ -34,7 +36,8 @@ pub struct Halo {
     pub(super) caps: Vec<Cap>,
     /// The same in single precision.
     rims: Rims,
-    /// The least order of any point on a rim in the upper half, the number of its cap in the lower one.
+    /// The least order of any point on a rim in the upper half, the number of its cap in the lower
+    /// one.
     order: Vec<u64>,
 }
 
@@ -50,7 +53,8 @@ struct Neighbour {
 #[derive(Debug, Default)]
 pub struct Neighbours {
     all: Vec<Neighbour>,
-    /// Their order by distance from surface to surface: that distance in the upper half, the index in the lower one.
+    /// Their order by distance from surface to surface: that distance in the upper half, the index
+    /// in the lower one.
     order: Vec<u64>,
 }
 
@@ -61,7 +65,8 @@ impl Neighbours {
         self.order.clear();
     }
 
-    /// Adds those of `balls` that a new sphere of reduced radius `largest` on the halo of `ball` could touch.
+    /// Adds those of `balls` that a new sphere of reduced radius `largest` on the halo of `ball`
+    /// could touch.
     pub fn gather(&mut self, ball: &ReducedSphere, balls: &[ReducedSphere], largest: f64) {
         for other in balls {
             let d = Vector3::new(other[0] - ball[0], other[1] - ball[1], other[2] - ball[2]);
@@ -89,7 +94,8 @@ impl Neighbours {
 }
 
 impl Halo {
-    /// The halo of `ball` for a new sphere of reduced radius `new`, with the caps of its neighbours.
+    /// The halo of `ball` for a new sphere of reduced radius `new`, with the caps of its
+    /// neighbours.
     pub fn set(&mut self, ball: &ReducedSphere, new: f64, neighbours: &Neighbours) {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
@@ -114,7 +120,8 @@ impl Halo {
         self.group_rims();
     }
 
-    /// Adds what flat walls cut out: direction and distance from the halo's centre less the radius of the new sphere.
+    /// Adds what flat walls cut out: direction and distance from the halo's centre less the radius
+    /// of the new sphere.
     pub fn add_walls(&mut self, walls: impl Iterator<Item = (Vector3, f64)>) {
         let radius = self.radius;
         let caps = walls.map(|(axis, clearance)| {
@@ -136,13 +143,14 @@ impl Halo {
         }
     }
 
-    /// Whether no neighbour's cap covers the place.
+    /// True if no neighbour's cap covers the place.
     pub fn is_free(&self, p: &Vector3) -> bool {
         is_free(&self.caps, p)
     }
 
-    /// Calls `found` with the position of each point where two rims meet and no cap covers, as long as it is better than the best one so far:
-    /// its order, p . `wanted`, is smaller. `found` returns whether it takes it.
+    /// Calls `found` with the position of each point where two rims meet and no cap covers, as long
+    /// as it is better than the best one so far: its order, p . `wanted`, is smaller. `found`
+    /// returns whether it takes it.
     ///
     /// Nearly all points are covered. Those are found out in single precision, see rims.rs.
     pub fn corners(&mut self, wanted: &Vector3, found: impl FnMut(&Vector3) -> bool) {
@@ -190,7 +198,8 @@ impl Halo {
         }
     }
 
-    /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if there is one.
+    /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if
+    /// there is one.
     pub fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
         Arch::new().dispatch(
             #[inline(always)]
@@ -215,8 +224,9 @@ impl Halo {
         )
     }
 
-    /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is the direction to the wall,
-    /// `clearance` the distance of the wall from the front sphere's centre less the radius of the new sphere.
+    /// The points where a wall touches the new sphere and a neighbour, covered or not. `towards` is
+    /// the direction to the wall, `clearance` the distance of the wall from the front sphere's
+    /// centre less the radius of the new sphere.
     pub fn wall_corners(
         &self,
         neighbour: usize,
@@ -252,8 +262,9 @@ fn is_free(caps: &[Cap], p: &Vector3) -> bool {
         .any(|cap| cap.axis.dot(p) > cap.rim + RIM_TOLERANCE)
 }
 
-/// The two unit vectors where the rims of two caps meet at an angle, if they do: a foot in the plane of the axes, and as far off it to
-/// either side as sin^2 sin^2 - (cosine - cos cos)^2 >= 0 says.
+/// The two unit vectors where the rims of two caps meet at an angle, if they do: a foot in the
+/// plane of the axes, and as far off it to either side as sin^2 sin^2 - (cosine - cos cos)^2 >= 0
+/// says.
 fn corners_of(a: &Cap, b: &Cap) -> Option<[Vector3; 2]> {
     let cosine = a.axis.dot(&b.axis);
     let excess = cosine - a.rim * b.rim;

@@ -1,10 +1,10 @@
-//! Whether anything on a halo is free, walls of any shape included: the halo is cut into patches, and those into smaller ones, as long as
-//! neither a cap nor the wall is sure to cover them.
+//! A search for a free place on a halo, walls of any shape included: the halo is cut into patches,
+//! and those into smaller ones, as long as neither a cap nor the wall is sure to cover them.
 
 use super::halo::Halo;
 use crate::spheres::Vector3;
 
-/// What the wall leaves of a patch: a ball around its middle.
+/// The part of a patch, taken as a ball around its middle, that the wall leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wall {
     /// Nothing of it.
@@ -24,8 +24,8 @@ const MOST: usize = 10_000;
 type Patch = [Vector3; 3];
 
 impl Halo {
-    /// A place that no neighbour's cap and no wall covers, if there is one. `wall` says what the wall leaves of a ball (centre and
-    /// radius in local units).
+    /// A place that no neighbour's cap and no wall covers, if there is one. `wall` says what the
+    /// wall leaves of a ball (centre and radius in local units).
     pub fn free_place(&self, wall: impl Fn(&Vector3, f64) -> Wall) -> Option<Vector3> {
         let mut patches: Vec<Patch> = octahedron().collect();
         let mut looked_at = 0;

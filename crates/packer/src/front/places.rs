@@ -1,17 +1,18 @@
-//! Candidate points: places beside one front sphere where a new sphere touches it and two others, or
-//! one other and the wall (Platzer 2022, sections 4.1.2 and 4.1.3).
+//! Candidate points: places beside one front sphere where a new sphere touches it and two others,
+//! or one other and the wall (Platzer 2022, sections 4.1.2 and 4.1.3).
 
 use super::assembly::Assembly;
 use super::halo::{Halo, Neighbours};
 use crate::geometry::boundary::Nearest;
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 
-/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it fills the first layer at the wall.
+/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it
+/// fills the first layer at the wall.
 const WALL_PREFERENCE: f64 = 0.5;
 
 impl Assembly<'_> {
-    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest` beside
-    /// `initial` could touch. `assembled` are spheres that the grid does not hold yet.
+    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest`
+    /// beside `initial` could touch. `assembled` are spheres that the grid does not hold yet.
     pub(super) fn find_neighbours(
         &self,
         workspace: &mut Workspace,
@@ -92,8 +93,9 @@ impl Assembly<'_> {
         best
     }
 
-    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
-    /// if it is free. The wall is taken for a plane at its nearest point, again and again.
+    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not
+    /// reduced) `radius` touches the wall: that place, if it is free. The wall is taken for a plane
+    /// at its nearest point, again and again.
     fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
         let radius = self.wall_clearance(radius);
         let wanted = radius * (1.0 + 1e-12);

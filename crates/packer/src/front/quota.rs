@@ -1,8 +1,8 @@
 //! Keeps the sizes true where spheres are chosen to fill voids: classes of sizes that have had more
 //! than their quota are drawn less often.
 
-/// How many spheres of each class of sizes have been placed, drawn or chosen. The classes are equal
-/// fractions of the distribution by number.
+/// Numbers of spheres of each class of sizes that have been placed, drawn or chosen. The classes
+/// are equal fractions of the distribution by number.
 #[derive(Debug, Clone)]
 pub(crate) struct SizeQuota {
     placed: Vec<f64>,
@@ -13,8 +13,9 @@ pub(crate) struct SizeQuota {
 }
 
 impl SizeQuota {
-    /// For a packing of about so many spheres. More classes would tell sizes better apart, but have fewer spheres each, and draws hit them
-    /// more seldom: with so many both errors stay a part of the noise of as many draws.
+    /// For a packing of about so many spheres. More classes would tell sizes better apart, but have
+    /// fewer spheres each, and draws hit them more seldom: with so many both errors stay a part of
+    /// the noise of as many draws.
     pub(crate) fn new(spheres: f64) -> Self {
         let classes = (0.7 * spheres.sqrt()).clamp(1.0, 1e4) as usize;
         Self {
@@ -24,8 +25,9 @@ impl SizeQuota {
         }
     }
 
-    /// For another attempt that keeps back what each class has had too many of in the end, and what is more than all of it from the next
-    /// larger ones: the number of spheres up to most sizes is true then.
+    /// For another attempt that keeps back what each class has had too many of in the end, and what
+    /// is more than all of it from the next larger ones: the number of spheres up to most sizes is
+    /// true then.
     pub(crate) fn corrected(&self) -> Self {
         let classes = self.placed.len();
         let mut owed = 0.0;
@@ -55,8 +57,8 @@ impl SizeQuota {
         self.total += 1.0;
     }
 
-    /// For each class the probability with which a draw is to be left out, if about so many are to be made before the next look:
-    /// half of what would even out all, since the number is a guess.
+    /// For each class the probability with which a draw is to be left out, if about so many are to
+    /// be made before the next look: half of what would even out all, since the number is a guess.
     pub(crate) fn fractions_left_out(&self, draws: usize) -> Vec<f64> {
         let draws_of_class = draws as f64 / self.placed.len() as f64;
         self.surplus(&self.quotas)
@@ -64,12 +66,12 @@ impl SizeQuota {
             .collect()
     }
 
-    /// By how many spheres there are more up to some size than aimed at, at most.
+    /// Largest surplus of spheres up to any size over the number aimed at.
     pub(crate) fn too_many(&self) -> f64 {
         largest_sum(self.surplus(&self.quotas))
     }
 
-    /// By how many spheres the number up to some size is off, at most.
+    /// Largest error of the number of spheres up to any size.
     pub(crate) fn imbalance(&self) -> f64 {
         let equal = vec![1.0 / self.placed.len() as f64; self.placed.len()];
         largest_sum(self.surplus(&equal)).max(largest_sum(self.surplus(&equal).map(|s| -s)))

@@ -1,8 +1,11 @@
-//! Which parts of the rims of caps no other cap covers: in single precision, `LANES` caps at a time.
+//! The parts of the rims of caps that no other cap covers: in single precision, `LANES` caps at a
+//! time.
 //!
-//! A rim is a circle on the unit sphere. Another cap covers one arc of it. The circle is cut into 64 sectors; a sector that lies within one
-//! such arc is covered, and once all 64 are, the rim holds no corner of the free area. Most rims end so after a few caps.
-//! What is called covered here is covered; what is called open may still be covered: the caller looks at it in double precision.
+//! A rim is a circle on the unit sphere. Another cap covers one arc of it. The circle is cut into
+//! 64 sectors; a sector that lies within one such arc is covered, and once all 64 are, the rim
+//! holds no corner of the free area. Most rims end so after a few caps. A place that is called
+//! covered here is covered; one that is called open may still be covered: the caller looks at it in
+//! double precision.
 
 use crate::spheres::Vector3;
 
@@ -12,11 +15,13 @@ pub(crate) const LANES: usize = 8;
 type Lanes = [f32; LANES];
 
 const SECTORS: f32 = 64.0;
-/// An arc is taken to be shorter than it is by this part of a sector at either end, far more than rounding can change it.
+/// An arc is taken to be shorter than it is by this part of a sector at either end, far more than
+/// rounding can change it.
 const MARGIN: f32 = 0.02;
 /// A corner is looked for this many sectors to either side of where it seems to be.
 const CORNER_MARGIN: f32 = 0.1;
-/// Two rims whose planes are so nearly parallel (sine times sine, squared) that rounding could misplace their corners by more than that.
+/// Two rims whose planes are so nearly parallel (sine times sine, squared) that rounding could
+/// misplace their corners by more than that.
 const BLUNT: f32 = 4e-4;
 /// An arc shorter than about a sector (sine of half its angle, squared) counts for nothing.
 const SHORT: f32 = 0.01;
@@ -28,11 +33,12 @@ const APART: f32 = -1.0;
 /// In place of a position on a rim: they may meet anywhere.
 const ANYWHERE: f32 = -2.0;
 
-/// Caps in groups of `LANES`: x, y, z of the axes and the cosines of the caps' angles. The last group is filled up with caps that cover nothing.
+/// Caps in groups of `LANES`: x, y, z of the axes and the cosines of the caps' angles. The last
+/// group is filled up with caps that cover nothing.
 #[derive(Debug, Default)]
 pub(crate) struct Rims {
     groups: Vec<[Lanes; 4]>,
-    /// Where the arcs begin and end on the rim that was looked at last, in sectors.
+    /// Begin and end of the arcs on the rim that was looked at last, in sectors.
     ends: Vec<[Lanes; 2]>,
 }
 
@@ -44,7 +50,7 @@ struct Rim {
     sine_squared: f32,
 }
 
-/// What the caps of one group cover of a rim.
+/// The arcs of a rim that the caps of one group cover.
 struct Arcs {
     /// A bit for each sector.
     covered: u64,
@@ -112,8 +118,9 @@ impl Rims {
 }
 
 impl Rim {
-    /// The point of this rim in direction p of the plane across its axis is covered by a cap with axis (along, u, v) where
-    /// p . (u, v) sine > t, t = cosine of that cap - along * cosine of this one.
+    /// The point of this rim in direction p of the plane across its axis is covered by a cap with
+    /// axis (along, u, v) where p . (u, v) sine > t, t = cosine of that cap - along * cosine of
+    /// this one.
     #[inline(always)]
     fn arcs(&self, [x, y, z, cosine]: &[Lanes; 4]) -> Arcs {
         let dot = |a: &[f32; 3], k: usize| a[0] * x[k] + a[1] * y[k] + a[2] * z[k];
@@ -175,7 +182,7 @@ impl Rim {
     }
 }
 
-/// Where a direction lies on the circle, in sectors: grows with its angle, though not evenly.
+/// Position of a direction on the circle, in sectors: grows with its angle, though not evenly.
 #[inline(always)]
 fn position(x: f32, y: f32) -> f32 {
     let sum = x.abs() + y.abs();
@@ -183,7 +190,8 @@ fn position(x: f32, y: f32) -> f32 {
     0.25 * SECTORS * if y < 0.0 { 3.0 + share } else { 1.0 - share }
 }
 
-/// The integer nearest to x, 0 <= x < 2^22: in single precision the last bit of x + 2^23 is worth 1.
+/// The integer nearest to x, 0 <= x < 2^22: in single precision the last bit of x + 2^23 is worth
+/// 1.
 #[inline(always)]
 fn nearest_integer(x: f32) -> i32 {
     (x + 8_388_608.0).to_bits() as i32 & 0x7f_ffff

@@ -12,16 +12,16 @@ use rayon::prelude::*;
 const MOST_COUNTED: usize = 10_000;
 
 impl Assembly<'_> {
-    /// For each cell of the grid whether a sphere with its centre there may have neighbours that touch
-    /// the wall.
+    /// For each cell of the grid whether a sphere with its centre there may have neighbours that
+    /// touch the wall.
     pub(super) fn cells_with_wall_in_reach(&self) -> Vec<bool> {
         let largest = self.settings.radius_range[1];
         let reach = 2.0 * self.reduced(largest) + self.wall_clearance(largest);
         cells_near_wall(&self.grid, self.boundary, reach)
     }
 
-    /// A place where a sphere of the smallest radius touches `initial` and overlaps neither sphere nor
-    /// wall, if there is one. `wall_in_reach` as [`Assembly::cells_with_wall_in_reach`] says.
+    /// A place where a sphere of the smallest radius touches `initial` and overlaps neither sphere
+    /// nor wall, if there is one. `wall_in_reach` as [`Assembly::cells_with_wall_in_reach`] says.
     pub(super) fn place_for_smallest(
         &self,
         workspace: &mut Workspace,
@@ -55,8 +55,8 @@ impl Assembly<'_> {
             .or_else(|| halo.free_place(|centre, reach| self.wall_at(centre, reach, clearance)))
     }
 
-    /// What the wall leaves of a ball of places (centre and radius `reach`, local units) that must be
-    /// farther from it than `clearance`.
+    /// The part that the wall leaves of a ball of places (centre and radius `reach`, local units)
+    /// that must be farther from it than `clearance`.
     fn wall_at(&self, centre: &Vector3, reach: f64, clearance: f64) -> Wall {
         let boundary = self.boundary;
         let Some((triangle, near)) = boundary.nearest_triangle(centre, clearance + reach) else {
@@ -91,8 +91,9 @@ impl Assembly<'_> {
             .collect()
     }
 
-    /// The roomiest place near a void, no farther from it than blocks of one colour can bear, and the
-    /// largest size that fits there. `assembled` are the spheres that the grid does not hold yet.
+    /// The roomiest place near a void, no farther from it than blocks of one colour can bear, and
+    /// the largest size that fits there. `assembled` are the spheres that the grid does not hold
+    /// yet.
     pub(super) fn roomiest_place(&self, void: &Vector3, assembled: &[ReducedSphere]) -> Place {
         let [smallest, largest] = self.settings.radius_range;
         let enlarge = 1.0 + self.settings.overlap;
@@ -116,8 +117,8 @@ impl Assembly<'_> {
         Place { centre, quantile }
     }
 
-    /// The roomiest place near a void, and a radius (not reduced) among those that fit there: the part
-    /// `drawn` (0 to 1) of their quantiles.
+    /// The roomiest place near a void, and a radius (not reduced) among those that fit there: the
+    /// part `drawn` (0 to 1) of their quantiles.
     pub(crate) fn roomy_place(&self, void: &Vector3, drawn: f64) -> (Vector3, f64) {
         let smallest = self.settings.radius_range[0];
         let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &|p| self.room(p));
@@ -130,8 +131,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Radius (not reduced) of the largest sphere around a place that overlaps neither sphere nor wall,
-    /// at most the largest asked for.
+    /// Radius (not reduced) of the largest sphere around a place that overlaps neither sphere nor
+    /// wall, at most the largest asked for.
     fn room(&self, place: &Vector3) -> f64 {
         let largest = self.settings.radius_range[1];
         let wall = self
@@ -155,8 +156,8 @@ impl Assembly<'_> {
         fits
     }
 
-    /// How many more of the smallest spheres would fit around the spheres `open`, about: fills the
-    /// voids with them.
+    /// Number of the smallest spheres that would still fit around the spheres `open`, about: fills
+    /// the voids with them.
     pub(super) fn count_voids(mut self, open: &[ReducedSphere], wall_in_reach: &[bool]) -> usize {
         let mut workspace = Workspace::default();
         let smallest = self.settings.radius_range[0];
@@ -181,7 +182,7 @@ impl Assembly<'_> {
         found
     }
 
-    /// How many of the smallest spheres would fit around all spheres, about.
+    /// Number of the smallest spheres that would fit around all spheres, about.
     pub(crate) fn count_all_voids(self) -> usize {
         let wall_in_reach = self.cells_with_wall_in_reach();
         let open = self.spheres.clone();

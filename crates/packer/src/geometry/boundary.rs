@@ -1,5 +1,5 @@
-//! The wall of the solid: how far it is from a point, on which side of it a point lies, and what of it
-//! a ball would meet.
+//! The wall of the solid: how far it is from a point, on which side of it a point lies, and what of
+//! it a ball would meet.
 
 use super::tree::{Corners, TriangleTree};
 use super::union::outer_pieces;
@@ -9,9 +9,9 @@ use dem_io::{Diagnostic, Result, Surface};
 /// The point of the surface nearest to some other point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// Where it is, in local units.
+    /// Its position, in local units.
     pub point: Vector3,
-    /// How far it is, in local units.
+    /// Its distance, in local units.
     pub distance: f64,
 }
 
@@ -19,13 +19,15 @@ pub struct Nearest {
 pub struct Boundary {
     /// All facets of the surface, in its order: what rays are counted against.
     facets: TriangleTree,
-    /// What bounds the solid, where that is not all facets: parts of the surface may lie inside others.
+    /// The triangles that bound the solid, where those are not all facets: parts of the surface may
+    /// lie inside others.
     union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
 }
 
-/// A triangle as the plane that it lies in: p is above it where u = (p - corner) . along_u >= 0, v >= 0 and u + v <= 1.
+/// A triangle as the plane that it lies in: p is above it where u = (p - corner) . along_u >= 0, v
+/// >= 0 and u + v <= 1.
 struct Plane {
     corner: Vector3,
     normal: Vector3,
@@ -33,7 +35,8 @@ struct Plane {
     along_v: Vector3,
 }
 
-/// Triangles whose height is a smaller share of their longest edge have no plane: its normal would be off by more than 1e-10.
+/// Triangles whose height is a smaller share of their longest edge have no plane: its normal would
+/// be off by more than 1e-10.
 const THINNEST: f64 = 1e-6;
 
 impl Plane {
@@ -42,7 +45,8 @@ impl Plane {
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.cross(&edge_v);
         let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
-        // A thin triangle does not tell its normal well, and has hardly an inner part that a point could be above: NaN fails every comparison.
+        // A thin triangle does not tell its normal well, and has hardly an inner part that a point
+        // could be above: NaN fails every comparison.
         let squared = if normal.norm() < THINNEST * longest * longest {
             f64::NAN
         } else {
@@ -61,7 +65,8 @@ impl Plane {
         [&self.along_u, &self.along_v].map(|along| from_corner.dot(along))
     }
 
-    /// How far a point is from the plane, positive on the side of the normal, if it is above or below the triangle.
+    /// Distance of a point from the plane, positive on the side of the normal, if it is above or
+    /// below the triangle.
     fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
         let from_corner = point - self.corner;
         let [u, v] = self.along_triangle(&from_corner);
@@ -123,8 +128,9 @@ impl Boundary {
         })
     }
 
-    /// Whether a point is behind the triangle of the wall that is nearest to it, on the inner side: then it is inside. None
-    /// where that is not sure: the nearest point is at an edge, or the point on the wall itself.
+    /// True if a point is behind the triangle of the wall that is nearest to it, on the inner side:
+    /// then it is inside. None where that is not sure: the nearest point is at an edge, or the
+    /// point on the wall itself.
     pub fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
         let plane = self.planes.get(nearest_triangle as usize)?;
@@ -136,7 +142,7 @@ impl Boundary {
         sure.then_some(height < 0.0)
     }
 
-    /// Whether the surface leaves a ball of this radius (local units) free.
+    /// True if the surface leaves a ball of this radius (local units) free.
     pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
         !self
             .wall()
@@ -145,7 +151,8 @@ impl Boundary {
             })
     }
 
-    /// The nearest point of a triangle of the wall with its distance, unless its plane is farther away than `closest`.
+    /// The nearest point of a triangle of the wall with its distance, unless its plane is farther
+    /// away than `closest`.
     fn nearest_below(
         &self,
         triangle: u32,
@@ -176,9 +183,10 @@ impl Boundary {
         wall.on_ray(origin, direction).map(|t| wall.corners(t))
     }
 
-    /// The planes of the triangles that come within `reach` (local units) of a point inside, as directions to them and distances, if the
-    /// solid lies behind each of these planes as far as the triangles go: a ball within reach then clears the wall where it clears
-    /// the planes. False where the wall is curved or hollow.
+    /// The planes of the triangles that come within `reach` (local units) of a point inside, as
+    /// directions to them and distances, if the solid lies behind each of these planes as far as
+    /// the triangles go: a ball within reach then clears the wall where it clears the planes. False
+    /// where the wall is curved or hollow.
     pub fn flat_walls(&self, point: &Vector3, reach: f64, found: &mut Vec<(Vector3, f64)>) -> bool {
         const MOST: usize = 24;
         const SAME_PLANE: f64 = 1e-11;
@@ -208,8 +216,9 @@ impl Boundary {
             })
     }
 
-    /// The walls that a ball of this radius (local units) would meet: nearest points in directions that differ by more than 14 degrees,
-    /// a face hidden behind a nearer one (the same plane, the far side of an edge) left out. `triangles` limits the search; the 8 nearest are found.
+    /// The walls that a ball of this radius (local units) would meet: nearest points in directions
+    /// that differ by more than 14 degrees, a face hidden behind a nearer one (the same plane, the
+    /// far side of an edge) left out. `triangles` limits the search; the 8 nearest are found.
     pub fn walls(
         &self,
         triangles: impl Iterator<Item = u32>,
@@ -264,11 +273,13 @@ impl Boundary {
         Nearest { point, distance }
     }
 
-    /// Whether a point (local units) lies inside the solid, judged by the normal of the nearest triangle: much faster than a ray.
-    /// `triangles` must hold the nearest one and all that are as near.
+    /// True if a point (local units) lies inside the solid, judged by the normal of the nearest
+    /// triangle: much faster than a ray. `triangles` must hold the nearest one and all that are as
+    /// near.
     ///
-    /// `None` where this decides nothing, and [`is_inside`](super::inside::is_inside) does: the nearest place is an edge or a
-    /// corner, or several triangles within 1e-9 of the nearest contradict each other (as where two parts touch).
+    /// `None` where this decides nothing, and [`is_inside`](super::inside::is_inside) does: the
+    /// nearest place is an edge or a corner, or several triangles within 1e-9 of the nearest
+    /// contradict each other (as where two parts touch).
     pub fn is_behind_nearest(
         &self,
         triangles: impl Iterator<Item = u32>,

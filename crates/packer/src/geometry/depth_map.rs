@@ -1,9 +1,10 @@
-//! Signed distance to the surface at any point, made cheap by a coarse grid: its cells know where the surface is far, on
-//! which side they lie, and which triangles of the wall can be nearest.
+//! Signed distance to the surface at any point, made cheap by a coarse grid: its cells know where
+//! the surface is far, on which side they lie, and which triangles of the wall can be nearest.
 //!
-//! Where these are many, the distances d_i of the cell's corners c_i bound that of a point p. With q over the surface,
-//! d(p)^2 - |p|^2 is the minimum of |q|^2 - 2 p.q, so concave: it is at least what is interpolated between the corners. And
-//! d(p) is at most the distance to the point of the surface that is nearest to a corner.
+//! Where these are many, the distances d_i of the cell's corners c_i bound that of a point p. With
+//! q over the surface, d(p)^2 - |p|^2 is the minimum of |q|^2 - 2 p.q, so concave: it is at least
+//! what is interpolated between the corners. And d(p) is at most the distance to the point of the
+//! surface that is nearest to a corner.
 
 use super::boundary::Boundary;
 use super::inside::is_inside;
@@ -13,7 +14,8 @@ use rayon::prelude::*;
 
 /// Cells along the longest edge of the bounding box, at most.
 const MOST_CELLS_ALONG: f64 = 100.0;
-/// So many cells in the solid at least: where the spheres are few, finer cells save more than they cost.
+/// So many cells in the solid at least: where the spheres are few, finer cells save more than they
+/// cost.
 const FEWEST_CELLS: f64 = 10_000.0;
 /// A cell with more triangles that can be nearest leaves the search to the tree.
 const MOST_TRIANGLES: usize = 12;
@@ -43,7 +45,8 @@ struct Cell {
     side: Side,
     /// All of it is at least as far from the surface, local units.
     clear: f64,
-    /// Its triangles in the list of its row: those that can be nearest, or only the nearest to its centre.
+    /// Its triangles in the list of its row: those that can be nearest, or only the nearest to its
+    /// centre.
     first: u32,
     count: u32,
     /// None but these can be nearest.
@@ -72,15 +75,16 @@ pub struct DepthMap<'a> {
     edge: f64,
     counts: [usize; 3],
     rows: Vec<Row>,
-    /// Corners of the cells, x fastest: of those that are inside and near many triangles. Empty if there are none.
+    /// Corners of the cells, x fastest: of those that are inside and near many triangles. Empty if
+    /// there are none.
     corners: Vec<Option<Corner>>,
     /// No other part touches the wall from outside: what is in front of it is outside.
     one_part: bool,
 }
 
 impl<'a> DepthMap<'a> {
-    /// Prepares distances up to `cut_off` with cells of at most `edge`, unless that is less than a hundredth of the longest
-    /// side of the bounding box (local units).
+    /// Prepares distances up to `cut_off` with cells of at most `edge`, unless that is less than a
+    /// hundredth of the longest side of the bounding box (local units).
     pub fn new(surface: &'a Surface, boundary: &'a Boundary, cut_off: f64, edge: f64) -> Self {
         let extent = surface.extent();
         let volume = surface.volume_m3() / surface.unit_m.powi(3);
@@ -193,7 +197,8 @@ impl<'a> DepthMap<'a> {
             if let Some((triangle, _)) = nearest
                 && side != Side::Outside
             {
-                // Of a point of the cell, the nearest triangle is at most half a diagonal farther than of the centre.
+                // Of a point of the cell, the nearest triangle is at most half a diagonal farther
+                // than of the centre.
                 let reach = (distance + 2.0 * half_diagonal) * (1.0 + MARGIN);
                 complete = self.list(&centre, reach, &mut row.triangles);
                 if !complete {
@@ -226,7 +231,8 @@ impl<'a> DepthMap<'a> {
         true
     }
 
-    /// Bounds of the distance to the surface (see [`DepthMap::depth`]) that cost little, perhaps none at all.
+    /// Bounds of the distance to the surface (see [`DepthMap::depth`]) that cost little, perhaps
+    /// none at all.
     pub fn bounds(&self, point: [f64; 3]) -> [f64; 2] {
         const NONE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let place = [0, 1, 2].map(|k| (point[k] / self.edge).floor());
@@ -266,8 +272,9 @@ impl<'a> DepthMap<'a> {
         ]
     }
 
-    /// Distance to the surface, positive inside, infinite where it is more than the cut-off. Outside it is negative or zero,
-    /// and may be nearer to zero than the surface is: never farther.
+    /// Distance to the surface, positive inside, infinite where it is more than the cut-off.
+    /// Outside it is negative or zero, and may be nearer to zero than the surface is: never
+    /// farther.
     pub fn depth(&self, point: [f64; 3]) -> f64 {
         let cell = [0, 1, 2].map(|k| (point[k] / self.edge).floor());
         if (0..3).any(|k| cell[k] < 0.0 || cell[k] >= self.counts[k] as f64) {
@@ -299,7 +306,8 @@ impl<'a> DepthMap<'a> {
         }
     }
 
-    /// Distance to the nearest triangle and which it is, if it is listed or nearer than the cut-off.
+    /// Distance to the nearest triangle and which it is, if it is listed or nearer than the
+    /// cut-off.
     fn nearest(&self, point: &Vector3, listed: &[u32], complete: bool) -> Option<(f64, u32)> {
         let of_list = listed
             .iter()

@@ -1,17 +1,18 @@
-//! Which points lie inside the solid, and where a ray meets its wall.
+//! Points inside the solid, and rays that meet its wall.
 
 use super::boundary::Boundary;
 use super::tree::Corners;
 use super::winding::{Crossing, moeller_trumbore, winding};
 use crate::spheres::Vector3;
 
-/// Whether the point (local units) lies inside the solid: within an outer shell and in no cavity.
+/// True if the point (local units) lies inside the solid: within an outer shell and in no cavity.
 /// A point on the surface itself is not inside.
 pub fn is_inside(boundary: &Boundary, point: &Vector3) -> bool {
     winding(boundary.facets(), point).is_some_and(|winding| winding > 0)
 }
 
-/// Distance along a ray (unit direction, local units) to the first wall that it meets farther away than `beyond`.
+/// Distance along a ray (unit direction, local units) to the first wall that it meets farther away
+/// than `beyond`.
 pub fn first_hit(
     boundary: &Boundary,
     origin: &Vector3,

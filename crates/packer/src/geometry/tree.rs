@@ -80,7 +80,7 @@ impl TriangleTree {
         Some((triangle, found))
     }
 
-    /// Whether any triangle is closer to `point` than `radius`; `measure` as for
+    /// True if any triangle is closer to `point` than `radius`; `measure` as for
     /// [`TriangleTree::nearest`].
     #[inline]
     pub(super) fn reaches_into<T>(

@@ -1,8 +1,10 @@
-//! Surfaces whose parts cross each other bound the union of the parts: what of a facet lies inside another part is no wall.
+//! Surfaces whose parts cross each other bound the union of the parts: what of a facet lies inside
+//! another part is no wall.
 //!
-//! A facet is split along the segments in which others meet it, into convex pieces that each lie wholly inside or wholly outside of
-//! every part. A piece is wall if the solid lies behind it and not before it, by the winding numbers on both sides of its middle.
-//! Where these do not tell (parts that touch with their outer sides), it stays: a wall too many is harmless, a hole is not.
+//! A facet is split along the segments in which others meet it, into convex pieces that each lie
+//! wholly inside or wholly outside of every part. A piece is wall if the solid lies behind it and
+//! not before it, by the winding numbers on both sides of its middle. If these do not tell (parts
+//! that touch with their outer sides), it stays: a wall too many is harmless, a hole is not.
 
 use super::tree::{Corners, TriangleTree};
 use super::winding::winding;
@@ -12,7 +14,8 @@ use rayon::prelude::*;
 
 /// Shorter lengths than this are rounding (local units).
 const ROUNDING: f64 = 1e-12;
-/// How far off a piece the winding number is asked for, in local units. What stands closer together is taken to coincide.
+/// Distance from a piece at which the winding number is asked for, in local units. Surfaces that
+/// stand closer together are taken to coincide.
 const OFF: f64 = 1e-7;
 /// A facet with more segments than this is halved first, so that the pieces have few corners.
 const MANY_SEGMENTS: usize = 8;
@@ -20,7 +23,8 @@ const MANY_SEGMENTS: usize = 8;
 type Segment = [Vector3; 2];
 type Polygon = Vec<Vector3>;
 
-/// The corners of the triangles that bound the union, in local units. `facets` is the tree over the surface.
+/// The corners of the triangles that bound the union, in local units. `facets` is the tree over the
+/// surface.
 pub fn outer_pieces(surface: &Surface, facets: &TriangleTree) -> Vec<Corners> {
     let segments: Vec<Vec<Segment>> = (0..surface.triangles.len())
         .into_par_iter()
@@ -74,7 +78,7 @@ fn normal_of(surface: &Surface, facet: usize) -> Vector3 {
         .unwrap_or_default()
 }
 
-/// Where other facets meet this one, except along an edge that they share.
+/// The segments in which other facets meet this one, except along an edge that they share.
 fn segments_on(surface: &Surface, facets: &TriangleTree, facet: usize) -> Vec<Segment> {
     let polygon = corners(surface, facet);
     let normal = normal_of(surface, facet);
@@ -134,7 +138,7 @@ fn along(from: Vector3, to: Vector3, height_from: f64, height_to: f64) -> Vector
     from + (to - from) * (height_from / (height_from - height_to))
 }
 
-/// How much of a segment in the plane of a convex polygon lies in the polygon.
+/// Length of the part of a segment in the plane of a convex polygon that lies in the polygon.
 fn length_within(polygon: &Polygon, normal: &Vector3, [start, end]: &Segment) -> f64 {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for k in 0..polygon.len() {
@@ -156,7 +160,8 @@ fn length_within(polygon: &Polygon, normal: &Vector3, [start, end]: &Segment) ->
     (to - from).max(0.0) * (end - start).norm()
 }
 
-/// The facets that no other meets, joined over edges of two facets: those of a patch are all wall or all not.
+/// The facets that no other meets, joined over edges of two facets: those of a patch are all wall
+/// or all not.
 fn patches(surface: &Surface, segments: &[Vec<Segment>]) -> Vec<Vec<usize>> {
     let mut edges: Vec<([u32; 2], usize)> = Vec::new();
     for (facet, triangle) in surface.triangles.iter().enumerate() {
@@ -235,7 +240,8 @@ fn middle_line(segments: &[Segment], normal: &Vector3) -> Segment {
     [middle, middle + normal.cross(&farthest)]
 }
 
-/// The two parts of a convex polygon on both sides of the line through a segment in its plane; `None` if all lies on one side.
+/// The two parts of a convex polygon on both sides of the line through a segment in its plane;
+/// `None` if all lies on one side.
 fn divide(polygon: &Polygon, [start, end]: &Segment, normal: &Vector3) -> Option<[Polygon; 2]> {
     let across = normal.cross(&(end - start)).try_normalize(0.0)?;
     let heights: Vec<f64> = polygon
@@ -264,7 +270,8 @@ fn divide(polygon: &Polygon, [start, end]: &Segment, normal: &Vector3) -> Option
     Some([left, right])
 }
 
-/// Whether the solid lies behind a piece of a facet and not before it. Also where that cannot be told.
+/// True if the solid lies behind a piece of a facet and not before it. Also true where that cannot
+/// be told.
 fn bounds_solid(facets: &TriangleTree, piece: &Polygon, normal: &Vector3) -> bool {
     let middle = piece.iter().sum::<Vector3>() / piece.len() as f64;
     let behind = winding(facets, &(middle - OFF * normal));

@@ -1,8 +1,9 @@
-//! Winding numbers: a ray is cast and its crossings with the facets are counted (Moeller and Trumbore
-//! 1997; Platzer 2022, section 4.1.1).
+//! Winding numbers: a ray is cast and its crossings with the facets are counted (Moeller and
+//! Trumbore 1997; Platzer 2022, section 4.1.1).
 //!
 //! A ray that grazes a facet, an edge or a vertex decides nothing: the next direction is tried.
-//! Crossings are counted with their sense (out of the solid +1, into it -1), so that shells that cross each other form their union.
+//! Crossings are counted with their sense (out of the solid +1, into it -1), so that shells that
+//! cross each other form their union.
 
 use super::tree::{Corners, TriangleTree};
 use crate::spheres::Vector3;
@@ -18,17 +19,19 @@ const DIRECTIONS: [[f64; 3]; 7] = [
     [0.359_223_11, -0.473_112_29, -0.804_419_52],
 ];
 
-/// What a ray does with one triangle.
+/// The way in which a ray meets one triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Crossing {
     Miss,
-    /// Crosses the inner part; the sign tells whether the ray leaves (+1) or enters (-1) the side of the normal.
+    /// Crosses the inner part; the sign tells whether the ray leaves (+1) or enters (-1) the side
+    /// of the normal.
     Hit(i32),
     /// Too near an edge, a vertex or the plane of the triangle to be sure.
     Unsure,
 }
 
-/// Moeller-Trumbore intersection of the ray `origin + t * direction`, t > 0, with a triangle. Lengths in local units.
+/// Moeller-Trumbore intersection of the ray `origin + t * direction`, t > 0, with a triangle.
+/// Lengths in local units.
 pub(super) fn moeller_trumbore(
     origin: &Vector3,
     direction: &Vector3,
@@ -64,12 +67,13 @@ pub(super) fn moeller_trumbore(
     if t < 1e-12 || u < MARGIN || v < MARGIN || u + v > 1.0 - MARGIN {
         return Crossing::Unsure;
     }
-    // The determinant is -(direction . normal): negative where the ray leaves through the outer side.
+    // The determinant is -(direction . normal): negative where the ray leaves through the outer
+    // side.
     Crossing::Hit(if determinant < 0.0 { 1 } else { -1 })
 }
 
-/// How often the surface winds around a point (local units): 1 inside one shell, 0 outside. `None` when it cannot be told,
-/// as on the surface itself.
+/// Winding number of the surface around a point (local units): 1 inside one shell, 0 outside.
+/// `None` when it cannot be told, as on the surface itself.
 pub(super) fn winding(facets: &TriangleTree, point: &Vector3) -> Option<i32> {
     DIRECTIONS
         .iter()

@@ -1,4 +1,4 @@
-//! What one front is run with.
+//! One attempt at a front.
 
 use crate::front::SizeQuota;
 use crate::sizes::Sizes;
@@ -15,14 +15,14 @@ pub(super) struct Attempt {
     pub(super) fills_voids: bool,
     /// Spheres placed by the attempt before, if there was one.
     pub(super) expected: Option<f64>,
-    /// How many small spheres too many there may be, in roots of the number of spheres.
+    /// Surplus of small spheres that is allowed, in roots of the number of spheres.
     pub(super) most_too_many: f64,
     /// The sizes to begin with, which keep back those of which there were too many.
     pub(super) quota: Option<SizeQuota>,
 }
 
-/// Whether sizes are so alike that all voids can be filled. Wider ones have fewer small spheres than
-/// voids: to place them all would change the sizes.
+/// True if sizes are so alike that all voids can be filled. Wider ones have fewer small spheres
+/// than voids: to place them all would change the sizes.
 pub(crate) fn can_fill_voids(sizes: &Sizes) -> bool {
     sizes.max_m() <= WIDEST_FILLED * sizes.min_m()
 }

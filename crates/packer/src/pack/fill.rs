@@ -9,7 +9,7 @@ use dem_io::Result;
 /// Spheres around which voids are searched at a time.
 const VOID_SEARCH_GROUP: usize = 2000;
 
-/// What filling did.
+/// The history of this act.
 #[derive(Debug, Default)]
 pub(super) struct FillHistory {
     /// Spheres put into voids.
@@ -18,9 +18,9 @@ pub(super) struct FillHistory {
     pub(super) voids_left: usize,
 }
 
-/// Puts spheres into the voids that take at least the smallest one, unless the front has filled them
-/// already (`is_filled`): each of a size drawn among those that fit there, as long as their number does not distort the distribution of sizes by more than a
-/// tenth of its statistical noise.
+/// Puts spheres into the voids that take at least the smallest one, unless the front has filled
+/// them already (`is_filled`): each of a size drawn among those that fit there, as long as their
+/// number does not distort the distribution of sizes by more than a tenth of its statistical noise.
 ///
 /// # Errors
 /// What `progress` returns.
@@ -48,8 +48,8 @@ pub(super) fn fill(
         most,
         fillers: 0,
     };
-    // Neighbours in memory are neighbours in space: the search goes round in strides, so that what it
-    // finds first is spread evenly.
+    // Neighbours in memory are neighbours in space: the search goes round in strides, so that what
+    // it finds first is spread evenly.
     let groups = count.div_ceil(VOID_SEARCH_GROUP);
     for group in 0..groups {
         let around: Vec<u32> = (group..count).step_by(groups).map(|i| i as u32).collect();

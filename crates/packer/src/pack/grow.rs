@@ -1,5 +1,5 @@
-//! Second act: fronts that begin at seeds spread over the solid, and again wherever room is left that
-//! none has reached.
+//! Second act: fronts that begin at seeds spread over the solid, and again wherever room is left
+//! that none has reached.
 
 use super::attempt::Attempt;
 use super::job::Job;
@@ -15,13 +15,13 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Before settling a front begins in every cube of so many largest diameters: near enough that
-/// directions of growth average out, far enough that few fronts meet, since where they meet there is
-/// less.
+/// directions of growth average out, far enough that few fronts meet, since where they meet there
+/// is less.
 const SEED_SPACING: f64 = 8.0;
 /// Spheres at most: some 30 GB.
 const MOST_SPHERES: f64 = 1e8;
 
-/// What the front did.
+/// The history of this act.
 #[derive(Debug)]
 pub(super) struct GrowHistory {
     /// Fronts started.
@@ -191,7 +191,7 @@ impl Grown<'_> {
         self.front.quota()
     }
 
-    /// Whether voids were left that take the smallest sphere.
+    /// True if voids were left that take the smallest sphere.
     pub(super) fn has_left_voids(&self) -> bool {
         self.front.has_left_voids()
     }

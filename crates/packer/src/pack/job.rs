@@ -1,4 +1,5 @@
-//! A packing that is to be made: the solid, the sizes in its local units, and where the front begins.
+//! A packing that is to be made: the solid, the sizes in its local units, and where the front
+//! begins.
 
 use super::settings::PackSettings;
 use super::solid::Solid;
@@ -12,15 +13,15 @@ use dem_io::{Diagnostic, Result};
 /// Cells of the front's grid beyond one per sphere.
 const MORE_CELLS: usize = 1_000_000;
 
-/// What all acts of a packing work with.
+/// The job that all acts of a packing share.
 pub(super) struct Job<'a> {
     pub(super) solid: &'a Solid<'a>,
     pub(super) settings: &'a PackSettings,
-    /// Where the front begins, local units.
+    /// Starting point of the front, local units.
     pub(super) seed: Vector3,
-    /// Radii are multiples of this, some 2e-10 of the largest: so that a radius is the same number in
-    /// whatever unit it was given. A difference in the last bit would grow while the spheres settle,
-    /// until every sphere lay elsewhere.
+    /// Radii are multiples of this, some 2e-10 of the largest: so that a radius is the same number
+    /// in whatever unit it was given. A difference in the last bit would grow while the spheres
+    /// settle, until every sphere lay elsewhere.
     radius_step: f64,
 }
 

@@ -1,13 +1,14 @@
-//! When a packing is begun again, and with what: the only place of the packer that tries again.
+//! The policy of retries: when a packing is begun again, and with what. The only place of the
+//! packer that tries again.
 //!
-//! - A bare front that fills voids may distort the sizes: the next one keeps back those that were too
-//!   many.
-//! - A front before settling may leave too much room or too little: in small bodies it differs by chance.
-//!   The next one runs at other radii.
+//! - A bare front that fills voids may distort the sizes: the next one keeps back those that were
+//!   too many.
+//! - A front before settling may leave too much room or too little: in small bodies it differs by
+//!   chance. The next one runs at other radii.
 //! - Its spheres may jam all the same: the next front runs at radii that are less smaller.
 //!
-//! Where the fraction by which radii are smaller was asked for, nothing is tried again but the sizes of
-//! a bare front.
+//! If the fraction by which radii are smaller was asked for, nothing is tried again but the sizes
+//! of a bare front.
 
 use super::attempt::{Attempt, can_fill_voids};
 use super::grow::Grown;
@@ -16,37 +17,37 @@ use super::settle::{Settled, WhenJammed};
 use super::shrink::{FillTarget, rounded};
 use crate::sizes::Sizes;
 
-/// How many small spheres too many there may be in a bare front for voids to be filled, in roots of the
-/// number of spheres: at first many times what chance does, to learn how many voids there are (10 in a
-/// ball of half a million spheres, less in all else that can be filled); in the last attempt a third of
+/// Surplus of small spheres in a bare front up to which voids are filled, in roots of the number of
+/// spheres: at first many times what chance does, to learn how many voids there are (10 in a ball
+/// of half a million spheres, less in all else that can be filled); in the last attempt a third of
 /// it, whatever voids that leaves.
 const MOST_TOO_MANY: [f64; 2] = [20.0, 0.5];
 /// Bare fronts at most.
 const MOST_BARE_FRONTS: usize = 9;
-/// A bare front is kept if the number of spheres up to any size is off by less than this many roots of
-/// the number of spheres: half of what chance does, after some attempts two thirds.
+/// A bare front is kept if the number of spheres up to any size is off by less than this many roots
+/// of the number of spheres: half of what chance does, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
 /// The next attempt is the last one where the number is off by more than so many roots, what chance
-/// does, and by more than this part of what it was off by in the attempt before: what can be evened out
-/// falls to a third or less while it is that much.
+/// does, and by more than this part of what it was off by in the attempt before: what can be evened
+/// out falls to a third or less while it is that much.
 const HOPELESS_IMBALANCE: f64 = 1.36;
 const SLOWEST_FALL: f64 = 0.6;
 
 /// Fronts at most until one leaves the room that settling wants.
 const MOST_FRONTS: usize = 4;
-/// By this factor a front runs at less smaller radii where the spheres of the one before have jammed,
-/// and how often that is done before some are taken out.
+/// By this factor a front runs at less smaller radii where the spheres of the one before have
+/// jammed, and how often that is done before some are taken out.
 const AFTER_JAM: f64 = 0.93;
 const MOST_JAMS: usize = 3;
 
-/// What has been tried, and what may still be.
+/// The attempts made, and those that may still be made.
 pub(super) struct Retry {
-    /// How full the body is to be, if its shrink is chosen here.
+    /// The volume to reach, if the shrink is chosen here.
     target: Option<FillTarget>,
     /// Fronts run.
     pub(super) fronts: usize,
-    /// How often the spheres have jammed.
+    /// Number of times that the spheres have jammed.
     jams: usize,
     /// The bare front is the last that is tried.
     is_last: bool,
@@ -94,12 +95,12 @@ impl Retry {
         })
     }
 
-    /// Whether the next settling is the first one.
+    /// True if the next settling is the first one.
     pub(super) fn has_not_jammed(&self) -> bool {
         self.jams == 0
     }
 
-    /// What is to be done with spheres that jam.
+    /// Treatment of spheres that jam.
     pub(super) fn when_jammed(&self) -> WhenJammed {
         if self.target.is_some() && self.jams < MOST_JAMS {
             WhenJammed::Stop
@@ -133,8 +134,8 @@ impl Retry {
         if self.is_last || (imbalance < most_imbalance && !grown.has_left_voids()) {
             return None;
         }
-        // Where too few small spheres can be kept back for all voids, more attempts would not change
-        // that.
+        // Where too few small spheres can be kept back for all voids, more attempts would not
+        // change that.
         let is_hopeless = self.fronts == 1 && grown.has_left_voids()
             || imbalance > HOPELESS_IMBALANCE.max(SLOWEST_FALL * self.last_imbalance);
         self.is_last = is_hopeless || self.fronts + 1 == MOST_BARE_FRONTS;

@@ -1,11 +1,11 @@
-//! What packing is asked for, and what it tells.
+//! Settings and results of a packing.
 
 use crate::sizes::Sizes;
 use crate::spheres::Spheres;
 use dem_io::Result;
 use serde::Serialize;
 
-/// How a packing is to be made.
+/// Settings of a packing.
 #[derive(Debug, Clone)]
 pub struct PackSettings {
     /// Diameters of the spheres.
@@ -17,7 +17,7 @@ pub struct PackSettings {
     /// The front runs at radii smaller by this fraction; then they grow to full size. 0: the bare
     /// front. None: by as much as leaves the spheres just short of jamming.
     pub settle: Option<f64>,
-    /// Where the front begins, in metres; the deepest point if not given. Length 3.
+    /// Starting point of the front, in metres; the deepest point if not given. Length 3.
     pub seed_point_m: Option<[f64; 3]>,
 }
 
@@ -35,29 +35,31 @@ impl PackSettings {
     }
 }
 
-/// What happened while packing.
+/// The course of a packing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PackHistory {
-    /// Where the first front began, m. Length 3.
+    /// Starting point of the first front, m. Length 3.
     pub seed_point_m: [f64; 3],
     /// Diameter of the largest ball that fits into the shape, m.
     pub largest_inscribed_diameter_m: f64,
     /// The radii of the front were smaller by this fraction.
     pub settle: f64,
-    /// Fronts started: one for each seed, and one for each part that the ones before could not reach.
+    /// Fronts started: one for each seed, and one for each part that the ones before could not
+    /// reach.
     pub fronts: usize,
     /// Steps of the settling minimiser.
     pub settling_steps: usize,
     /// Spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// How often the front was run: again with other sizes kept back where filling the voids had
-    /// distorted the distribution, or at other radii where it had left too much room for settling or
-    /// too little.
+    /// Number of fronts run: again with other sizes kept back where filling the voids had distorted
+    /// the distribution, or at other radii where it had left too much room for settling or too
+    /// little.
     pub attempts: usize,
-    /// Spheres put into voids, of sizes that fit there: by the bare front as it goes, after settling
-    /// at the end.
+    /// Spheres put into voids, of sizes that fit there: by the bare front as it goes, after
+    /// settling at the end.
     pub void_fillers: usize,
-    /// Those of them that stand where they have most room, and need not touch three others or walls.
+    /// Those of them that stand where they have most room, and need not touch three others or
+    /// walls.
     pub loose_fillers: usize,
     /// Voids that would still take the smallest sphere, about: extrapolated when more fillers would
     /// distort the sizes.
@@ -77,9 +79,9 @@ pub struct PackHistory {
 pub struct Packing {
     /// The spheres, sorted along a space-filling curve.
     pub spheres: Spheres,
-    /// What happened.
+    /// The course of the packing.
     pub history: PackHistory,
 }
 
-/// Told the stage and the fraction of it that is done (0 to 1); an error stops the work.
+/// Called with the stage and the fraction of it that is done (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;

@@ -1,4 +1,4 @@
-//! Who touches whom, and the exact checks: no overlap in r_gen, nothing outside the wall.
+//! Contacts, and the exact checks: no overlap in r_gen, nothing outside the wall.
 
 use super::bonded_packing::BondedPacking;
 use crate::bonds::{centre_distance, close_pairs};
@@ -21,8 +21,8 @@ pub struct Contacts {
     pub rattlers: f64,
     /// Largest overlap of two spheres in r_gen, as a share of the smaller r_gen. 0 if none overlap.
     pub largest_overlap: f64,
-    /// Largest way by which a sphere stands out of the wall, as a share of its radius. 0 if none does, 1 if a centre is
-    /// outside.
+    /// Largest way by which a sphere stands out of the wall, as a share of its radius. 0 if none
+    /// does, 1 if a centre is outside.
     pub largest_protrusion: f64,
 }
 

@@ -1,16 +1,18 @@
-//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres cover.
+//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres
+//! cover.
 //!
-//! The standard error comes from the differences of the two random points of a cell: for a region with indicator r,
-//! cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r at one - (c - f) r at the other)^2)/sum(r).
-//! Everything is counted in integers, so that the order of counting does not matter.
+//! The standard error comes from the differences of the two random points of a cell: for a region
+//! with indicator r, cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r
+//! at one - (c - f) r at the other)^2)/sum(r). Everything is counted in integers, so that the order
+//! of counting does not matter.
 
 use super::bonded_packing::BondedPacking;
 use super::depth::DepthQuery;
 use super::points::{Box3, Cells, over_pairs};
 use serde::{Deserialize, Serialize};
 
-/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each sphere are evenly spread
-/// through it, so that fewer are needed in all.
+/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each
+/// sphere are evenly spread through it, so that fewer are needed in all.
 const POINTS_PER_SPHERE: f64 = 100.0;
 const FEWEST_POINTS_IN_REGION: f64 = 100_000.0;
 const MOST_POINTS_IN_REGION: f64 = 250_000.0;
@@ -20,10 +22,10 @@ const SLABS: usize = 10;
 /// A region with fewer points than this has no density to speak of.
 const FEWEST_POINTS: u64 = 100;
 
-/// A share found by sampling.
+/// A fraction found by sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fraction {
-    /// The share, 0 to 1.
+    /// The fraction, 0 to 1.
     pub value: f64,
     /// Its standard error.
     pub error: f64,
@@ -32,15 +34,15 @@ pub struct Fraction {
 /// The density of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
-    /// Where it begins, m.
+    /// Its beginning, m.
     pub from_m: f64,
-    /// Where it ends, m.
+    /// Its end, m.
     pub to_m: f64,
     /// Its density. None if hardly a point fell into it.
     pub density: Option<Fraction>,
 }
 
-/// What the points say.
+/// Densities that the points give.
 pub(super) struct Sampled {
     pub(super) union_density: Fraction,
     pub(super) interior_union_density: Option<Fraction>,
@@ -54,14 +56,16 @@ pub(super) struct Sampled {
 struct Tally {
     points: u64,
     covered: u64,
-    /// Sums over cells of products of the differences of its two points, in cover (c) and in region (r).
+    /// Sums over cells of products of the differences of its two points, in cover (c) and in region
+    /// (r).
     cover_cover: u64,
     cover_region: i64,
     region_region: u64,
 }
 
 impl Tally {
-    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is covered.
+    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is
+    /// covered.
     fn add(&mut self, region: [bool; 2], covered: [bool; 2]) {
         if !(region[0] || region[1]) {
             return;

@@ -3,20 +3,22 @@
 use super::bonded_packing::BondedPacking;
 use rayon::prelude::*;
 
-/// Points that share the last exact distance: fixed, so that results do not depend on the number of threads.
+/// Points that share the last exact distance: fixed, so that results do not depend on the number of
+/// threads.
 const CHUNK: usize = 4096;
 /// Mean number of spheres in a cell of the order in which depths are measured.
 const SPHERES_PER_CELL: f64 = 4.0;
 
-/// Answers depths at points one after the other, best in an order in which neighbours follow each other: the distance
-/// changes by no more than the way from the last point that was measured, which often settles the matter.
+/// Answers depths at points one after the other, best in an order in which neighbours follow each
+/// other: the distance changes by no more than the way from the last point that was measured, which
+/// often settles the matter.
 pub(super) struct DepthProbe<'a> {
     packing: &'a BondedPacking<'a>,
     question: DepthQuery,
     last: Option<([f64; 3], f64)>,
 }
 
-/// What is asked of a depth.
+/// A question about a depth.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DepthQuery {
     /// Shallower is all the same.
@@ -25,12 +27,12 @@ pub(super) struct DepthQuery {
     pub(super) cap: f64,
     /// In which layer of this thickness it is; 0 to know it exactly.
     pub(super) layer: f64,
-    /// Whether it is more than this.
+    /// A depth is above this or not.
     pub(super) limit: f64,
 }
 
 impl DepthQuery {
-    /// Whether two depths are the same answer.
+    /// True if two depths are the same answer.
     fn same(&self, a: f64, b: f64) -> bool {
         (a <= self.floor && b <= self.floor)
             || (a >= self.cap && b >= self.cap)
@@ -51,8 +53,8 @@ impl<'a> DepthProbe<'a> {
         }
     }
 
-    /// Depth of a point below the surface, or more if that answers the question alike; the cap if deeper, zero if not above
-    /// the floor.
+    /// Depth of a point below the surface, or more if that answers the question alike; the cap if
+    /// deeper, zero if not above the floor.
     pub(super) fn depth(&mut self, point: [f64; 3]) -> f64 {
         let DepthQuery { floor, cap, .. } = self.question;
         if let Some((measured, distance)) = self.last {
@@ -121,7 +123,8 @@ pub(super) fn of_centres(packing: &BondedPacking, cap: f64) -> Vec<f64> {
     depths
 }
 
-/// The spheres row by row through the box, so that neighbours follow each other (counting sort by cell).
+/// The spheres row by row through the box, so that neighbours follow each other (counting sort by
+/// cell).
 fn in_rows(packing: &BondedPacking, spheres: Vec<u32>) -> Vec<u32> {
     let volume: f64 = packing.extent.iter().product();
     let edge = (SPHERES_PER_CELL * volume / spheres.len().max(1) as f64).cbrt();

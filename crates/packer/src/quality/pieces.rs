@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Pieces of a body: particles joined by bonds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pieces {
-    /// How many, single particles included.
+    /// Number of pieces, single particles included.
     pub count: usize,
     /// Fraction of the particles that are in the largest.
     pub largest_share: f64,

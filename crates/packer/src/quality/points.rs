@@ -1,7 +1,7 @@
 //! Random points in a box, what covers them and how deep they lie.
 //!
-//! The box is cut into equal cells with two random points each (stratified sampling, the same points for the
-//! same box).
+//! The box is cut into equal cells with two random points each (stratified sampling, the same
+//! points for the same box).
 
 use super::bonded_packing::BondedPacking;
 use super::depth::{DepthProbe, DepthQuery};
@@ -13,13 +13,13 @@ const MOST_CELLS: f64 = 4e6;
 const SPHERES_PER_TASK: usize = 1024;
 const ROWS_PER_TASK: usize = 16;
 
-/// What is known of the two points of a cell.
+/// The two points of a cell.
 pub(super) struct Pair {
     /// The smallest corner of the cell, local units.
     pub(super) corner: [f64; 3],
-    /// Where they are, local units.
+    /// Their positions, local units.
     pub(super) points: [[f64; 3]; 2],
-    /// How deep they lie, as far as the probe was asked to tell.
+    /// Their depths, as far as the probe was asked to tell.
     pub(super) depths: [f64; 2],
     /// Covered by spheres of true radius.
     pub(super) in_union: [bool; 2],
@@ -64,7 +64,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// So many cells that about `points` random points fall into a region of `volume` within the box.
+    /// So many cells that about `points` random points fall into a region of `volume` within the
+    /// box.
     pub(super) fn new(within: &Box3, volume: f64, points: f64) -> Self {
         let size = within.size();
         let box_volume: f64 = size.iter().product();
@@ -121,7 +122,8 @@ fn mixed(counter: u64) -> u64 {
 const GENERATING: [u8; 2] = [1, 4];
 const UNION: [u8; 2] = [2, 8];
 
-/// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true radii.
+/// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true
+/// radii.
 fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     let covered: Vec<AtomicU8> = (0..cells.count.iter().product())
         .map(|_| AtomicU8::new(0))
@@ -161,8 +163,8 @@ fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     covered
 }
 
-/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths answer
-/// the question, see [`DepthProbe`].
+/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths
+/// answer the question, see [`DepthProbe`].
 pub(super) fn over_pairs<T: Default + Send>(
     packing: &BondedPacking,
     cells: &Cells,

@@ -8,15 +8,15 @@ use super::thickness::Thinnest;
 use crate::sizes::Fit;
 use serde::{Deserialize, Serialize};
 
-/// How good a packing is. Fractions are between 0 and 1.
+/// The quality of a packing. Fractions are between 0 and 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Number of spheres.
     pub particles: usize,
     /// Number of bonds.
     pub bonds: usize,
-    /// They are all pairs up to this times the sum of their radii, but for those with surface between them; 0 if they were
-    /// chosen otherwise.
+    /// They are all pairs up to this times the sum of their radii, but for those with surface
+    /// between them; 0 if they were chosen otherwise.
     pub bonding_radius: f64,
     /// Mean diameter by number, m.
     pub mean_diameter_m: f64,
@@ -48,13 +48,14 @@ pub struct Report {
     pub bonds_per_particle: f64,
     /// Mean number of bonds that a particle has: twice as many.
     pub mean_coordination: f64,
-    /// Who touches whom.
+    /// Contacts between spheres, and with the wall.
     pub contacts: Contacts,
-    /// What the bonds hold together.
+    /// Pieces that the bonds hold together.
     pub pieces: Pieces,
     /// Directions of all bonds. None without bonds.
     pub fabric: Option<Fabric>,
-    /// Directions of the bonds of the interior: those with one end in it count half. None without such.
+    /// Directions of the bonds of the interior: those with one end in it count half. None without
+    /// such.
     pub interior_fabric: Option<Fabric>,
     /// The thinnest part. None without particles.
     pub thinnest: Option<Thinnest>,

@@ -69,7 +69,7 @@ fn density_lines(report: &Report) -> Vec<Line> {
     lines
 }
 
-/// How the density changes from the wall inwards and along the shape.
+/// The density from the wall inwards and along the shape.
 fn profile_lines(report: &Report) -> Vec<Line> {
     let densities = |layers: &[Layer]| {
         let values: Vec<String> = layers.iter().map(|l| value(l.density.as_ref())).collect();

@@ -1,12 +1,14 @@
 //! The thinnest part of a body, as its bonds and the depths of its particles show it.
 //!
-//! Particles are taken from the deepest to the shallowest, bonds joining those taken. Where two sets that are both more
-//! than crumbs meet, there is a neck between them, as deep as the shallower end of the joining bond; where a piece ends up
-//! alone, its deepest particle is its thickness. The thinnest part is the smallest of all these, twice the depth. Centres
-//! of particles seldom lie in the very middle, so that this reads low, by up to two diameters. The same is therefore done
-//! with the points of a lattice that lie deeper than the smallest particle needs, each joined to its six neighbours, and the
-//! larger of the two counts, where there are few across. Every way through the solid passes within half a diagonal of its cells of lattice points, so
-//! that the result is too small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
+//! Particles are taken from the deepest to the shallowest, bonds joining those taken. Where two
+//! sets that are both more than crumbs meet, there is a neck between them, as deep as the shallower
+//! end of the joining bond; where a piece ends up alone, its deepest particle is its thickness. The
+//! thinnest part is the smallest of all these, twice the depth. Centres of particles seldom lie in
+//! the very middle, so that this reads low, by up to two diameters. The same is therefore done with
+//! the points of a lattice that lie deeper than the smallest particle needs, each joined to its six
+//! neighbours, and the larger of the two counts, where there are few across. Every way through the
+//! solid passes within half a diagonal of its cells of lattice points, so that the result is too
+//! small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
 //! in larger bodies. It does not see a fin that grows out of a thick part.
 
 use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
@@ -17,11 +19,14 @@ use serde::{Deserialize, Serialize};
 
 /// Steps of depth up to the cap.
 const LEVELS: usize = 400;
-/// Where so many mean diameters fit across by the particles, the lattice is left out: two more or less do not matter.
+/// The lattice is left out where so many mean diameters fit across by the particles: two more or
+/// less do not matter.
 const MANY_ACROSS: f64 = 15.0;
-/// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less across.
+/// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less
+/// across.
 const FINEST_EDGE: f64 = 0.25;
-/// Points of the lattice inside the solid, about, and in the whole box, for regions that fill little of it.
+/// Points of the lattice inside the solid, about, and in the whole box, for regions that fill
+/// little of it.
 const MOST_POINTS: f64 = 1.5e5;
 const MOST_POINTS_IN_BOX: f64 = 1e6;
 /// A set of fewer particles, or of a smaller share of them, is a crumb.
@@ -64,8 +69,9 @@ pub(super) fn thinnest(
     })
 }
 
-/// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of neighbours. A point is in the middle of the box, so
-/// that the middle of a symmetric shape is not missed.
+/// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of
+/// neighbours. A point is in the middle of the box, so that the middle of a symmetric shape is not
+/// missed.
 fn lattice(packing: &BondedPacking, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
     let box_volume: f64 = packing.extent.iter().product();
     let edge = (FINEST_EDGE * mean_diameter)
@@ -152,8 +158,8 @@ fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f
     Some(top * thinnest as f64 / LEVELS as f64)
 }
 
-/// Indices of the bonds, ordered by the level of the shallower end and then of the deeper one, the deepest first: a
-/// particle joins what lies deeper before it joins its like.
+/// Indices of the bonds, ordered by the level of the shallower end and then of the deeper one, the
+/// deepest first: a particle joins what lies deeper before it joins its like.
 fn deepest_first(bonds: &[[u32; 2]], levels: &[u16]) -> Vec<u32> {
     let ends = |bond: u32| bonds[bond as usize].map(|i| levels[i as usize]);
     let any_order = (0..bonds.len() as u32).collect();

@@ -1,4 +1,4 @@
-//! What a user should know of a packing before using it, with advice.
+//! Warnings about a packing before it is used, with advice.
 
 use super::report::Report;
 use crate::bonds::WELL_BONDED;
@@ -10,8 +10,8 @@ const ENOUGH_ACROSS: f64 = 10.0;
 pub(super) const ENOUGH_BONDS: f64 = 4.0;
 /// Overlaps (in r_gen) and protrusions beyond this share of a radius are not rounding.
 const EXACT: f64 = 1e-9;
-/// Sizes are called wrong beyond so many times the statistical limit: chance alone goes beyond once in 2,000 packings,
-/// beyond the limit itself once in 20.
+/// Sizes are called wrong beyond so many times the statistical limit: chance alone goes beyond once
+/// in 2,000 packings, beyond the limit itself once in 20.
 const CLEARLY_OFF: f64 = 1.5;
 /// A fabric that chance makes more rarely than this is called anisotropic.
 const RARE: f64 = 0.01;

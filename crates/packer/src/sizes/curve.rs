@@ -1,4 +1,5 @@
-//! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick to invert.
+//! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick
+//! to invert.
 
 /// Accepted error of one cell, as a share of the whole.
 const TOLERANCE: f64 = 1e-9;
@@ -13,8 +14,9 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// In `[start, start + width]` the distribution rises from `below` by `share`, along the cubic that leaves with
-/// slope `slope_start` and arrives with `slope_end` (both 1 for a straight line; at most 3, so that it is monotone).
+/// In `[start, start + width]` the distribution rises from `below` by `share`, along the cubic that
+/// leaves with slope `slope_start` and arrives with `slope_end` (both 1 for a straight line; at
+/// most 3, so that it is monotone).
 #[derive(Debug, Clone)]
 struct Cell {
     start: f64,
@@ -36,7 +38,8 @@ impl Cell {
         a + t * (2.0 * (3.0 - 2.0 * a - b) + t * 3.0 * (a + b - 2.0))
     }
 
-    /// Where in the cell (0 to 1) the rise is `wanted` (0 to 1): Newton, kept inside a bracket.
+    /// Position in the cell (0 to 1) at which the rise is `wanted` (0 to 1): Newton, kept inside a
+    /// bracket.
     fn solve(&self, wanted: f64) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         let mut t = wanted;
@@ -91,8 +94,9 @@ impl Curve {
         }
     }
 
-    /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i, diameter)`: smooth and
-    /// without a peak much narrower than the piece. Need not be normalised. None if the whole is zero or not finite.
+    /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i,
+    /// diameter)`: smooth and without a peak much narrower than the piece. Need not be normalised.
+    /// None if the whole is zero or not finite.
     pub(super) fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
         let pieces = || {
             knots
@@ -126,7 +130,8 @@ impl Curve {
             below += cell.share;
             moment += cell.share * (cell.start + cell.width * cell.mean_position());
         }
-        // Cells without share (a flat part of a sieve curve) are never drawn from and say nothing of the rise.
+        // Cells without share (a flat part of a sieve curve) are never drawn from and say nothing
+        // of the rise.
         let guide = (0..GUIDE_CELLS)
             .map(|g| {
                 let u = g as f64 / GUIDE_CELLS as f64;
@@ -157,7 +162,8 @@ impl Curve {
         (cell.below + cell.share * cell.rise(t)).min(1.0)
     }
 
-    /// The diameter that the share `u` of the distribution lies below. `u` outside [0, 1] counts as the nearer end.
+    /// The diameter that the share `u` of the distribution lies below. `u` outside [0, 1] counts as
+    /// the nearer end.
     pub(super) fn quantile(&self, u: f64) -> f64 {
         let u = u.clamp(0.0, 1.0);
         let mut index =
@@ -192,8 +198,8 @@ fn gauss(from: f64, to: f64, density: &impl Fn(f64) -> f64) -> f64 {
         .sum::<f64>()
 }
 
-/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the cells with
-/// their integrals as `share`.
+/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the
+/// cells with their integrals as `share`.
 fn refine(
     from: f64,
     to: f64,

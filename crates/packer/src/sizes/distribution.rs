@@ -32,9 +32,10 @@ impl Sizes {
     /// The sizes that `text` asks for, in one of the forms above; reads the file of a sieve curve.
     ///
     /// # Errors
-    /// A text of another form; a size that is zero, negative or not finite; MIN above MAX; a standard deviation or
-    /// shape that is not positive; less than 1 % of the distribution between MIN and MAX; MAX more than
-    /// [`LARGEST_SIZE_RATIO`] times MIN; a sieve file that cannot be read or is not a cumulative curve.
+    /// A text of another form; a size that is zero, negative or not finite; MIN above MAX; a
+    /// standard deviation or shape that is not positive; less than 1 % of the distribution between
+    /// MIN and MAX; MAX more than [`LARGEST_SIZE_RATIO`] times MIN; a sieve file that cannot be
+    /// read or is not a cumulative curve.
     pub fn parse(text: &str, by: Basis) -> Result<Self> {
         let place = format!("--diameter '{text}'");
         parse::law(text)
@@ -57,7 +58,8 @@ impl Sizes {
         self.number.mean
     }
 
-    /// Standard deviation over mean of the diameters, by number, and their skewness (0 for one size); to about 1e-3.
+    /// Standard deviation over mean of the diameters, by number, and their skewness (0 for one
+    /// size); to about 1e-3.
     pub fn spread_and_skewness(&self) -> [f64; 2] {
         const PARTS: u32 = 1000;
         let off = |k: u32| {
@@ -78,13 +80,13 @@ impl Sizes {
         self.mean_volume_m3
     }
 
-    /// What the distribution was asked to count.
+    /// The quantity that the distribution counts.
     pub fn by(&self) -> Basis {
         self.by
     }
 
-    /// The diameter in metres that the share `u` of the particles lies below: with `u` uniform in [0, 1), a diameter
-    /// drawn at random.
+    /// The diameter in metres that the share `u` of the particles lies below: with `u` uniform in
+    /// [0, 1), a diameter drawn at random.
     pub fn quantile_by_number(&self, u: f64) -> f64 {
         self.number.quantile(u)
     }
@@ -156,7 +158,8 @@ impl Sizes {
         Ok(sizes)
     }
 
-    /// The distribution in words; `kept` is the fraction of it between the limits, where it was cut.
+    /// The distribution in words; `kept` is the fraction of it between the limits, where it was
+    /// cut.
     fn described(&self, law: &Law, name: &str, kept: Option<f64>) -> String {
         let note = match law {
             Law::One(d) => return format!("all {}", show_length(*d)),

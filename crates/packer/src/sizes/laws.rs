@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// The standard normal deviate that 99.9 % lie below.
 const NORMAL_DEVIATE_999: f64 = 3.090_232_306_167_813;
 
-/// What a distribution of sizes counts.
+/// The quantity that a distribution of sizes counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
@@ -22,7 +22,7 @@ pub enum Basis {
 
 /// The tables of a law.
 pub(super) struct Tables {
-    /// What the law is called.
+    /// The name of the law.
     pub(super) name: String,
     /// The smallest diameter, those where pieces of the density begin, and the largest, m.
     pub(super) knots: Vec<f64>,
@@ -135,8 +135,8 @@ fn named(law: &str, mean: f64, std: f64) -> String {
     )
 }
 
-/// The distributions by number and by mass from a density that counts by `by`; pieces as in [`Curve::from_density`].
-/// The mass of a particle is counted in that of the smallest.
+/// The distributions by number and by mass from a density that counts by `by`; pieces as in
+/// [`Curve::from_density`]. The mass of a particle is counted in that of the smallest.
 fn curves(knots: &[f64], by: Basis, density: impl Fn(usize, f64) -> f64) -> Option<(Curve, Curve)> {
     let smallest = knots[0];
     let volume = |d: f64| (d / smallest).powi(3);
@@ -169,7 +169,8 @@ fn limits(cut: Option<Cut>, default: [f64; 2]) -> Result<(f64, f64)> {
     }
 }
 
-/// `min`, `max` and those of `seeds` between them, ascending: no peak of the density hides inside a piece.
+/// `min`, `max` and those of `seeds` between them, ascending: no peak of the density hides inside a
+/// piece.
 fn seeded(min: f64, max: f64, seeds: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut knots: Vec<f64> = seeds
         .filter(|d| *d > min && *d < max)

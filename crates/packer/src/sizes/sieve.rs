@@ -1,9 +1,9 @@
 //! Sieve curves: a table of openings and cumulative passing.
 //!
 //! Two columns, separated by comma, semicolon or tab. The unit of the opening stands in the header
-//! (`opening_mm`, `Opening [mm]`) or at each value (`2 mm`). Passing is a percentage or a fraction: by the header
-//! (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or finest first; `#` begins a comment;
-//! with semicolons a decimal comma is understood.
+//! (`opening_mm`, `Opening [mm]`) or at each value (`2 mm`). Passing is a percentage or a fraction:
+//! by the header (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or
+//! finest first; `#` begins a comment; with semicolons a decimal comma is understood.
 
 use dem_io::units::{length_m, length_unit_m, significant};
 use dem_io::{Diagnostic, Result};
@@ -18,7 +18,7 @@ pub(super) struct SieveCurve {
     pub(super) openings_m: Vec<f64>,
     /// Share that passes, never falling, first 0 and last 1. As many as openings.
     pub(super) passing: Vec<f64>,
-    /// What was done to the curve, to be appended to a sentence. May be empty.
+    /// Changes to the curve, to be appended to a sentence. May be empty.
     pub(super) note: String,
 }
 

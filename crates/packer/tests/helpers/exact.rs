@@ -1,13 +1,15 @@
-//! What must hold exactly of every packing, judged without the packer's own geometry: distances to all triangles one by one
-//! (Ericson 2005, section 5.1.5), the inside by the winding number, a sum of solid angles (van Oosterom and Strackee 1983).
+//! What must hold exactly of every packing, judged without the packer's own geometry: distances to
+//! all triangles one by one (Ericson 2005, section 5.1.5), the inside by the winding number, a sum
+//! of solid angles (van Oosterom and Strackee 1983).
 
 use super::facets::Point;
 
 /// Beyond this share of a radius an overlap or a protrusion is no rounding.
 pub(crate) const EXACT: f64 = 1e-9;
 
-/// Checks a packing: no overlap of the reduced spheres, nothing outside. All lengths in the same unit; `unsure` is how far, in that
-/// unit, the facets may lie from the surface that was filled (0 unless the file had to be repaired).
+/// Checks a packing: no overlap of the reduced spheres, nothing outside. All lengths in the same
+/// unit; `unsure` is how far, in that unit, the facets may lie from the surface that was filled (0
+/// unless the file had to be repaired).
 pub(crate) fn assert_exact(
     what: &str,
     facets: &[[Point; 3]],
@@ -44,7 +46,8 @@ pub(crate) fn assert_exact(
     assert_eq!(outside, 0, "{what}: centres outside the solid");
 }
 
-/// Largest overlap of two spheres as a share of the smaller radius; negative if there is a gap everywhere.
+/// Largest overlap of two spheres as a share of the smaller radius; negative if there is a gap
+/// everywhere.
 pub(crate) fn largest_overlap(positions: &[Point], radii: &[f64]) -> f64 {
     let mut order: Vec<usize> = (0..positions.len()).collect();
     order.sort_by(|a, b| positions[*a][0].total_cmp(&positions[*b][0]));

@@ -1,4 +1,5 @@
-//! Solids as the facets of a binary STL file would hold them: bare triangles, coordinates that are exact in single precision.
+//! Solids as the facets of a binary STL file would hold them: bare triangles, coordinates that are
+//! exact in single precision.
 
 /// A point, in the unit of the file.
 pub(crate) type Point = [f64; 3];

@@ -69,7 +69,8 @@ pub(crate) fn torus(ring: f64, tube: f64, around_ring: usize, around_tube: usize
     rounded(facets)
 }
 
-/// An icosahedron whose facets were cut into four `times` over and whose corners were moved to `radius(direction)`.
+/// An icosahedron whose facets were cut into four `times` over and whose corners were moved to
+/// `radius(direction)`.
 pub(crate) fn icosphere(times: usize, radius: &dyn Fn(Point) -> f64) -> Facets {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut corners = Vec::new();

@@ -69,7 +69,8 @@ fn spheres_touch_three_others_or_two_and_the_wall() {
             overlap,
             0.0,
         );
-        // The first three of a front lean on each other only, and some fillers of voids stand where they have most room.
+        // The first three of a front lean on each other only, and some fillers of voids stand where
+        // they have most room.
         let free = 3 * packing.history.fronts + packing.history.loose_fillers;
         let found = unsupported(&facets, &packing, overlap);
         assert!(
@@ -116,7 +117,8 @@ fn no_void_is_left_that_takes_one_more_sphere_of_one_size() {
     let overlap = 0.2;
     let (facets, packing) = bare_front(&cuboid([10.0, 8.0, 7.0]), "1mm", overlap);
     assert_eq!(packing.history.voids_left, 0);
-    // Points on a fine lattice where a sphere would fit with a tenth to spare; a void that takes one more is there to be hit.
+    // Points on a fine lattice where a sphere would fit with a tenth to spare; a void that takes
+    // one more is there to be hit.
     let spheres = &packing.spheres;
     let radius = spheres.radii[0];
     let spacing = 0.1 * radius;

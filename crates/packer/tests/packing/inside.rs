@@ -1,4 +1,5 @@
-//! Which points lie inside, against winding numbers and closed forms, and where rays meet the surface.
+//! Which points lie inside, against winding numbers and closed forms, and where rays meet the
+//! surface.
 
 use crate::helpers::exact::{length, winding_number};
 use crate::helpers::facets::{Facets, Point, cuboid, rounded};
@@ -93,7 +94,8 @@ fn points_in_line_with_vertices_and_edges_are_decided() {
 
 #[test]
 fn rays_aimed_at_vertices_and_edges_are_decided() {
-    // The first directions that are tried, and how far the ray starts from the place that it is aimed at.
+    // The first directions that are tried, and how far the ray starts from the place that it is
+    // aimed at.
     let directions = [
         [0.577_215_66, 0.321_309_89, 0.751_988_48],
         [-0.414_213_56, 0.732_050_81, 0.540_963_27],

@@ -59,7 +59,8 @@ fn exact_on(kind: usize) {
                     "{what}: {d}"
                 );
             }
-            // However bad the shape, no packing of spheres is as thin as this unless a part was forgotten.
+            // However bad the shape, no packing of spheres is as thin as this unless a part was
+            // forgotten.
             let filled = spheres
                 .radii
                 .iter()
@@ -139,7 +140,8 @@ fn a_sphere_that_just_fits_is_placed() {
     );
 }
 
-/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the rounding of the last step.
+/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the
+/// rounding of the last step.
 #[test]
 fn exact_in_a_plate_one_sphere_thick() {
     for seed in 1..=10 {
@@ -161,7 +163,8 @@ fn exact_in_a_plate_one_sphere_thick() {
     }
 }
 
-/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than any sphere can.
+/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than
+/// any sphere can.
 #[test]
 fn exact_from_a_seed_almost_on_the_wall() {
     for settle in [Some(0.0), None] {

@@ -11,7 +11,8 @@ use dem_pack::internals::{
 };
 use std::f64::consts::PI;
 
-/// Radius in mm of the largest ball that is found; checked to be inside, and not beaten by random points.
+/// Radius in mm of the largest ball that is found; checked to be inside, and not beaten by random
+/// points.
 fn deepest_mm(facets: &Facets) -> f64 {
     let (surface, boundary) = surface_of(facets);
     let inner = inner_points(&boundary, &surface);
@@ -69,7 +70,8 @@ fn of_a_ball_its_centre() {
 
 #[test]
 fn of_a_torus_its_tube() {
-    // The tube is 5 where its facets touch the torus, and off by less than the chords' depths elsewhere.
+    // The tube is 5 where its facets touch the torus, and off by less than the chords' depths
+    // elsewhere.
     let (ring, tube) = (96.0, 48.0);
     let chords = 5.0 * (1.0 - (PI / tube).cos()) + 25.0 * (1.0 - (PI / ring).cos());
     let found = deepest_mm(&torus(20.0, 5.0, ring as usize, tube as usize));

@@ -1,4 +1,5 @@
-//! Settling: what overlaps is pushed apart and away from the wall, and where there is no room spheres are taken out.
+//! Settling: what overlaps is pushed apart and away from the wall, and where there is no room
+//! spheres are taken out.
 
 use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::{Facets, cuboid};
@@ -12,8 +13,8 @@ use dem_pack::internals::is_inside;
 use dem_pack::internals::{Settled, WhenJammed, minimise_overlaps};
 use std::f64::consts::PI;
 
-/// Spheres at random places inside until their reduced volumes are this share of the solid, none nearer to another or to the
-/// wall than the share `apart` of where they would touch.
+/// Spheres at random places inside until their reduced volumes are this share of the solid, none
+/// nearer to another or to the wall than the share `apart` of where they would touch.
 fn cloud(
     facets: &Facets,
     share: f64,

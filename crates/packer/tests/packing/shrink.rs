@@ -1,4 +1,5 @@
-//! How full a body is by default: as full as spheres in random order can be without jamming, in shapes of any curvature and thickness.
+//! How full a body is by default: as full as spheres in random order can be without jamming, in
+//! shapes of any curvature and thickness.
 
 use crate::helpers::facets::{Facets, cuboid};
 use crate::helpers::packing::settings;
@@ -23,7 +24,8 @@ fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) 
     filled / FillTarget::new(&surface, &settings.sizes, overlap).volume
 }
 
-/// A ball took out up to 4 % of its spheres and fell into pieces; shapes of ten spheres across were less dense than the bare front.
+/// A ball took out up to 4 % of its spheres and fell into pieces; shapes of ten spheres across were
+/// less dense than the bare front.
 #[test]
 fn bodies_are_as_full_as_can_be_without_jamming() {
     let ball = icosphere(3, &|_| 9.0);

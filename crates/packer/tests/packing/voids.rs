@@ -1,4 +1,5 @@
-//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes, without halos, grids or trees.
+//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes,
+//! without halos, grids or trees.
 
 use crate::helpers::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
 use crate::helpers::facets::{Facets, Point, cuboid, prism};
@@ -8,8 +9,8 @@ use dem_io::Surface;
 use dem_pack::{PackHistory, PackSettings, Packing, pack};
 use dem_pack::{Sizes, ks_distance_by_mass, ks_distance_by_number};
 
-/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
-/// the smallest is found, a narrower one need not be.
+/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes
+/// spheres larger by so much than the smallest is found, a narrower one need not be.
 const FINEST: f64 = 1e-3;
 
 struct Search<'a> {
@@ -21,7 +22,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// How far a point is from the nearest place where the smallest sphere would touch something; less than 0 where it would overlap.
+    /// How far a point is from the nearest place where the smallest sphere would touch something;
+    /// less than 0 where it would overlap.
     fn clearance(&self, p: &Point, facets: &[u32], balls: &[u32]) -> f64 {
         let to_wall = facets
             .iter()
@@ -223,7 +225,8 @@ fn no_void_is_left_that_takes_the_smallest_sphere() {
     }
 }
 
-/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make up for small spheres put into voids.
+/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make
+/// up for small spheres put into voids.
 #[test]
 fn a_ball_is_full_and_true_after_a_few_attempts() {
     let (surface, _) = surface_of(&icosphere(3, &|_| 10.0));

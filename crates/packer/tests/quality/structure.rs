@@ -91,7 +91,8 @@ fn chance_of_a_fabric_is_a_chance() {
     }
     // Binomial of 400 at 0.05: 20 with a standard deviation of 4.4.
     assert!((7..=34).contains(&rare), "{rare}");
-    // Of three eigenvalues the largest deviation is beyond two sigma in almost half of all isotropic samples.
+    // Of three eigenvalues the largest deviation is beyond two sigma in almost half of all
+    // isotropic samples.
     assert!((180..=250).contains(&within), "{within}");
 }
 

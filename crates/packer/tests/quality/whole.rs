@@ -1,4 +1,5 @@
-//! The report as a whole: the same for any number of threads, its text and JSON, and the smallest packings.
+//! The report as a whole: the same for any number of threads, its text and JSON, and the smallest
+//! packings.
 
 use super::{Case, close};
 use crate::helpers::lattice::cubic;

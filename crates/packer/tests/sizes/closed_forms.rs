@@ -4,8 +4,8 @@ use super::{Below, laws, normal_below};
 use dem_pack::{Basis, Sizes};
 use std::f64::consts::PI;
 
-/// The function G(d) = integral of x^power dF from F alone, integrated by parts on a fine grid with Richardson
-/// extrapolation of the trapezoidal rule: d^p F(d) - a^p F(a) - integral of p x^(p-1) F.
+/// The function G(d) = integral of x^power dF from F alone, integrated by parts on a fine grid with
+/// Richardson extrapolation of the trapezoidal rule: d^p F(d) - a^p F(a) - integral of p x^(p-1) F.
 fn moment_below(below: &Below, power: i32, from: f64, to: f64) -> f64 {
     let integrand = |x: f64| f64::from(power) * x.powi(power - 1) * below(x);
     let trapezoid = |n: usize| {
@@ -104,7 +104,8 @@ fn uniform_by_mass_has_its_closed_form() {
 
 #[test]
 fn means_of_cut_distributions() {
-    // Symmetric cut: the mean stays. Lognormal wide open: mean and third moment of the whole, exp(3 mu + 9/2 sigma^2).
+    // Symmetric cut: the mean stays. Lognormal wide open: mean and third moment of the whole, exp(3
+    // mu + 9/2 sigma^2).
     let normal = Sizes::parse("normal:3mm,0.5mm,2mm..4mm", Basis::Number).unwrap();
     assert!((normal.mean_m() - 3e-3).abs() < 1e-11);
     let lognormal = Sizes::parse("lognormal:3mm,0.6mm,0.5mm..20mm", Basis::Number).unwrap();

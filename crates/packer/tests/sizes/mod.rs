@@ -1,4 +1,5 @@
-//! Size distributions against closed forms that are computed here, independently of the program's tables.
+//! Size distributions against closed forms that are computed here, independently of the program's
+//! tables.
 
 mod closed_forms;
 mod draws;
@@ -7,7 +8,8 @@ mod parsing;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Error function by its Taylor series up to 3 (terms stay below 1e3, so 1e-13 is kept), beyond by the continued fraction.
+/// Error function by its Taylor series up to 3 (terms stay below 1e3, so 1e-13 is kept), beyond by
+/// the continued fraction.
 fn erf(x: f64) -> f64 {
     if x.abs() > 3.0 {
         return x.signum() * (1.0 - erfc_fraction(x.abs()));

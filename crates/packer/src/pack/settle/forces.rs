@@ -7,18 +7,21 @@ use pulp::NullaryFnOnce;
 
 /// Relative surplus of the radii while settling.
 pub(super) const MARGIN: f64 = 5e-5;
-/// At its true size no sphere may stand out of the wall by more than this part of its radius when settling ends. Two spheres overlap by less
-/// than the surplus of one of them then, so not at all at their true sizes.
+/// At its true size no sphere may stand out of the wall by more than this part of its radius when
+/// settling ends. Two spheres overlap by less than the surplus of one of them then, so not at all
+/// at their true sizes.
 const STANDS_OUT: f64 = 1e-10;
-/// A centre that is nearer to the wall than this share of its radius may have been pushed through it.
+/// A centre that is nearer to the wall than this share of its radius may have been pushed through
+/// it.
 const BEYOND: f64 = 0.9;
 /// A coordinate far from everything, in local units.
 const FAR: f64 = 1e6;
 /// Neighbours handled at once.
 const LANES: usize = 4;
 
-/// By how much a sphere of this radius, `MARGIN` larger than true, stands out of a wall at this distance from its centre, as a share of the radius.
-/// Not at all if it fits at its true size: a sphere between two walls may have no room for the surplus.
+/// By how much a sphere of this radius, `MARGIN` larger than true, stands out of a wall at this
+/// distance from its centre, as a share of the radius. Not at all if it fits at its true size: a
+/// sphere between two walls may have no room for the surplus.
 pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     let stands_out = radius / (1.0 + MARGIN) * (1.0 - STANDS_OUT) > distance;
     if stands_out {
@@ -28,7 +31,8 @@ pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     }
 }
 
-/// The forces on the spheres from number `first` on, one for each of `force`: a call that is compiled for AVX2 as well.
+/// The forces on the spheres from number `first` on, one for each of `force`: a call that is
+/// compiled for AVX2 as well.
 pub(super) struct ForcesOn<'a> {
     pub(super) force: &'a mut [[f64; 4]],
     pub(super) first: usize,
@@ -101,7 +105,8 @@ impl NullaryFnOnce for ForcesOn<'_> {
     }
 }
 
-/// Forces and largest overlaps of the neighbours of one sphere, in `LANES` sums that are added up at the end.
+/// Forces and largest overlaps of the neighbours of one sphere, in `LANES` sums that are added up
+/// at the end.
 #[derive(Default)]
 struct ForceLanes {
     force: [[f64; LANES]; 3],
@@ -109,7 +114,8 @@ struct ForceLanes {
 }
 
 impl ForceLanes {
-    /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres touch changes too often to be predicted.
+    /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres
+    /// touch changes too often to be predicted.
     #[expect(
         clippy::needless_range_loop,
         reason = "several arrays side by side, lane by lane"

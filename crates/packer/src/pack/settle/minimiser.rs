@@ -14,21 +14,25 @@ const SKIN: f64 = 0.8;
 /// Fraction of the velocity that damping takes in step n: `DAMPING` / n, between the two limits.
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
-/// Velocity that a unit of force gives in a step to a sphere of few neighbours; with half as much again the dynamics becomes unstable.
+/// Velocity that a unit of force gives in a step to a sphere of few neighbours; with half as much
+/// again the dynamics becomes unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
-/// So many listed neighbours are few: 6 of them touch. With more the response is less in proportion.
+/// So many listed neighbours are few: 6 of them touch. With more the response is less in
+/// proportion.
 const FEW_NEIGHBOURS: f64 = 10.0;
-/// No sphere moves farther in a step, in mean radii: centres that begin almost on each other are not shot through a wall.
+/// No sphere moves farther in a step, in mean radii: centres that begin almost on each other are
+/// not shot through a wall.
 const LARGEST_MOVE: f64 = 0.2;
 
 /// Steps before spheres are taken out, at first and then between one time and the next.
 const PATIENCE: [usize; 2] = [1500, 200];
-/// Fraction of the spheres taken out the first time; each further time twice as many, up to the second fraction.
+/// Fraction of the spheres taken out the first time; each further time twice as many, up to the
+/// second fraction.
 const TAKEN_OUT: [f64; 2] = [0.001, 0.016];
 /// After so many steps settling is given up.
 const MOST_STEPS: usize = 60_000;
 
-/// What is to be done with spheres that are jammed.
+/// Treatment of spheres that are jammed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WhenJammed {
     /// A few are taken out, until the rest has room.
@@ -37,14 +41,14 @@ pub enum WhenJammed {
     Stop,
 }
 
-/// How a settling run ended.
+/// The end of a settling run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Settled {
     /// Steps of the minimiser.
     pub steps: usize,
     /// Spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// Whether it was stopped because spheres were jammed: they still overlap.
+    /// True if it was stopped because spheres were jammed: they still overlap.
     pub is_stopped: bool,
 }
 
@@ -54,7 +58,8 @@ struct State<'a> {
     balls: Vec<ReducedSphere>,
     /// Radius over reduced radius: 1 + overlap.
     enlarge: f64,
-    /// x, y, z and 0, as `force`: four numbers each, like the spheres, so that all four are handled at once.
+    /// x, y, z and 0, as `force`: four numbers each, like the spheres, so that all four are handled
+    /// at once.
     velocity: Vec<[f64; 4]>,
     force: Vec<[f64; 4]>,
     /// Velocity gained per step and unit of force: less for spheres with many neighbours.
@@ -66,8 +71,9 @@ struct State<'a> {
     largest_move: f64,
 }
 
-/// Moves spheres (reduced radii at full size) until none overlaps another or the wall. Where they are jammed, some are taken out, if that is wanted:
-/// of the pairs that overlap most the one with the higher index, which favours no size, and spheres that overlap the wall as much.
+/// Moves spheres (reduced radii at full size) until none overlaps another or the wall. Where they
+/// are jammed, some are taken out, if that is wanted: of the pairs that overlap most the one with
+/// the higher index, which favours no size, and spheres that overlap the wall as much.
 ///
 /// `progress` is told the fraction of the work done.
 ///
@@ -165,7 +171,8 @@ impl<'a> State<'a> {
         state
     }
 
-    /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns how many.
+    /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns
+    /// how many.
     fn take_out_jammed(&mut self, fraction: f64) -> usize {
         let mut worst: Vec<(f64, usize)> = (0..self.balls.len())
             .into_par_iter()
@@ -202,7 +209,8 @@ impl<'a> State<'a> {
         worst.len()
     }
 
-    /// Lists, for each sphere, the others that could come to touch it before the lists are made again.
+    /// Lists, for each sphere, the others that could come to touch it before the lists are made
+    /// again.
     fn list_neighbours(&mut self) {
         let balls = &self.balls;
         // The old lists make room for the new ones.
@@ -237,7 +245,8 @@ impl<'a> State<'a> {
             .reduce(|| 0.0, f64::max)
     }
 
-    /// v = (1 - damping) v + response F; x += v. Returns whether a sphere is now farther than half the skin from where it was listed.
+    /// v = (1 - damping) v + response F; x += v. Returns whether a sphere is now farther than half
+    /// the skin from where it was listed.
     fn accelerate_and_move(&mut self, damping: f64) -> bool {
         let keep = 1.0 - damping;
         let most = self.largest_move;

@@ -1,4 +1,5 @@
-//! What each sphere could come to touch: other spheres and triangles of the wall, listed from a grid of cells and from the tree of the facets.
+//! Neighbour lists (Verlet lists): the other spheres and triangles of the wall that each sphere
+//! could come to touch, listed from a grid of cells and from the tree of the facets.
 
 use crate::geometry::boundary::Boundary;
 use crate::grid::Lattice;
@@ -10,7 +11,8 @@ const MOST_CELLS_PER_SPHERE: f64 = 8.0;
 /// Spheres handled by one task.
 pub(super) const CHUNK: usize = 1024;
 
-/// What each sphere could come to touch before the lists are made again: other spheres, triangles of the wall.
+/// The other spheres and the triangles of the wall that each sphere could come to touch before the
+/// lists are made again.
 #[derive(Default)]
 pub(super) struct NeighbourLists {
     pub(super) spheres: Lists,
@@ -18,8 +20,9 @@ pub(super) struct NeighbourLists {
 }
 
 impl NeighbourLists {
-    /// Lists, for each of `balls`, the spheres less than `skin` (local units) away from it and the triangles less than half that away from its
-    /// radius times `enlarge`: nothing else can touch it before one sphere has moved by half the skin.
+    /// Lists, for each of `balls`, the spheres less than `skin` (local units) away from it and the
+    /// triangles less than half that away from its radius times `enlarge`: nothing else can touch
+    /// it before one sphere has moved by half the skin.
     pub(super) fn new(
         boundary: &Boundary,
         balls: &[ReducedSphere],
@@ -27,7 +30,8 @@ impl NeighbourLists {
         skin: f64,
     ) -> Self {
         let largest = balls.iter().map(|b| b[3]).fold(0.0, f64::max);
-        // Cells of half the largest reach: nearer to a ball in shape than 3 x 3 x 3 cells of all of it.
+        // Cells of half the largest reach: nearer to a ball in shape than 3 x 3 x 3 cells of all of
+        // it.
         let cells = Cells::new(balls, largest + 0.5 * skin);
         let spheres = lists_of(balls, |i, ball, list| {
             let reach = ball[3] + largest + skin;
@@ -57,7 +61,7 @@ impl NeighbourLists {
 #[derive(Default)]
 pub(super) struct Lists {
     all: Vec<u32>,
-    /// Where each begins, and the last ends. Spheres + 1.
+    /// Begin of each, and end of the last. Spheres + 1.
     first: Vec<u32>,
 }
 
@@ -127,7 +131,8 @@ struct Cells {
 impl Cells {
     fn new(balls: &[ReducedSphere], cell: f64) -> Self {
         let (low, high) = bounds(balls);
-        // Balls that fill little of their box would have too many cells: fewer, larger ones hold them as well.
+        // Balls that fill little of their box would have too many cells: fewer, larger ones hold
+        // them as well.
         let most = MOST_CELLS_PER_SPHERE * (balls.len() as f64 + 1.0);
         let volume: f64 = (0..3).map(|k| (high[k] - low[k]).max(cell)).product();
         let cell = cell.max((volume / most).cbrt());
@@ -159,7 +164,8 @@ impl Cells {
         cells
     }
 
-    /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of `ball`, and their numbers.
+    /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of
+    /// `ball`, and their numbers.
     fn near(
         &self,
         ball: &ReducedSphere,
