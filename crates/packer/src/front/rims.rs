@@ -186,8 +186,13 @@ impl Rim {
 #[inline(always)]
 fn position(x: f32, y: f32) -> f32 {
     let sum = x.abs() + y.abs();
-    let share = x / if sum > 1e-30 { sum } else { 1e-30 };
-    0.25 * SECTORS * if y < 0.0 { 3.0 + share } else { 1.0 - share }
+    let fraction = x / if sum > 1e-30 { sum } else { 1e-30 };
+    0.25 * SECTORS
+        * if y < 0.0 {
+            3.0 + fraction
+        } else {
+            1.0 - fraction
+        }
 }
 
 /// The integer nearest to x, 0 <= x < 2^22: in single precision the last bit of x + 2^23 is worth

@@ -35,8 +35,8 @@ struct Plane {
     along_v: Vector3,
 }
 
-/// Triangles whose height is a smaller share of their longest edge have no plane: its normal would
-/// be off by more than 1e-10.
+/// Triangles whose height is a smaller fraction of their longest edge have no plane: its normal
+/// would be off by more than 1e-10.
 const THINNEST: f64 = 1e-6;
 
 impl Plane {

@@ -248,7 +248,7 @@ impl<'a> DepthMap<'a> {
             _ => {}
         }
         let within = [0, 1, 2].map(|k| point[k] - place[k] * self.edge);
-        let share = within.map(|w| w / self.edge);
+        let fraction = within.map(|w| w / self.edge);
         let point = Vector3::from(point);
         let mut squared = within.iter().map(|w| w * w).sum::<f64>();
         let mut most = f64::INFINITY;
@@ -258,7 +258,13 @@ impl<'a> DepthMap<'a> {
             };
             let far = [i & 1 == 1, i >> 1 & 1 == 1, i >> 2 == 1];
             let weight: f64 = (0..3)
-                .map(|k| if far[k] { share[k] } else { 1.0 - share[k] })
+                .map(|k| {
+                    if far[k] {
+                        fraction[k]
+                    } else {
+                        1.0 - fraction[k]
+                    }
+                })
                 .product();
             let from_first = far.iter().filter(|f| **f).count() as f64 * self.edge * self.edge;
             squared += weight * (corner.squared - from_first);

@@ -4,7 +4,7 @@ use crate::bonds::CrossesSurface;
 use crate::sizes::Sizes;
 use crate::spheres::Spheres;
 
-/// Contacts are counted up to a gap of this share of the smaller radius: settled spheres keep
+/// Contacts are counted up to a gap of this fraction of the smaller radius: settled spheres keep
 /// moving a little until none overlaps, and so stay apart by a few thousandths, seldom more than
 /// this.
 pub const DEFAULT_GAP_LIMIT: f64 = 0.02;
@@ -47,7 +47,7 @@ pub struct BondedPacking<'a> {
     pub distance_bounds: &'a (dyn Fn([f64; 3]) -> [f64; 2] + Sync),
     /// True if surface lies between two spheres; asked only to advise a bonding radius.
     pub crosses_surface: CrossesSurface<'a>,
-    /// Largest gap of a contact, as a share of the smaller radius: [`DEFAULT_GAP_LIMIT`].
+    /// Largest gap of a contact, as a fraction of the smaller radius: [`DEFAULT_GAP_LIMIT`].
     pub gap_limit: f64,
     /// Separate parts of the shape: a body in as many pieces is whole.
     pub parts: usize,

@@ -11,7 +11,7 @@ const CONTACTS_THAT_HOLD: u32 = 4;
 /// Contacts of the spheres reduced to r_gen, and of the true ones with the wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contacts {
-    /// Largest gap that counts as a contact, as a share of the smaller radius.
+    /// Largest gap that counts as a contact, as a fraction of the smaller radius.
     pub gap_limit: f64,
     /// Mean number of spheres that a sphere touches.
     pub per_particle: f64,
@@ -19,9 +19,10 @@ pub struct Contacts {
     pub at_wall: usize,
     /// Fraction of the particles with fewer than 4 contacts; the wall counts as one.
     pub rattlers: f64,
-    /// Largest overlap of two spheres in r_gen, as a share of the smaller r_gen. 0 if none overlap.
+    /// Largest overlap of two spheres in r_gen, as a fraction of the smaller r_gen. 0 if none
+    /// overlap.
     pub largest_overlap: f64,
-    /// Largest way by which a sphere stands out of the wall, as a share of its radius. 0 if none
+    /// Largest way by which a sphere stands out of the wall, as a fraction of its radius. 0 if none
     /// does, 1 if a centre is outside.
     pub largest_protrusion: f64,
 }

@@ -2,9 +2,9 @@
 //! cover.
 //!
 //! The standard error comes from the differences of the two random points of a cell: for a region
-//! with indicator r, cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r
-//! at one - (c - f) r at the other)^2)/sum(r). Everything is counted in integers, so that the order
-//! of counting does not matter.
+//! with indicator r, cover c and fraction f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c -
+//! f) r at one - (c - f) r at the other)^2)/sum(r). Everything is counted in integers, so that the
+//! order of counting does not matter.
 
 use super::bonded_packing::BondedPacking;
 use super::depth::DepthQuery;
@@ -88,7 +88,7 @@ impl Tally {
         self.region_region += other.region_region;
     }
 
-    fn share(&self) -> Option<Fraction> {
+    fn fraction(&self) -> Option<Fraction> {
         if self.points < FEWEST_POINTS {
             return None;
         }
@@ -153,17 +153,17 @@ pub(super) fn sample(packing: &BondedPacking, interior_depth: f64, mean_diameter
         let layer = |(i, t): (usize, &Tally)| Layer {
             from_m: place(i),
             to_m: place(i + 1),
-            density: t.share(),
+            density: t.fraction(),
         };
         tallies.iter().enumerate().map(layer).collect()
     };
     Sampled {
-        union_density: whole.union.share().unwrap_or(Fraction {
+        union_density: whole.union.fraction().unwrap_or(Fraction {
             value: 0.0,
             error: 1.0,
         }),
-        interior_union_density: interior.union.share(),
-        interior_generating_density: interior.generating.share(),
+        interior_union_density: interior.union.fraction(),
+        interior_generating_density: interior.generating.fraction(),
         wall_profile: profile(&whole.layers, layer),
         slab_profile: profile(&interior.slabs, slab),
     }
@@ -231,12 +231,12 @@ fn interior(
     if whole.interior == 0 {
         return Interior::default();
     }
-    let share = whole.interior as f64 / whole.union.points as f64;
+    let fraction = whole.interior as f64 / whole.union.points as f64;
     let spheres = packing.spheres.radii.len() as f64;
     let cells = Cells::new(
         &whole.interior_box,
-        share * packing.shape_volume,
-        points_for(share * spheres),
+        fraction * packing.shape_volume,
+        points_for(fraction * spheres),
     );
     let question = DepthQuery {
         floor: depth,

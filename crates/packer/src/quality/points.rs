@@ -96,9 +96,9 @@ impl Cells {
         let mut points = [[0.0; 3]; 2];
         for k in 0..3 {
             let random = mixed(3 * index + k as u64);
-            let shares = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
-            for (point, share) in points.iter_mut().zip(shares) {
-                point[k] = corner[k] + (share + 0.5) / 4_294_967_296.0 * self.step[k];
+            let fractions = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
+            for (point, fraction) in points.iter_mut().zip(fractions) {
+                point[k] = corner[k] + (fraction + 0.5) / 4_294_967_296.0 * self.step[k];
             }
         }
         points

@@ -29,7 +29,7 @@ const FINEST_EDGE: f64 = 0.25;
 /// little of it.
 const MOST_POINTS: f64 = 1.5e5;
 const MOST_POINTS_IN_BOX: f64 = 1e6;
-/// A set of fewer particles, or of a smaller share of them, is a crumb.
+/// A set of fewer particles, or of a smaller fraction of them, is a crumb.
 const FEWEST_PARTICLES: usize = 20;
 const SMALLEST_PART: f64 = 0.01;
 

@@ -8,7 +8,7 @@ use dem_io::units::{show_length, significant};
 const ENOUGH_ACROSS: f64 = 10.0;
 /// A body with fewer bonds per particle is hardly rigid.
 pub(super) const ENOUGH_BONDS: f64 = 4.0;
-/// Overlaps (in r_gen) and protrusions beyond this share of a radius are not rounding.
+/// Overlaps (in r_gen) and protrusions beyond this fraction of a radius are not rounding.
 const EXACT: f64 = 1e-9;
 /// Sizes are called wrong beyond so many times the statistical limit: chance alone goes beyond once
 /// in 2,000 packings, beyond the limit itself once in 20.

@@ -8,7 +8,7 @@ use dem_io::{Diagnostic, Result};
 
 /// The largest size may be so many times the smallest.
 pub(crate) const LARGEST_SIZE_RATIO: f64 = 1000.0;
-/// Less than this share of a distribution between MIN and MAX is taken for a mistake.
+/// Less than this fraction of a distribution between MIN and MAX is taken for a mistake.
 const SMALLEST_FRACTION_KEPT: f64 = 0.01;
 
 /// A distribution of particle diameters between two limits, in metres.
@@ -85,8 +85,8 @@ impl Sizes {
         self.by
     }
 
-    /// The diameter in metres that the share `u` of the particles lies below: with `u` uniform in
-    /// [0, 1), a diameter drawn at random.
+    /// The diameter in metres that the fraction `u` of the particles lies below: with `u` uniform
+    /// in [0, 1), a diameter drawn at random.
     pub fn quantile_by_number(&self, u: f64) -> f64 {
         self.number.quantile(u)
     }

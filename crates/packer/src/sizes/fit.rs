@@ -27,15 +27,15 @@ impl Fit {
     }
 }
 
-/// Distance between the shares by number of these diameters (m) and of `sizes`. No diameters:
+/// Distance between the fractions by number of these diameters (m) and of `sizes`. No diameters:
 /// distance 0.
 pub fn ks_distance_by_number(diameters_m: &[f64], sizes: &Sizes) -> Fit {
     distance(diameters_m, sizes, |_| 1.0, |d| sizes.cdf_by_number(d))
 }
 
-/// Distance between the shares by mass of these diameters (m) and of `sizes`: each particle weighs
-/// the third power of its diameter. The limit takes the effective number of particles for a plain
-/// sample, a good approximation.
+/// Distance between the fractions by mass of these diameters (m) and of `sizes`: each particle
+/// weighs the third power of its diameter. The limit takes the effective number of particles for a
+/// plain sample, a good approximation.
 pub fn ks_distance_by_mass(diameters_m: &[f64], sizes: &Sizes) -> Fit {
     let largest = sizes.max_m();
     distance(
@@ -64,11 +64,11 @@ fn distance(
     let mut distance = 0.0_f64;
     let mut below = 0.0;
     for diameter in &sorted {
-        let share = weight(*diameter) / total;
+        let fraction = weight(*diameter) / total;
         if sizes.is_one_size() {
-            // A step: what counts is the share that is off it, beyond rounding.
+            // A step: what counts is the fraction that is off it, beyond rounding.
             distance += if (diameter / sizes.min_m() - 1.0).abs() > 1e-9 {
-                share
+                fraction
             } else {
                 0.0
             };
@@ -76,9 +76,9 @@ fn distance(
             let wanted = cdf(*diameter);
             distance = distance
                 .max((wanted - below).abs())
-                .max((wanted - below - share).abs());
+                .max((wanted - below - fraction).abs());
         }
-        below += share;
+        below += fraction;
     }
     let limit_95 = if effective_samples > 0.0 {
         LIMIT_95 / effective_samples.sqrt()

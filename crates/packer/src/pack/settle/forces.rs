@@ -11,8 +11,8 @@ pub(super) const MARGIN: f64 = 5e-5;
 /// settling ends. Two spheres overlap by less than the surplus of one of them then, so not at all
 /// at their true sizes.
 const STANDS_OUT: f64 = 1e-10;
-/// A centre that is nearer to the wall than this share of its radius may have been pushed through
-/// it.
+/// A centre that is nearer to the wall than this fraction of its radius may have been pushed
+/// through it.
 const BEYOND: f64 = 0.9;
 /// A coordinate far from everything, in local units.
 const FAR: f64 = 1e6;
@@ -20,7 +20,7 @@ const FAR: f64 = 1e6;
 const LANES: usize = 4;
 
 /// By how much a sphere of this radius, `MARGIN` larger than true, stands out of a wall at this
-/// distance from its centre, as a share of the radius. Not at all if it fits at its true size: a
+/// distance from its centre, as a fraction of the radius. Not at all if it fits at its true size: a
 /// sphere between two walls may have no room for the surplus.
 pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     let stands_out = radius / (1.0 + MARGIN) * (1.0 - STANDS_OUT) > distance;
