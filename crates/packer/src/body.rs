@@ -9,7 +9,7 @@ use crate::pack::{
 };
 use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
 use crate::sizes::Sizes;
-use crate::spheres::Vector3;
+use crate::spheres::{Spheres, Vector3};
 use dem_io::body::About;
 use dem_io::body::mass::{BodyMass, of_body, of_named_density, volume_m3};
 use dem_io::units::significant;
@@ -113,9 +113,7 @@ pub fn make_body(
     let started = Instant::now();
     progress("report", 0.0)?;
     let spheres = &packed.packing.spheres;
-    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
-    let (reach, edge) = (depth_needed(spheres), 4.0 * mean_radius);
-    let map = DepthMap::new(surface, &solid.boundary, reach, edge);
+    let map = depth_map(&solid, spheres);
     let wall_distance: Vec<f64> = spheres
         .positions
         .par_iter()
@@ -174,6 +172,13 @@ pub fn make_body(
         seconds,
     };
     Ok((body, report))
+}
+
+/// Distances to the wall as far as the report needs them, in cells two mean diameters wide.
+fn depth_map<'a>(solid: &'a Solid, spheres: &Spheres) -> DepthMap<'a> {
+    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
+    let reach = depth_needed(spheres);
+    DepthMap::new(solid.surface, &solid.boundary, reach, 4.0 * mean_radius)
 }
 
 /// Spheres, and how they were packed.

@@ -1,13 +1,13 @@
 //! First act: the fraction by which the front runs at smaller radii, so that it leaves as much room
 //! as settling needs and no more.
 //!
-//! Far from walls, spheres of the sizes used here jam, settled in random order, at 0.630 + 0.066 s
-//! + 0.086 k s^2 of the volume, with the standard deviation over mean s and the skewness k of their
-//! diameters: the form of Desmond and Weeks 2014 (Phys. Rev. E 90, 022204), whose 0.634 for one
-//! size this settling does not quite reach. Walls take 0.080 of it for each mean diameter times
-//! surface over volume. That was found with bars, balls, discs, rocks and tori, 6 to 40 diameters
-//! thick, of one size, uniform and lognormal diameters: it tells jamming bodies from others within
-//! 0.5 %.
+//! Far from walls, spheres of the sizes used here jam, settled in random order, at
+//! `0.630 + 0.066 s + 0.086 k s^2` of the volume, with the standard deviation over mean s and the
+//! skewness k of their diameters: the form of Desmond and Weeks 2014 (Phys. Rev. E 90, 022204), whose
+//! 0.634 for one size this settling does not quite reach. Walls take 0.080 of it for each mean
+//! diameter times surface over volume. That was found with bars, balls, discs, rocks and tori, 6 to
+//! 40 diameters thick, of one size, uniform and lognormal diameters: it tells jamming bodies from
+//! others within 0.5 %.
 
 use super::settings::PackSettings;
 use crate::sizes::Sizes;

@@ -66,6 +66,13 @@ pub(super) fn warnings(
             significant(report.bonds_per_particle, 3)
         ));
     }
+    warnings.extend(statistical_warnings(report));
+    warnings
+}
+
+/// Warnings about what chance does not explain: sizes, and directions of bonds.
+fn statistical_warnings(report: &Report) -> Vec<String> {
+    let mut warnings = Vec::new();
     for (fit, by) in [
         (report.sizes_by_number, "number"),
         (report.sizes_by_mass, "mass"),

@@ -163,12 +163,9 @@ fn header_unit_m(header: &[String]) -> Option<f64> {
         .find_map(|word| length_unit_m(word).ok())
 }
 
-/// Checks the rows (passing as fractions) and stretches them to the whole.
-fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
-    if rows[0].opening_m > rows[1].opening_m {
-        rows.reverse();
-    }
-    for row in &rows {
+/// Refuses passing outside 0 to 1, and a curve that does not rise.
+fn check_rising(rows: &[Row]) -> Result<()> {
+    for row in rows {
         if !(0.0..=1.0).contains(&row.passing) {
             let percent = significant(100.0 * row.passing, 6);
             return Err(at(
@@ -199,6 +196,11 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
             ));
         }
     }
+    Ok(())
+}
+
+/// Refuses a curve that begins too far above 0 or ends too far below 1.
+fn check_ends(rows: &[Row]) -> Result<()> {
     let (first, last) = (rows[0].passing, rows[rows.len() - 1].passing);
     if first > LARGEST_GAP {
         return Err(at(
@@ -222,6 +224,17 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
             "add the size that everything passes, with 100 %",
         ));
     }
+    Ok(())
+}
+
+/// Checks the rows (passing as fractions) and stretches them to the whole.
+fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
+    if rows[0].opening_m > rows[1].opening_m {
+        rows.reverse();
+    }
+    check_rising(&rows)?;
+    check_ends(&rows)?;
+    let (first, last) = (rows[0].passing, rows[rows.len() - 1].passing);
     let note = if first > 0.0 || last < 1.0 {
         format!(
             "; {} % below the smallest and {} % above the largest opening left out",
