@@ -88,7 +88,7 @@ impl Neighbours {
     }
 
     /// Brings the nearest to the front: their caps are the largest.
-    pub fn sort(&mut self) {
+    pub(crate) fn sort(&mut self) {
         self.order.sort_unstable();
     }
 }
@@ -122,7 +122,7 @@ impl Halo {
 
     /// Adds what flat walls cut out: direction and distance from the halo's centre less the radius
     /// of the new sphere.
-    pub fn add_walls(&mut self, walls: impl Iterator<Item = (Vector3, f64)>) {
+    pub(crate) fn add_walls(&mut self, walls: impl Iterator<Item = (Vector3, f64)>) {
         let radius = self.radius;
         let caps = walls.map(|(axis, clearance)| {
             let rim = clearance / radius;
@@ -144,7 +144,7 @@ impl Halo {
     }
 
     /// True if no neighbour's cap covers the place.
-    pub fn is_free(&self, p: &Vector3) -> bool {
+    pub(crate) fn is_free(&self, p: &Vector3) -> bool {
         is_free(&self.caps, p)
     }
 
@@ -200,7 +200,7 @@ impl Halo {
 
     /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if
     /// there is one.
-    pub fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
+    pub(crate) fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
         Arch::new().dispatch(
             #[inline(always)]
             || {

@@ -6,7 +6,7 @@ use crate::spheres::Vector3;
 
 /// The part of a patch, taken as a ball around its middle, that the wall leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Wall {
+pub(crate) enum Wall {
     /// Nothing of it.
     Covers,
     /// Its middle and perhaps more.
@@ -26,7 +26,7 @@ type Patch = [Vector3; 3];
 impl Halo {
     /// A place that no neighbour's cap and no wall covers, if there is one. `wall` says what the
     /// wall leaves of a ball (centre and radius in local units).
-    pub fn free_place(&self, wall: impl Fn(&Vector3, f64) -> Wall) -> Option<Vector3> {
+    pub(crate) fn free_place(&self, wall: impl Fn(&Vector3, f64) -> Wall) -> Option<Vector3> {
         let mut patches: Vec<Patch> = octahedron().collect();
         let mut looked_at = 0;
         while let Some(patch) = patches.pop() {

@@ -122,7 +122,7 @@ impl Boundary {
     }
 
     /// As [`Boundary::nearest`], with the triangle of the wall that the nearest point lies on.
-    pub fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
+    pub(crate) fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
         self.wall().nearest(point, cut_off, |triangle, closest| {
             self.nearest_below(triangle, point, closest)
         })
@@ -131,7 +131,7 @@ impl Boundary {
     /// True if a point is behind the triangle of the wall that is nearest to it, on the inner side:
     /// then it is inside. None where that is not sure: the nearest point is at an edge, or the
     /// point on the wall itself.
-    pub fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
+    pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
         let plane = self.planes.get(nearest_triangle as usize)?;
         let from_corner = point - plane.corner;
@@ -174,7 +174,7 @@ impl Boundary {
     }
 
     /// The triangles of the wall whose boxes a ray passes, by their corners.
-    pub fn walls_on_ray(
+    pub(crate) fn walls_on_ray(
         &self,
         origin: &Vector3,
         direction: &Vector3,
@@ -187,7 +187,12 @@ impl Boundary {
     /// directions to them and distances, if the solid lies behind each of these planes as far as
     /// the triangles go: a ball within reach then clears the wall where it clears the planes. False
     /// where the wall is curved or hollow.
-    pub fn flat_walls(&self, point: &Vector3, reach: f64, found: &mut Vec<(Vector3, f64)>) -> bool {
+    pub(crate) fn flat_walls(
+        &self,
+        point: &Vector3,
+        reach: f64,
+        found: &mut Vec<(Vector3, f64)>,
+    ) -> bool {
         const MOST: usize = 24;
         const SAME_PLANE: f64 = 1e-11;
         found.clear();
@@ -261,7 +266,7 @@ impl Boundary {
     }
 
     /// The nearest point of one triangle of the wall.
-    pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
+    pub(crate) fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
         let plane = &self.planes[triangle as usize];
         if let Some(height) = plane.height_over_triangle(point) {
             return Nearest {
