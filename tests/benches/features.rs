@@ -11,9 +11,7 @@ use std::time::Instant;
 
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::make::{MakeSettings, make_body};
-use dem_pack::pack::PackSettings;
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::bonds::BONDS;
 use dem_run::stages::breakage::{FAILURE, RATES, SCATTER};
@@ -253,9 +251,9 @@ fn packed(diameters: &str) -> Body {
         fill_holes: false,
     };
     let surface = surface_from_stl(&bytes, "", reading).expect("the shape is sound");
-    let settings = MakeSettings {
+    let settings = BodySettings {
         packing: PackSettings {
-            sizes: Sizes::parse(diameters, By::Number).expect("good diameters"),
+            sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),
             overlap: 0.25,
             seed: 1,
             settle: None,

@@ -15,9 +15,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::make::{MakeSettings, make_body};
-use dem_pack::pack::PackSettings;
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::state::State;
@@ -60,9 +58,9 @@ fn packed(diameters: &str) -> Body {
         fill_holes: false,
     };
     let surface = surface_from_stl(&bytes, "", reading).expect("the shape is sound");
-    let settings = MakeSettings {
+    let settings = BodySettings {
         packing: PackSettings {
-            sizes: Sizes::parse(diameters, By::Number).expect("good diameters"),
+            sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),
             overlap: 0.0,
             seed: 1,
             settle: Some(0.0),

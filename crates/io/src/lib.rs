@@ -7,6 +7,7 @@
 pub mod body;
 pub mod checkpoint;
 pub mod diagnostic;
+pub mod disjoint;
 pub mod hash;
 pub mod program;
 pub mod results;

@@ -1,8 +1,9 @@
-//! The stages of dem-pack apart, in the bending sample with 14,000 and 87,000 spheres, on one thread and on all:
-//! `cargo bench -p dem-pack`.
+//! The stages of dem-pack apart, in the bending sample with 14,000 and 87,000 spheres, on one
+//! thread and on all: `cargo bench -p dem-pack`.
 //!
-//! The stages between the surface and the body are timed by the program's own clock, as the report of dem-pack tells it:
-//! whole bodies are made, and each stage has its times from all of them. The rest is timed from outside.
+//! The stages between the surface and the body are timed by the program's own clock, as the report
+//! of dem-pack tells it: whole bodies are made, and each stage has its times from all of them. The
+//! rest is timed from outside.
 #![allow(
     missing_docs,
     clippy::expect_used,
@@ -20,9 +21,7 @@ use criterion::{
 use dem_io::Body;
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
-use dem_pack::make::{Made, MakeSettings, make_body};
-use dem_pack::pack::PackSettings;
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
 use rayon::ThreadPool;
 
 const SAMPLES: usize = 10;
@@ -34,7 +33,7 @@ const SIZES: [(&str, &str); 2] = [
 ];
 
 /// A stage, and its time in seconds.
-type Stage = (&'static str, fn(&Made) -> f64);
+type Stage = (&'static str, fn(&BodyReport) -> f64);
 
 const BARE_FRONT: [Stage; 1] = [("bare front", |made| made.history.front_seconds)];
 const SETTLED: [Stage; 5] = [
@@ -86,15 +85,16 @@ fn surface_reading(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Each stage with its times from the same `SAMPLES` bodies, which are made when the first stage is asked for.
+/// Each stage with its times from the same `SAMPLES` bodies, which are made when the first stage is
+/// asked for.
 fn by_own_clock(
     group: &mut BenchmarkGroup<WallTime>,
     surface: &Surface,
     pool: &ThreadPool,
-    settings: &MakeSettings,
+    settings: &BodySettings,
     stages: &[Stage],
 ) {
-    let bodies: LazyCell<Vec<Made>, _> = LazyCell::new(|| {
+    let bodies: LazyCell<Vec<BodyReport>, _> = LazyCell::new(|| {
         let make = || {
             make_body(surface, settings, &|_, _| Ok(()))
                 .expect("the sample can be packed")
@@ -134,16 +134,16 @@ fn body_files(criterion: &mut Criterion, body: &Body) {
     group.finish();
 }
 
-fn settled(diameter: &str) -> MakeSettings {
+fn settled(diameter: &str) -> BodySettings {
     let mut settings = bare(diameter);
     settings.packing.settle = None;
     settings
 }
 
-fn bare(diameter: &str) -> MakeSettings {
-    MakeSettings {
+fn bare(diameter: &str) -> BodySettings {
+    BodySettings {
         packing: PackSettings {
-            sizes: Sizes::parse(diameter, By::Number).expect("sizes"),
+            sizes: Sizes::parse(diameter, Basis::Number).expect("sizes"),
             overlap: 0.0,
             seed: 1,
             settle: Some(0.0),

@@ -6,7 +6,8 @@
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
 //! ```
 //!
-//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux only).
+//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux
+//! only).
 
 use std::io::{Error, Write};
 use std::process::Command;
@@ -15,9 +16,7 @@ use std::time::Instant;
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_io::{Diagnostic, Result};
-use dem_pack::make::{Made, MakeSettings, make_body};
-use dem_pack::pack::PackSettings;
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
 
 /// The shares of the first table.
 const SETTLE: [f64; 10] = [
@@ -60,8 +59,9 @@ fn quality_table() -> std::result::Result<(), Error> {
             .map(|seed| on_threads(1, || make(&surface, "2mm..3mm", Some(settle), *seed)))
             .collect::<Result<Vec<_>>>()
             .map_err(Error::other)?;
-        let mean =
-            |value: &dyn Fn(&Made) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
+        let mean = |value: &dyn Fn(&BodyReport) -> f64| {
+            all.iter().map(value).sum::<f64>() / all.len() as f64
+        };
         writeln!(
             out,
             "| {settle} | {:.0} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.2} | {:.0} |",
@@ -163,15 +163,16 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) 
         .install(work)
 }
 
-fn make(surface: &Surface, diameter: &str, settle: Option<f64>, seed: u64) -> Result<Made> {
+fn make(surface: &Surface, diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodyReport> {
     make_body(surface, &settings(diameter, settle, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
 }
 
-/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the contacts.
-fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<MakeSettings> {
-    Ok(MakeSettings {
+/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the
+/// contacts.
+fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettings> {
+    Ok(BodySettings {
         packing: PackSettings {
-            sizes: Sizes::parse(diameter, By::Number)?,
+            sizes: Sizes::parse(diameter, Basis::Number)?,
             overlap: 0.0,
             seed,
             settle,

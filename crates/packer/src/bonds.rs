@@ -1,27 +1,33 @@
 //! Bonds: which pairs of spheres are joined.
 //!
-//! A pair is joined when the distance of its centres is at most `bonding_radius * (R_a + R_b)`, true radii (thesis 4.1:
-//! 1.0 and 1.1), and no surface lies between: two fingers of one shape stay two.
+//! A pair is joined when the distance of its centres is at most `bonding_radius * (R_a + R_b)`,
+//! true radii (thesis 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
+//! two.
 
-use crate::Spheres;
+use crate::spheres::Spheres;
 use dem_io::{Diagnostic, Result};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 
-/// Whether the straight line between the centres of two spheres, given by their indices, crosses the surface.
+/// True if the straight line between the centres of two spheres, given by their indices, crosses
+/// the surface.
 pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
 /// Beyond this bonding radius a bond would pass through other spheres.
-pub const LARGEST_BONDING_RADIUS: f64 = 2.0;
-/// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres, 4.87).
-pub const WELL_BONDED: f64 = 5.0;
-/// Spheres whose neighbours are counted to advise a bonding radius: enough for 1 % of the number of bonds.
+pub(crate) const LARGEST_BONDING_RADIUS: f64 = 2.0;
+/// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres,
+/// 4.87).
+pub(crate) const WELL_BONDED: f64 = 5.0;
+/// Spheres whose neighbours are counted to advise a bonding radius: enough for 1 % of the number of
+/// bonds.
 const SPHERES_TO_ADVISE: usize = 5000;
-/// Spheres that one task searches around: fixed, so that the order of results is the same for any number of threads.
+/// Spheres that one task searches around: fixed, so that the order of results is the same for any
+/// number of threads.
 const CHUNK: usize = 4096;
 
-/// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is asked only for pairs farther apart
-/// than the sum of their radii: a closer pair has its line of centres inside its two balls, which lie in the solid.
+/// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is asked only for
+/// pairs farther apart than the sum of their radii: a closer pair has its line of centres inside
+/// its two balls, which lie in the solid.
 ///
 /// # Errors
 /// A bonding radius outside (0, [`LARGEST_BONDING_RADIUS`]]; more spheres than 2^32.
@@ -52,8 +58,8 @@ pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
     Ok(sorted(parts, spheres.radii.len()))
 }
 
-/// The bonding radius that gives `wanted` bonds per particle (bonds divided by particles), as near as whole bonds allow:
-/// half-way between the last pair that is joined and the first that is not.
+/// The bonding radius that gives `wanted` bonds per particle (bonds divided by particles), as near
+/// as whole bonds allow: half-way between the last pair that is joined and the first that is not.
 ///
 /// # Errors
 /// `wanted` not positive, or not reached with [`LARGEST_BONDING_RADIUS`]; more spheres than 2^32.
@@ -98,8 +104,9 @@ pub fn bonding_radius_for(
     }
 }
 
-/// A bonding radius to advise when a packing has too few bonds: gives [`WELL_BONDED`] bonds per particle, rounded up to
-/// two decimals. None where no bonding radius does. Of many spheres, the neighbours of some are counted.
+/// A bonding radius to advise when a packing has too few bonds: gives [`WELL_BONDED`] bonds per
+/// particle, rounded up to two decimals. None where no bonding radius does. Of many spheres, the
+/// neighbours of some are counted.
 pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
     let radii = &spheres.radii;
     let stride = radii.len().div_ceil(SPHERES_TO_ADVISE).max(1);
@@ -140,7 +147,8 @@ pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurfa
     }
 }
 
-/// Distances of the centres of bonded spheres: the initial lengths of the bonds, local units. One per bond.
+/// Distances of the centres of bonded spheres: the initial lengths of the bonds, local units. One
+/// per bond.
 pub fn bond_lengths(spheres: &Spheres, bonds: &[[u32; 2]]) -> Vec<f64> {
     bonds
         .par_iter()
@@ -165,9 +173,10 @@ pub(crate) fn centre_distance(spheres: &Spheres, a: u32, b: u32) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// No surface between two spheres. A point of the line of centres at distance t from a is in ball a if t <= R_a, and in
-/// ball b if distance - t <= R_b; if it were in neither, distance > R_a + R_b. The balls lie inside the solid, so only
-/// pairs farther apart than R_a + R_b can have surface between them.
+/// No surface between two spheres. A point of the line of centres at distance t from a is in ball a
+/// if t <= R_a, and in ball b if distance - t <= R_b; if it were in neither, distance > R_a + R_b.
+/// The balls lie inside the solid, so only pairs farther apart than R_a + R_b can have surface
+/// between them.
 fn is_joined(
     spheres: &Spheres,
     a: u32,
@@ -178,11 +187,12 @@ fn is_joined(
     distance <= spheres.radii[a as usize] + spheres.radii[b as usize] || !crosses_surface(a, b)
 }
 
-/// `keep(a, b, distance)` of every pair with distance <= ratio (R_a + R_b), a the larger sphere of the two: once each,
-/// in chunks, in no particular order, which depends on the spheres alone.
+/// `keep(a, b, distance)` of every pair with distance <= ratio (R_a + R_b), a the larger sphere of
+/// the two: once each, in chunks, in no particular order, which depends on the spheres alone.
 ///
-/// Each sphere looks for its smaller neighbours only, all of them within 2 ratio R_a. A point lies within that distance
-/// of at most about 8 ratio^3 centres of spheres that do not overlap much, whatever their sizes: no distribution is slow.
+/// Each sphere looks for its smaller neighbours only, all of them within 2 ratio R_a. A point lies
+/// within that distance of at most about 8 ratio^3 centres of spheres that do not overlap much,
+/// whatever their sizes: no distribution is slow.
 fn search<T: Send>(
     spheres: &Spheres,
     ratio: f64,
@@ -231,7 +241,8 @@ fn tree_of(spheres: &Spheres) -> Result<ImmutableKdTree<f64, 3>> {
     })
 }
 
-/// The pairs sorted: counted and dealt out by their first index, each sphere's few then sorted by the second.
+/// The pairs sorted: counted and dealt out by their first index, each sphere's few then sorted by
+/// the second.
 fn sorted(parts: Vec<Vec<[u32; 2]>>, spheres: usize) -> Vec<[u32; 2]> {
     let mut starts = vec![0_u32; spheres + 1];
     for [a, _] in parts.iter().flatten() {

@@ -1,27 +1,29 @@
-//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search over packings.
+//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search
+//! over packings.
 
-use crate::boundary::Boundary;
-use crate::pack::{Inside, PackSettings, Packing, Progress, filled_share, pack_if};
+use crate::pack::{PackSettings, Packing, Progress, Solid, pack_if};
 use dem_io::units::significant;
-use dem_io::{Diagnostic, Result, Surface};
+use dem_io::{Diagnostic, Result};
 use serde::Serialize;
 use std::cell::Cell;
 use std::time::Instant;
 
 /// The search ends when the density is as near as this, relative.
-pub const NEAR_ENOUGH: f64 = 1e-3;
+pub(crate) const NEAR_ENOUGH: f64 = 1e-3;
 /// Densities are near the wanted one up to this, relative: more than chance makes.
 const NEAR: f64 = 0.01;
 /// Packings begun at most.
 const MOST_PACKINGS: usize = 30;
-/// Overlaps nearer to each other than this are not tried twice: they change the density by less than chance does.
+/// Overlaps nearer to each other than this are not tried twice: they change the density by less
+/// than chance does.
 const FINEST_STEP: f64 = 1e-5;
 /// Overlaps are below this: a sphere must not swallow its neighbour's centre.
-pub const LARGEST_OVERLAP: f64 = 1.0;
-/// The largest overlap that is tried: so near to the limit that the density is nearly the largest there is.
+pub(crate) const LARGEST_OVERLAP: f64 = 1.0;
+/// The largest overlap that is tried: so near to the limit that the density is nearly the largest
+/// there is.
 const LARGEST_TRIED: f64 = 0.999;
 
-/// What was looked for and how close it came.
+/// The density that was wanted, and the one found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DensitySearch {
     /// Wanted mass of the particles / volume of the shape, kg/m3.
@@ -32,14 +34,14 @@ pub struct DensitySearch {
     pub relative_error: f64,
     /// The overlap that gives it.
     pub overlap: f64,
-    /// How many packings were begun.
+    /// Number of packings begun.
     pub packings: usize,
-    /// How many of them were made to the end: those whose front was of nearly the density wanted.
+    /// Number of them made to the end: those whose front was of nearly the density wanted.
     pub finished: usize,
 }
 
 impl DensitySearch {
-    /// What a user should know, if the density was missed.
+    /// A warning, if the density was missed.
     pub fn warning(&self) -> Option<String> {
         (self.relative_error.abs() > NEAR_ENOUGH).then(|| {
             format!(
@@ -53,30 +55,34 @@ impl DensitySearch {
     }
 }
 
-/// A packing that was tried: its overlap and the share of the shape that its particles' volumes add up to, expected if it
-/// was not made to the end.
+/// A packing that was tried.
 #[derive(Debug, Clone, Copy)]
 struct Try {
     overlap: f64,
+    /// Sum of the spheres' volumes over that of the shape; expected if the packing was not made to
+    /// the end.
     filled: f64,
 }
 
-/// A front of a packing: its overlap, the share of the shape that it filled, and the final share if the packing was made to the end.
+/// A packing that was begun.
 #[derive(Debug, Clone, Copy)]
 struct Begun {
     overlap: f64,
+    /// Sum of the spheres' volumes over that of the shape, as the front filled it.
     front: f64,
+    /// The same of the packing, if it was made to the end.
     filled: Option<f64>,
 }
 
-/// Final share over that of the front, as expected: the mean of the packings that were made to the end.
+/// Final fraction over that of the front, as expected: the mean of the packings that were made to
+/// the end.
 fn gain(begun: &[Begun]) -> f64 {
     let gains = begun.iter().filter_map(|b| Some(b.filled? / b.front));
     let (sum, count) = gains.fold((0.0, 0.0), |(sum, count), gain| (sum + gain, count + 1.0));
     if count == 0.0 { 1.0 } else { sum / count }
 }
 
-/// The packings begun, each with the share that it fills or is expected to.
+/// The packings begun, each with the fraction that it fills or is expected to.
 fn judged(begun: &[Begun]) -> Vec<Try> {
     let gain = gain(begun);
     let judge = |b: &Begun| Try {
@@ -86,90 +92,125 @@ fn judged(begun: &[Begun]) -> Vec<Try> {
     begun.iter().map(judge).collect()
 }
 
-/// How far off a front may be to be settled and filled, relative, when the nearest finished packing is off by this: the first
-/// shows what settling and filling do to the density, each later one must promise to be twice as near, if not near enough.
+/// Largest relative error of a front that is settled and filled, when the nearest finished packing
+/// is off by this: the first shows what settling and filling do to the density, each later one must
+/// promise to be twice as near, if not near enough.
 fn largest_promising(nearest: Option<f64>) -> f64 {
     nearest.map_or(NEAR, |off| (0.5 * off).max(NEAR_ENOUGH))
 }
 
-/// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`; sets it in `settings`. Two packings
-/// of nearly the same overlap differ by chance, so that the search goes on around the root of their
-/// mean until one is near enough, and keeps the nearest of all. The front tells the density nearly: most tries end with it.
-/// The seconds in the history of the packing are those of all tries.
-///
-/// # Errors
-/// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
-pub fn pack_to_density(
-    surface: &Surface,
-    boundary: &Boundary,
-    settings: &mut PackSettings,
-    wanted_kg_m3: f64,
-    particle_kg_m3: f64,
-    progress: Progress,
-) -> Result<(Packing, DensitySearch)> {
-    let target = wanted_kg_m3 / particle_kg_m3;
-    let off = |filled: f64| (filled / target - 1.0).abs();
-    settings.overlap = overlap_for(target, USUAL_SHARE).clamp(0.0, 0.9);
-    let started = Instant::now();
-    let inside = Inside::find(surface, boundary)?;
-    let mut seconds = [started.elapsed().as_secs_f64(), 0.0, 0.0];
-    let mut begun: Vec<Begun> = Vec::new();
-    let mut best: Option<(Try, Packing)> = None;
-    while begun.len() < MOST_PACKINGS {
+/// A search for the overlap of a wanted density.
+struct Search {
+    /// Wanted sum of the spheres' volumes over that of the shape.
+    target: f64,
+    begun: Vec<Begun>,
+    /// The packing that came nearest.
+    best: Option<(Try, Packing)>,
+    /// Times of all packings for front, settling and filling, s.
+    seconds: [f64; 3],
+}
+
+impl Search {
+    /// Relative error of a fraction against the target.
+    fn off(&self, filled: f64) -> f64 {
+        (filled / self.target - 1.0).abs()
+    }
+
+    /// True if a front that filled this fraction is worth settling and filling.
+    fn is_promising(&self, overlap: f64, front: f64) -> bool {
+        let is_limit = overlap == 0.0 || overlap == LARGEST_TRIED;
+        let is_last = self.begun.len() + 1 == MOST_PACKINGS;
+        let nearest = self.best.as_ref().map(|(best, _)| self.off(best.filled));
+        is_limit
+            || (is_last && self.best.is_none())
+            || self.off(front * gain(&self.begun)) <= largest_promising(nearest)
+    }
+
+    /// Packs with an overlap, as far as the front promises. Returns the fraction filled, if the
+    /// packing was made to the end.
+    fn try_overlap(
+        &mut self,
+        solid: &Solid,
+        settings: &PackSettings,
+        progress: Progress,
+    ) -> Result<Option<f64>> {
         let started = Instant::now();
         let overlap = settings.overlap;
-        let is_limit = overlap == 0.0 || overlap == LARGEST_TRIED;
-        let is_last = begun.len() + 1 == MOST_PACKINGS;
-        let promising = largest_promising(best.as_ref().map(|(b, _)| off(b.filled)));
-        let gain = gain(&begun);
         let front = Cell::new(0.0);
         let is_wanted = |filled: f64| {
             front.set(filled);
-            is_limit || (is_last && best.is_none()) || off(filled * gain) <= promising
+            self.is_promising(overlap, filled)
         };
-        let packing = pack_if(surface, boundary, &inside, settings, &is_wanted, progress)?;
+        let packing = pack_if(solid, settings, &is_wanted, progress)?;
         let filled = packing
             .as_ref()
-            .map(|packing| filled_share(surface, packing.spheres.radii.iter().copied()));
-        begun.push(Begun {
+            .map(|packing| solid.filled_fraction(packing.spheres.radii.iter().copied()));
+        self.begun.push(Begun {
             overlap,
             front: front.get(),
             filled,
         });
         match packing.zip(filled) {
-            None => seconds[0] += started.elapsed().as_secs_f64(),
-            Some((packing, filled)) => {
-                let history = &packing.history;
-                seconds[0] += history.front_seconds;
-                seconds[1] += history.settle_seconds;
-                seconds[2] += history.fill_seconds;
-                if best
-                    .as_ref()
-                    .is_none_or(|(b, _)| off(filled) < off(b.filled))
-                {
-                    best = Some((Try { overlap, filled }, packing));
-                }
-                if off(filled) <= NEAR_ENOUGH {
-                    break;
-                }
-            }
+            None => self.seconds[0] += started.elapsed().as_secs_f64(),
+            Some((packing, filled)) => self.keep_nearer(Try { overlap, filled }, packing),
         }
-        let next = next_overlap(&judged(&begun), target);
+        Ok(filled)
+    }
+
+    /// Keeps a packing if it came nearer than those before.
+    fn keep_nearer(&mut self, found: Try, packing: Packing) {
+        let history = &packing.history;
+        self.seconds[0] += history.front_seconds;
+        self.seconds[1] += history.settle_seconds;
+        self.seconds[2] += history.fill_seconds;
+        let before = self.best.as_ref().map(|(best, _)| self.off(best.filled));
+        if before.is_none_or(|before| self.off(found.filled) < before) {
+            self.best = Some((found, packing));
+        }
+    }
+}
+
+/// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`; sets it in
+/// `settings`. Two packings of nearly the same overlap differ by chance, so that the search goes on
+/// around the root of their mean until one is near enough, and keeps the nearest of all. The front
+/// tells the density nearly: most tries end with it. The seconds in the history of the packing are
+/// those of all tries.
+///
+/// # Errors
+/// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
+pub(crate) fn pack_to_density(
+    solid: &Solid,
+    settings: &mut PackSettings,
+    wanted_kg_m3: f64,
+    particle_kg_m3: f64,
+    progress: Progress,
+) -> Result<(Packing, DensitySearch)> {
+    let mut search = Search {
+        target: wanted_kg_m3 / particle_kg_m3,
+        begun: Vec::new(),
+        best: None,
+        seconds: [0.0; 3],
+    };
+    settings.overlap = overlap_for(search.target, USUAL_FRACTION).clamp(0.0, 0.9);
+    while search.begun.len() < MOST_PACKINGS {
+        let overlap = settings.overlap;
+        let filled = search.try_overlap(solid, settings, progress)?;
+        if filled.is_some_and(|filled| search.off(filled) <= NEAR_ENOUGH) {
+            break;
+        }
+        let next = next_overlap(&judged(&search.begun), search.target);
         let is_beyond =
             (next < 0.0 && overlap == 0.0) || (next >= LARGEST_TRIED && overlap == LARGEST_TRIED);
         if let Some(filled) = filled.filter(|_| is_beyond) {
-            if off(filled) <= NEAR {
+            if search.off(filled) <= NEAR {
                 break;
             }
-            return Err(unreachable(
-                wanted_kg_m3,
-                particle_kg_m3,
-                Try { overlap, filled },
-            ));
+            let limit = Try { overlap, filled };
+            return Err(unreachable(wanted_kg_m3, particle_kg_m3, limit));
         }
         settings.overlap = next.clamp(0.0, LARGEST_TRIED);
     }
-    let Some((found, mut packing)) = best else {
+    let Some((found, mut packing)) = search.best else {
         return Err(Diagnostic::failed(
             "--solid-density",
             "nothing was packed",
@@ -182,22 +223,21 @@ pub fn pack_to_density(
         history.front_seconds,
         history.settle_seconds,
         history.fill_seconds,
-    ] = seconds;
-    Ok((
-        packing,
-        DensitySearch {
-            wanted_kg_m3,
-            found_kg_m3: found.filled * particle_kg_m3,
-            relative_error: found.filled / target - 1.0,
-            overlap: found.overlap,
-            packings: begun.len(),
-            finished: begun.iter().filter(|b| b.filled.is_some()).count(),
-        },
-    ))
+    ] = search.seconds;
+    let found = DensitySearch {
+        wanted_kg_m3,
+        found_kg_m3: found.filled * particle_kg_m3,
+        relative_error: found.filled / search.target - 1.0,
+        overlap: found.overlap,
+        packings: search.begun.len(),
+        finished: search.begun.iter().filter(|b| b.filled.is_some()).count(),
+    };
+    Ok((packing, found))
 }
 
-/// The overlap to try after these: a Newton step on the mean of the tries near the target, so that chance averages out, or
-/// else on the nearest. The share in r_gen hardly changes, so that the density goes with (1 + overlap)^3.
+/// The overlap to try after these: a Newton step on the mean of the tries near the target, so that
+/// chance averages out, or else on the nearest. The fraction filled in r_gen hardly changes, so
+/// that the density goes with (1 + overlap)^3.
 fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
@@ -217,14 +257,15 @@ fn next_overlap(tries: &[Try], target: f64) -> f64 {
     next
 }
 
-/// Share of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 + overlap)^3 as large.
-const USUAL_SHARE: f64 = 0.59;
+/// Fraction of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 +
+/// overlap)^3 as large.
+const USUAL_FRACTION: f64 = 0.59;
 
 fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }
 
-/// What was asked for lies beyond the packing of the least or the largest overlap.
+/// The error for a density that lies beyond the packing of the least or the largest overlap.
 fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
     let has = particle * limit.filled;
     let most_or_least = if limit.overlap == 0.0 {
@@ -245,10 +286,11 @@ fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
 mod tests {
     use super::*;
 
-    /// Overlaps tried for a body whose share in r_gen falls with the overlap and scatters by up to `scatter`.
+    /// Overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by up
+    /// to `scatter`.
     fn search(target: f64, scatter: f64) -> Vec<Try> {
         let mut tries = vec![];
-        let mut overlap = overlap_for(target, USUAL_SHARE).max(0.0);
+        let mut overlap = overlap_for(target, USUAL_FRACTION).max(0.0);
         while tries.len() < MOST_PACKINGS {
             let chance = (overlap * 1e6).sin() * scatter;
             let reduced = (0.60 - 0.05 * overlap) * (1.0 + chance);

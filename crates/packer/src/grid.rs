@@ -1,13 +1,10 @@
 //! A dense grid of cells over a box: which spheres lie near a point.
 
-use crate::Vector3;
+use crate::spheres::{ReducedSphere, Vector3};
 use std::ops::Range;
 
-/// A sphere as the front sees it: centre x, y, z and reduced radius r_gen, local units.
-pub type Ball = [f64; 4];
-
 /// Equal cubic cells over a box, numbered along x first.
-pub struct Lattice {
+pub(crate) struct Lattice {
     /// Smallest corner of the box, local units. Length 3.
     pub low: [f64; 3],
     /// Edge of a cell, local units.
@@ -18,25 +15,31 @@ pub struct Lattice {
 
 impl Lattice {
     /// The cell of a point along each axis; points outside belong to the outermost cells.
-    pub fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
+    pub(crate) fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
         let p = [x, y, z];
         [0, 1, 2]
             .map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
     }
 
     /// Number of a cell.
-    pub fn index(&self, cell: [usize; 3]) -> usize {
+    pub(crate) fn index(&self, cell: [usize; 3]) -> usize {
         (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
     }
 
     /// Centre of a cell, local units.
-    pub fn centre(&self, cell: [usize; 3]) -> Vector3 {
+    pub(crate) fn centre(&self, cell: [usize; 3]) -> Vector3 {
         Vector3::from([0, 1, 2].map(|k| self.low[k] + (cell[k] as f64 + 0.5) * self.cell))
     }
 
-    /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around the point touches.
+    /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around
+    /// the point touches.
     #[inline]
-    pub fn rows_near(&self, [x, y, z]: [f64; 3], reach: f64, mut visit: impl FnMut(Range<usize>)) {
+    pub(crate) fn rows_near(
+        &self,
+        [x, y, z]: [f64; 3],
+        reach: f64,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
         let first = self.cell_of(x - reach, y - reach, z - reach);
         let last = self.cell_of(x + reach, y + reach, z + reach);
         for k in first[2]..=last[2] {
@@ -49,16 +52,16 @@ impl Lattice {
 }
 
 /// Spheres sorted into cubic cells.
-pub struct Grid {
+pub(crate) struct Grid {
     /// The cells.
     pub lattice: Lattice,
-    cells: Vec<Vec<Ball>>,
+    cells: Vec<Vec<ReducedSphere>>,
 }
 
 impl Grid {
     /// An empty grid over the box from `low` to `high` with cells of at least `cell` (local units).
     /// Cells grow where the box would need more than `most_cells` of them.
-    pub fn new(low: &Vector3, high: &Vector3, cell: f64, most_cells: usize) -> Self {
+    pub(crate) fn new(low: &Vector3, high: &Vector3, cell: f64, most_cells: usize) -> Self {
         let mut cell = cell;
         loop {
             let counts = [0, 1, 2].map(|k| (((high[k] - low[k]) / cell).floor() as usize) + 1);
@@ -74,15 +77,23 @@ impl Grid {
     }
 
     /// Adds a sphere.
-    pub fn insert(&mut self, ball: Ball) {
+    pub(crate) fn insert(&mut self, ball: ReducedSphere) {
         let at = self
             .lattice
             .index(self.lattice.cell_of(ball[0], ball[1], ball[2]));
         self.cells[at].push(ball);
     }
 
-    /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the point touches.
-    pub fn near(&self, x: f64, y: f64, z: f64, reach: f64, mut visit: impl FnMut(&[Ball])) {
+    /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the
+    /// point touches.
+    pub(crate) fn near(
+        &self,
+        x: f64,
+        y: f64,
+        z: f64,
+        reach: f64,
+        mut visit: impl FnMut(&[ReducedSphere]),
+    ) {
         self.lattice.rows_near([x, y, z], reach, |row| {
             for cell in &self.cells[row] {
                 visit(cell);

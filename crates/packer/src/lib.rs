@@ -1,35 +1,57 @@
-//! Fills a closed surface with overlapping spheres (advancing front, then settling) and joins them by bonds.
+//! Fills the solid of an STL file with overlapping spheres and joins them by bonds.
 //!
-//! Everything here works in the local units of the [`dem_io::Surface`], unless a name says otherwise.
+//! [`pack()`] gives the spheres of a [`dem_io::Surface`] in its local units, [`make_body`] a whole
+//! body in metres with its bonds and a report of how good it is. The spheres are placed by an
+//! advancing front (Lozano et al. 2016; Platzer 2022) and settled.
+//!
+//! ```
+//! use dem_io::surface::{ReadSettings, surface_from_stl};
+//! use dem_pack::{Basis, PackSettings, Sizes, pack};
+//!
+//! let stl = std::fs::read("../../data/shapes/bar.stl")?;
+//! let reading = ReadSettings { unit_m: 1e-3, scale: 1.0, fill_holes: false };
+//! let surface = surface_from_stl(&stl, "bar.stl", reading)?;
+//! let sizes = Sizes::parse("6mm..8mm", Basis::Number)?;
+//! let packing = pack(&surface, &PackSettings::new(sizes), &|_stage, _done| Ok(()))?;
+//! assert!(packing.spheres.radii.len() > 200);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-pub mod bonds;
-pub mod boundary;
+mod body;
+mod bonds;
 pub mod cli;
-pub mod density;
-pub mod depth_map;
-pub mod front;
-pub mod grid;
-pub mod halo;
-pub mod inside;
-pub mod ledger;
-pub mod make;
-pub mod pack;
-pub mod quality;
-mod rims;
-pub mod room;
-pub mod seed;
-pub mod settle;
-pub mod sizes;
-pub mod union;
+mod density;
+mod front;
+mod geometry;
+mod grid;
+mod pack;
+mod quality;
+mod seed;
+mod sizes;
+mod spheres;
 
-/// A point or direction in local units.
-pub type Vector3 = nalgebra::Vector3<f64>;
+pub use body::{BodyReport, BodySettings, StageSeconds, make_body};
+pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+pub use density::DensitySearch;
+pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};
+pub use quality::{Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
+pub use sizes::{Basis, Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
+pub use spheres::Spheres;
 
-/// Spheres of a packing, in local units of the surface.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Spheres {
-    /// Centres. One per sphere.
-    pub positions: Vec<[f64; 3]>,
-    /// Radii (not reduced by the overlap). One per sphere.
-    pub radii: Vec<f64>,
+/// Stages one by one, for the tests of this crate: they may change at any time.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::bonds::{close_pairs, suggested_bonding_radius};
+    pub use crate::front::halo::{Halo, Neighbours};
+    pub use crate::geometry::boundary::Boundary;
+    pub use crate::geometry::depth_map::DepthMap;
+    pub use crate::geometry::inside::{first_hit, is_inside};
+    pub use crate::geometry::union::outer_pieces;
+    pub use crate::pack::settle::{Settled, WhenJammed, minimise_overlaps};
+    pub use crate::pack::shrink::FillTarget;
+    pub use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, assess, depth_needed};
+    pub use crate::seed::{
+        InscribedSphere, deepest_point, first_spheres, inner_points, spread_points,
+    };
+    pub use crate::spheres::{ReducedSphere, Vector3};
 }

@@ -1,8 +1,9 @@
-//! Where a front begins: the deepest point of the solid, and the first three spheres (Platzer 2022, section 4.1.1).
+//! The beginning of a front: the deepest point of the solid, and the first three spheres (Platzer
+//! 2022, section 4.1.1).
 
-use crate::Vector3;
-use crate::boundary::Boundary;
-use crate::inside::{first_hit, is_inside};
+use crate::geometry::boundary::Boundary;
+use crate::geometry::inside::{first_hit, is_inside};
+use crate::spheres::Vector3;
 use dem_io::Surface;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 
 /// A ball inside the solid, local units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inscribed {
+pub struct InscribedSphere {
     /// Its centre.
     pub centre: Vector3,
     /// Its distance to the surface.
@@ -22,9 +23,10 @@ const MOST_PROBES: usize = 4_000;
 /// Grid points along the longest edge of the bounding box.
 const GRID_POINTS: f64 = 16.0;
 
-/// Points spread over the inside of the solid with their distances to the surface, deepest first: middles of the chords that begin
-/// at facets and run inwards (they find every part, however thin), and the points of a coarse grid.
-pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
+/// Points spread over the inside of the solid with their distances to the surface, deepest first:
+/// middles of the chords that begin at facets and run inwards (they find every part, however thin),
+/// and the points of a coarse grid.
+pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<InscribedSphere> {
     let stride = surface.triangles.len().div_ceil(MOST_PROBES);
     let chords: Vec<Vector3> = (0..surface.triangles.len())
         .into_par_iter()
@@ -53,22 +55,24 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<Inscribed> {
     let cell = |p: &Vector3| [p.x, p.y, p.z].map(|x| (x / (0.05 * spacing)).round() as i64);
     points.sort_by_key(cell);
     points.dedup_by_key(|p| cell(p));
-    let mut inner: Vec<Inscribed> = points
+    let mut inner: Vec<InscribedSphere> = points
         .into_par_iter()
         .filter(|p| is_inside(boundary, p))
         .filter_map(|centre| {
-            boundary.nearest(&centre, f64::MAX).map(|near| Inscribed {
-                centre,
-                radius: near.distance,
-            })
+            boundary
+                .nearest(&centre, f64::MAX)
+                .map(|near| InscribedSphere {
+                    centre,
+                    radius: near.distance,
+                })
         })
         .collect();
     inner.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     inner
 }
 
-/// One random point in each cell of a lattice of about `spacing` over the box from the origin to `extent`, local units,
-/// none nearer to another than a third of a cell.
+/// One random point in each cell of a lattice of about `spacing` over the box from the origin to
+/// `extent`, local units, none nearer to another than a third of a cell.
 pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3> {
     let counts = extent.map(|e| (e / spacing).round().max(1.0) as usize);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -88,15 +92,15 @@ pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3>
         .collect()
 }
 
-/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is largest nearby, by steps
-/// that halve from `first_step` to `last_step`.
-pub fn climb(
+/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is
+/// largest nearby, by steps that halve from `first_step` to `last_step`.
+pub(crate) fn climb(
     start: &Vector3,
     first_step: f64,
     last_step: f64,
     clearance: &dyn Fn(&Vector3) -> f64,
-) -> Inscribed {
-    let mut best = Inscribed {
+) -> InscribedSphere {
+    let mut best = InscribedSphere {
         centre: *start,
         radius: clearance(start),
     };
@@ -107,7 +111,7 @@ pub fn climb(
             let centre = before.centre + direction * step;
             let radius = clearance(&centre);
             if radius > best.radius {
-                best = Inscribed { centre, radius };
+                best = InscribedSphere { centre, radius };
             }
         }
         if best == before {
@@ -131,8 +135,8 @@ fn directions() -> impl Iterator<Item = Vector3> {
 
 /// The triangles of the wall that may be nearest to a point within `reach` of `base`.
 ///
-/// A distance changes by no more than the way between two points, so that those farther away than the nearest one by twice
-/// the reach are none.
+/// A distance changes by no more than the way between two points, so that those farther away than
+/// the nearest one by twice the reach are none.
 struct NearestAround {
     base: Vector3,
     reach: f64,
@@ -141,7 +145,7 @@ struct NearestAround {
 }
 
 impl NearestAround {
-    fn new(boundary: &Boundary, ball: &Inscribed, reach: f64) -> Self {
+    fn new(boundary: &Boundary, ball: &InscribedSphere, reach: f64) -> Self {
         let limit = ball.radius + 2.0 * reach;
         Self::among(
             boundary.triangles_near(&ball.centre, limit),
@@ -154,7 +158,7 @@ impl NearestAround {
     fn among(
         triangles: impl Iterator<Item = u32>,
         boundary: &Boundary,
-        ball: &Inscribed,
+        ball: &InscribedSphere,
         reach: f64,
     ) -> Self {
         let mut triangles: Vec<(f64, u32)> = triangles
@@ -170,7 +174,7 @@ impl NearestAround {
     }
 
     /// The same around another ball, or nearer to this one.
-    fn moved(&self, boundary: &Boundary, ball: &Inscribed, reach: f64) -> Self {
+    fn moved(&self, boundary: &Boundary, ball: &InscribedSphere, reach: f64) -> Self {
         if (ball.centre - self.base).norm() + reach > self.reach {
             return Self::new(boundary, ball, reach);
         }
@@ -195,8 +199,9 @@ impl NearestAround {
     }
 }
 
-/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the wall, so that the climb stays inside.
-fn climb_from_wall(boundary: &Boundary, start: &Inscribed) -> Inscribed {
+/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the
+/// wall, so that the climb stays inside.
+fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSphere {
     let mut best = *start;
     let mut step = 0.5 * start.radius;
     let mut near = NearestAround::new(boundary, &best, step);
@@ -206,7 +211,7 @@ fn climb_from_wall(boundary: &Boundary, start: &Inscribed) -> Inscribed {
         for direction in directions() {
             let centre = before.centre + direction * step;
             if let Some(radius) = near.distance_above(boundary, &centre, best.radius) {
-                best = Inscribed { centre, radius };
+                best = InscribedSphere { centre, radius };
             }
         }
         if best == before {
@@ -216,27 +221,28 @@ fn climb_from_wall(boundary: &Boundary, start: &Inscribed) -> Inscribed {
     best
 }
 
-/// The largest ball that fits into the solid, as well as climbing from the deepest of `inner_points` finds it;
-/// of several equal ones the nearest to the middle of the bounding box.
+/// The largest ball that fits into the solid, as well as climbing from the deepest of
+/// `inner_points` finds it; of several equal ones the nearest to the middle of the bounding box.
 pub fn deepest_point(
     boundary: &Boundary,
     surface: &Surface,
-    inner: &[Inscribed],
-) -> Option<Inscribed> {
+    inner: &[InscribedSphere],
+) -> Option<InscribedSphere> {
     let deep = inner
         .iter()
         .take_while(|ball| ball.radius >= 0.9 * inner[0].radius);
     let middle = 0.5 * Vector3::from(surface.extent());
-    let mut deep: Vec<&Inscribed> = deep.collect();
+    let mut deep: Vec<&InscribedSphere> = deep.collect();
     deep.sort_by(|a, b| {
         (a.centre - middle)
             .norm()
             .total_cmp(&(b.centre - middle).norm())
     });
-    let mut found: Vec<Inscribed> = Vec::new();
+    let mut found: Vec<InscribedSphere> = Vec::new();
     for start in deep.into_iter().take(4).chain(inner.first()) {
         // From beside a place that is known the climb would end there again.
-        let known = |ball: &Inscribed| (ball.centre - start.centre).norm() < 0.5 * ball.radius;
+        let known =
+            |ball: &InscribedSphere| (ball.centre - start.centre).norm() < 0.5 * ball.radius;
         if !found.iter().any(known) {
             found.push(climb_from_wall(boundary, start));
         }
@@ -247,7 +253,8 @@ pub fn deepest_point(
         .find(|ball| ball.radius >= deepest * (1.0 - 1e-6))
 }
 
-/// Centres for the first spheres of a front around `centre`: as many of the three (radii and reduced radii, local units) as fit, mutually touching.
+/// Centres for the first spheres of a front around `centre`: as many of the three (radii and
+/// reduced radii, local units) as fit, mutually touching.
 pub fn first_spheres(
     centre: &Vector3,
     radii: [f64; 3],
@@ -265,7 +272,8 @@ pub fn first_spheres(
     ];
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let mut best: Vec<(Vector3, f64)> = Vec::new();
-    // Around the centre first, then with the first sphere on it, each in a fixed set of orientations.
+    // Around the centre first, then with the first sphere on it, each in a fixed set of
+    // orientations.
     for origin in [middle, Vector3::zeros()] {
         for turn in 0..64 {
             let rotation = nalgebra::UnitQuaternion::from_euler_angles(

@@ -1,27 +1,15 @@
 //! Bonds against lattices with known neighbours and against a comparison of all pairs.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
 use dem_pack::Spheres;
-use dem_pack::bonds::{
-    bond_lengths, bond_radii, bonding_radius_for, close_pairs, find_bonds, suggested_bonding_radius,
-};
+use dem_pack::internals::{close_pairs, suggested_bonding_radius};
+use dem_pack::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn open(_: u32, _: u32) -> bool {
     false
-}
-
-fn cubic(n: usize, radius: f64) -> Spheres {
-    let mut positions = Vec::new();
-    for i in 0..n * n * n {
-        positions.push([(i % n) as f64, (i / n % n) as f64, (i / n / n) as f64]);
-    }
-    Spheres {
-        radii: vec![radius; positions.len()],
-        positions,
-    }
 }
 
 /// The same by looking at every pair.
@@ -39,16 +27,10 @@ fn all_pairs(spheres: &Spheres, ratio: f64) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Places with radii over a wide range, splitmix64.
+/// Places with radii over a wide range.
 fn scattered(count: usize, ratio: f64, seed: u64) -> Spheres {
-    let mut state = seed;
-    let mut random = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
-    };
+    let mut generator = Random(seed);
+    let mut random = || generator.next();
     let positions: Vec<[f64; 3]> = (0..count).map(|_| [random(), random(), random()]).collect();
     let scale = 0.5 / (count as f64).cbrt();
     let radii = (0..count)
@@ -59,7 +41,7 @@ fn scattered(count: usize, ratio: f64, seed: u64) -> Spheres {
 
 #[test]
 fn a_cubic_lattice_has_its_neighbours() {
-    let spheres = cubic(12, 0.5);
+    let spheres = cubic([12; 3], 0.5);
     // Distances 1, sqrt 2, sqrt 3, 2: 3, 6 and 4 bonds per sphere, less those at the faces.
     let (n, m) = (12 * 12 * 12, 12 * 12 * 11);
     let faces = 3 * m;
@@ -107,7 +89,8 @@ fn bond_radius_is_a_share_of_the_smaller_sphere() {
 
 #[test]
 fn two_fingers_stay_two() {
-    // Two columns side by side, a wall between them at x = 1.15, spheres on both sides 0.3 from each other.
+    // Two columns side by side, a wall between them at x = 1.15, spheres on both sides 0.3 from
+    // each other.
     let mut spheres = Spheres::default();
     for i in 0..20 {
         for x in [0.0, 2.3] {
@@ -130,7 +113,8 @@ fn two_fingers_stay_two() {
         20,
         "touching pairs are bonded without a question"
     );
-    // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2) are the next.
+    // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2)
+    // are the next.
     let radius = bonding_radius_for(&spheres, 38.0 / 40.0, &wall).unwrap();
     assert_eq!(find_bonds(&spheres, radius, &wall).unwrap(), bonds);
 }
@@ -153,7 +137,7 @@ fn the_wanted_number_of_bonds_is_met() {
 
 #[test]
 fn what_cannot_be_is_said() {
-    let spheres = cubic(4, 0.5);
+    let spheres = cubic([4; 3], 0.5);
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 2.01] {
         let error = find_bonds(&spheres, radius, &open).unwrap_err();
         assert!(
@@ -171,13 +155,17 @@ fn what_cannot_be_is_said() {
             .contains("40 bonds per particle cannot be reached"),
         "{error}"
     );
-    assert_eq!(suggested_bonding_radius(&cubic(2, 0.5), &open), None);
+    assert_eq!(suggested_bonding_radius(&cubic([2; 3], 0.5), &open), None);
     assert!(
         find_bonds(&Spheres::default(), 1.1, &open)
             .unwrap()
             .is_empty()
     );
-    assert!(find_bonds(&cubic(1, 0.5), 1.1, &open).unwrap().is_empty());
+    assert!(
+        find_bonds(&cubic([1; 3], 0.5), 1.1, &open)
+            .unwrap()
+            .is_empty()
+    );
 }
 
 #[test]

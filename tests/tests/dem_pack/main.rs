@@ -14,9 +14,9 @@ mod refused_shapes;
 mod shapes;
 mod sizes;
 
-#[path = "../../../crates/packer/tests/packing/exact.rs"]
+#[path = "../../../crates/packer/tests/helpers/exact.rs"]
 mod exact;
-#[path = "../../../crates/packer/tests/packing/facets.rs"]
+#[path = "../../../crates/packer/tests/helpers/facets.rs"]
 mod facets;
 
 use dem_io::Body;

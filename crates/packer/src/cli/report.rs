@@ -1,12 +1,12 @@
-//! What is printed for a person, and for a script.
+//! The printed reports: human-readable, and JSON.
 
-use crate::make::Made;
+use crate::body::BodyReport;
 use dem_io::Surface;
 use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
 use std::path::Path;
 
-/// What is known of a surface, for `--json`.
+/// A surface as JSON.
 pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
     serde_json::json!({
         "source": surface.source,
@@ -21,7 +21,7 @@ pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
     })
 }
 
-/// The same for a person.
+/// The same, human-readable.
 pub(super) fn surface_text(surface: &Surface) -> String {
     let size = surface
         .extent()
@@ -43,8 +43,8 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     text
 }
 
-/// What the body weighs, beside what its shape would, and where its centre is.
-fn mass_text(made: &Made) -> String {
+/// The mass of the body, beside that of its filled shape, and its centre.
+fn mass_text(made: &BodyReport) -> String {
     let [mass, centre] = match &made.mass {
         Some(mass) => mass.lines(),
         None => [
@@ -59,8 +59,8 @@ fn mass_text(made: &Made) -> String {
     format!("mass             {mass}\ncentre           {centre}\n")
 }
 
-/// What a person wants to know: how good the body is, what to mind, where the time went.
-pub(super) fn summary_text(surface: &Surface, made: &Made, output: &Path) -> String {
+/// The summary of a new body: its quality, warnings, and times.
+pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
     let name = if output == Path::new("-") {
         "standard output".to_owned()

@@ -1,38 +1,39 @@
-//! Places around one front sphere.
+//! Candidate points: places beside one front sphere where a new sphere touches it and two others,
+//! or one other and the wall (Platzer 2022, sections 4.1.2 and 4.1.3).
 
-use super::{Front, centre_of};
-use crate::Vector3;
-use crate::boundary::Nearest;
-use crate::grid::Ball;
-use crate::halo::patches::Wall;
-use crate::halo::{Halo, Neighbours};
-use crate::inside::is_inside;
+use super::assembly::Assembly;
+use super::halo::{Halo, Neighbours};
+use crate::geometry::boundary::Nearest;
+use crate::spheres::{ReducedSphere, Vector3, centre_of};
 
-/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it fills the first layer at the wall.
+/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it
+/// fills the first layer at the wall.
 const WALL_PREFERENCE: f64 = 0.5;
 
-impl Front<'_> {
-    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest` on the halo of `front` could touch.
-    pub(super) fn look_around(
+impl Assembly<'_> {
+    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest`
+    /// beside `initial` could touch. `assembled` are spheres that the grid does not hold yet.
+    pub(super) fn find_neighbours(
         &self,
         workspace: &mut Workspace,
-        front: &Ball,
-        placed: &[Ball],
+        initial: &ReducedSphere,
+        assembled: &[ReducedSphere],
         largest: f64,
     ) {
         let reduced = self.reduced(largest);
-        let reach = front[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
+        let reach = initial[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
         let neighbours = &mut workspace.neighbours;
         neighbours.clear();
-        self.grid.near(front[0], front[1], front[2], reach, |cell| {
-            neighbours.gather(front, cell, reduced)
-        });
-        neighbours.gather(front, placed, reduced);
+        self.grid
+            .near(initial[0], initial[1], initial[2], reach, |cell| {
+                neighbours.gather(initial, cell, reduced)
+            });
+        neighbours.gather(initial, assembled, reduced);
         neighbours.sort();
         workspace.walls.clear();
-        if self.is_near_wall(front) {
-            let centre = centre_of(front);
-            let reach = front[3] + reduced + self.wall_clearance(largest);
+        if self.is_near_wall(initial) {
+            let centre = centre_of(initial);
+            let reach = initial[3] + reduced + self.wall_clearance(largest);
             self.boundary.walls(
                 self.boundary.triangles_near(&centre, reach),
                 &centre,
@@ -42,11 +43,12 @@ impl Front<'_> {
         }
     }
 
-    /// The place nearest to the seed for a new sphere of (not reduced) `radius` on the halo of `front`.
+    /// The candidate point nearest to the seed for a new sphere of (not reduced) `radius` beside
+    /// `initial` that overlaps neither sphere nor wall.
     pub(super) fn best_place(
         &self,
         workspace: &mut Workspace,
-        front: &Ball,
+        initial: &ReducedSphere,
         radius: f64,
         seed: &Vector3,
     ) -> Option<Vector3> {
@@ -56,7 +58,7 @@ impl Front<'_> {
             walls,
             ..
         } = workspace;
-        halo.set(front, self.reduced(radius), neighbours);
+        halo.set(initial, self.reduced(radius), neighbours);
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
         halo.corners(&from_seed, |centre| {
@@ -66,7 +68,7 @@ impl Front<'_> {
             }
             takes
         });
-        let order_at = |place: &Vector3| (place - centre_of(front)).dot(&from_seed);
+        let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
         for wall in walls.iter() {
             let towards = (wall.point - halo.centre) / wall.distance;
@@ -91,8 +93,9 @@ impl Front<'_> {
         best
     }
 
-    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not reduced) `radius` touches the wall: that place,
-    /// if it is free. The wall is taken for a plane at its nearest point, again and again.
+    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not
+    /// reduced) `radius` touches the wall: that place, if it is free. The wall is taken for a plane
+    /// at its nearest point, again and again.
     fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
         let radius = self.wall_clearance(radius);
         let wanted = radius * (1.0 + 1e-12);
@@ -117,61 +120,12 @@ impl Front<'_> {
         }
         None
     }
+}
 
-    /// A place where a sphere of the smallest radius touches `front` and overlaps neither sphere nor wall, if there is one.
-    pub(super) fn place_for_smallest(
-        &self,
-        workspace: &mut Workspace,
-        front: &Ball,
-    ) -> Option<Vector3> {
-        let smallest = self.settings.radius_range[0];
-        let clearance = self.wall_clearance(smallest);
-        let Workspace {
-            neighbours,
-            halo,
-            planes,
-            ..
-        } = workspace;
-        halo.set(front, self.reduced(smallest), neighbours);
-        let reach = halo.radius + clearance;
-        let is_near_wall =
-            self.is_near(&self.wall_in_reach, front) && !self.boundary.clears(&halo.centre, reach);
-        if !is_near_wall {
-            return halo.any_corner(|_| true);
-        }
-        if self.boundary.flat_walls(&halo.centre, reach, planes) {
-            halo.add_walls(
-                planes
-                    .iter()
-                    .map(|(towards, distance)| (*towards, distance - clearance)),
-            );
-            return halo.any_corner(|_| true);
-        }
-        if let Some(place) = halo.any_corner(|centre| self.boundary.clears(centre, clearance)) {
-            return Some(place);
-        }
-        halo.free_place(|centre, reach| {
-            match self.boundary.nearest_triangle(centre, clearance + reach) {
-                None => Wall::LeavesMiddle,
-                Some((triangle, near)) => {
-                    let is_behind = self.boundary.is_behind(triangle, centre);
-                    let inwards = match is_behind {
-                        Some(false) => -near.distance,
-                        _ => near.distance,
-                    };
-                    if inwards + reach < clearance {
-                        Wall::Covers
-                    } else if inwards >= clearance
-                        && (is_behind.is_some() || is_inside(self.boundary, centre))
-                    {
-                        Wall::LeavesMiddle
-                    } else {
-                        Wall::Cuts
-                    }
-                }
-            }
-        })
-    }
+/// A place for a new sphere, and its size as a quantile of the distribution by number (0 to 1).
+pub(super) struct Place {
+    pub(super) centre: Vector3,
+    pub(super) quantile: f64,
 }
 
 /// Arrays that a thread uses again for every front sphere.
@@ -182,4 +136,18 @@ pub(super) struct Workspace {
     pub(super) walls: Vec<Nearest>,
     /// Direction and distance of flat walls.
     pub(super) planes: Vec<(Vector3, f64)>,
+}
+
+impl Workspace {
+    /// Adds a sphere just placed to the neighbours of `initial`, as [`Assembly::find_neighbours`]
+    /// would with the reduced radius `largest`.
+    pub(super) fn add_neighbour(
+        &mut self,
+        initial: &ReducedSphere,
+        new: &ReducedSphere,
+        largest: f64,
+    ) {
+        self.neighbours.gather(initial, &[*new], largest);
+        self.neighbours.sort();
+    }
 }

@@ -1,6 +1,6 @@
-//! Who touches whom, and the exact checks: no overlap in r_gen, nothing outside the wall.
+//! Contacts, and the exact checks: no overlap in r_gen, nothing outside the wall.
 
-use super::Packing;
+use super::bonded_packing::BondedPacking;
 use crate::bonds::{centre_distance, close_pairs};
 use dem_io::Result;
 use serde::{Deserialize, Serialize};
@@ -11,23 +11,24 @@ const CONTACTS_THAT_HOLD: u32 = 4;
 /// Contacts of the spheres reduced to r_gen, and of the true ones with the wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contacts {
-    /// Largest gap that counts as a contact, as a share of the smaller radius.
+    /// Largest gap that counts as a contact, as a fraction of the smaller radius.
     pub gap_limit: f64,
     /// Mean number of spheres that a sphere touches.
     pub per_particle: f64,
     /// Number of spheres that touch the wall.
     pub at_wall: usize,
-    /// Share of the particles with fewer than 4 contacts; the wall counts as one.
+    /// Fraction of the particles with fewer than 4 contacts; the wall counts as one.
     pub rattlers: f64,
-    /// Largest overlap of two spheres in r_gen, as a share of the smaller r_gen. 0 if none overlap.
+    /// Largest overlap of two spheres in r_gen, as a fraction of the smaller r_gen. 0 if none
+    /// overlap.
     pub largest_overlap: f64,
-    /// Largest way by which a sphere stands out of the wall, as a share of its radius. 0 if none does, 1 if a centre is
-    /// outside.
+    /// Largest way by which a sphere stands out of the wall, as a fraction of its radius. 0 if none
+    /// does, 1 if a centre is outside.
     pub largest_protrusion: f64,
 }
 
 /// Counts the contacts. `depths` of the centres below the wall, local units, one per sphere.
-pub(super) fn count(packing: &Packing, depths: &[f64]) -> Result<Contacts> {
+pub(super) fn count(packing: &BondedPacking, depths: &[f64]) -> Result<Contacts> {
     let spheres = packing.spheres;
     let shrink = 1.0 / (1.0 + packing.overlap);
     let radii = &spheres.radii;

@@ -1,16 +1,18 @@
-//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres cover.
+//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres
+//! cover.
 //!
-//! The standard error comes from the differences of the two random points of a cell: for a region with indicator r,
-//! cover c and share f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c - f) r at one - (c - f) r at the other)^2)/sum(r).
-//! Everything is counted in integers, so that the order of counting does not matter.
+//! The standard error comes from the differences of the two random points of a cell: for a region
+//! with indicator r, cover c and fraction f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c -
+//! f) r at one - (c - f) r at the other)^2)/sum(r). Everything is counted in integers, so that the
+//! order of counting does not matter.
 
-use super::Packing;
-use super::depth::Question;
+use super::bonded_packing::BondedPacking;
+use super::depth::DepthQuery;
 use super::points::{Box3, Cells, over_pairs};
 use serde::{Deserialize, Serialize};
 
-/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each sphere are evenly spread
-/// through it, so that fewer are needed in all.
+/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each
+/// sphere are evenly spread through it, so that fewer are needed in all.
 const POINTS_PER_SPHERE: f64 = 100.0;
 const FEWEST_POINTS_IN_REGION: f64 = 100_000.0;
 const MOST_POINTS_IN_REGION: f64 = 250_000.0;
@@ -20,10 +22,10 @@ const SLABS: usize = 10;
 /// A region with fewer points than this has no density to speak of.
 const FEWEST_POINTS: u64 = 100;
 
-/// A share found by sampling.
+/// A fraction found by sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Share {
-    /// The share, 0 to 1.
+pub struct Fraction {
+    /// The fraction, 0 to 1.
     pub value: f64,
     /// Its standard error.
     pub error: f64,
@@ -32,19 +34,19 @@ pub struct Share {
 /// The density of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
-    /// Where it begins, m.
+    /// Its beginning, m.
     pub from_m: f64,
-    /// Where it ends, m.
+    /// Its end, m.
     pub to_m: f64,
     /// Its density. None if hardly a point fell into it.
-    pub density: Option<Share>,
+    pub density: Option<Fraction>,
 }
 
-/// What the points say.
+/// Densities that the points give.
 pub(super) struct Sampled {
-    pub(super) union_density: Share,
-    pub(super) interior_union_density: Option<Share>,
-    pub(super) interior_generating_density: Option<Share>,
+    pub(super) union_density: Fraction,
+    pub(super) interior_union_density: Option<Fraction>,
+    pub(super) interior_generating_density: Option<Fraction>,
     pub(super) wall_profile: Vec<Layer>,
     pub(super) slab_profile: Vec<Layer>,
 }
@@ -54,14 +56,16 @@ pub(super) struct Sampled {
 struct Tally {
     points: u64,
     covered: u64,
-    /// Sums over cells of products of the differences of its two points, in cover (c) and in region (r).
+    /// Sums over cells of products of the differences of its two points, in cover (c) and in region
+    /// (r).
     cover_cover: u64,
     cover_region: i64,
     region_region: u64,
 }
 
 impl Tally {
-    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is covered.
+    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is
+    /// covered.
     fn add(&mut self, region: [bool; 2], covered: [bool; 2]) {
         if !(region[0] || region[1]) {
             return;
@@ -84,7 +88,7 @@ impl Tally {
         self.region_region += other.region_region;
     }
 
-    fn share(&self) -> Option<Share> {
+    fn fraction(&self) -> Option<Fraction> {
         if self.points < FEWEST_POINTS {
             return None;
         }
@@ -92,7 +96,7 @@ impl Tally {
         let value = self.covered as f64 / points;
         let squares = self.cover_cover as f64 - 2.0 * value * self.cover_region as f64
             + value * value * self.region_region as f64;
-        Some(Share {
+        Some(Fraction {
             value,
             error: squares.max(0.0).sqrt() / points,
         })
@@ -130,7 +134,7 @@ struct Interior {
 }
 
 /// Samples the packing. `interior_depth` and `mean_diameter` in local units.
-pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64) -> Sampled {
+pub(super) fn sample(packing: &BondedPacking, interior_depth: f64, mean_diameter: f64) -> Sampled {
     let layer = mean_diameter / LAYERS_PER_DIAMETER;
     let whole = whole(packing, interior_depth, layer);
     let longest = (0..3).fold(0, |best, k| {
@@ -149,17 +153,17 @@ pub(super) fn sample(packing: &Packing, interior_depth: f64, mean_diameter: f64)
         let layer = |(i, t): (usize, &Tally)| Layer {
             from_m: place(i),
             to_m: place(i + 1),
-            density: t.share(),
+            density: t.fraction(),
         };
         tallies.iter().enumerate().map(layer).collect()
     };
     Sampled {
-        union_density: whole.union.share().unwrap_or(Share {
+        union_density: whole.union.fraction().unwrap_or(Fraction {
             value: 0.0,
             error: 1.0,
         }),
-        interior_union_density: interior.union.share(),
-        interior_generating_density: interior.generating.share(),
+        interior_union_density: interior.union.fraction(),
+        interior_generating_density: interior.generating.fraction(),
         wall_profile: profile(&whole.layers, layer),
         slab_profile: profile(&interior.slabs, slab),
     }
@@ -169,7 +173,7 @@ fn points_for(spheres: f64) -> f64 {
     (POINTS_PER_SPHERE * spheres).clamp(FEWEST_POINTS_IN_REGION, MOST_POINTS_IN_REGION)
 }
 
-fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
+fn whole(packing: &BondedPacking, interior_depth: f64, layer: f64) -> Whole {
     let within = Box3 {
         low: [0.0; 3],
         high: packing.extent,
@@ -177,7 +181,7 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
     let spheres = packing.spheres.radii.len() as f64;
     let cells = Cells::new(&within, packing.shape_volume, points_for(spheres));
     let diagonal = cells.step.iter().map(|s| s * s).sum::<f64>().sqrt();
-    let question = Question {
+    let question = DepthQuery {
         floor: 0.0,
         cap: interior_depth.max(layer * LAYERS as f64) * 1.01,
         layer,
@@ -217,18 +221,24 @@ fn whole(packing: &Packing, interior_depth: f64, layer: f64) -> Whole {
 }
 
 /// Slabs of thickness `slab` along the axis `longest`.
-fn interior(packing: &Packing, depth: f64, whole: &Whole, longest: usize, slab: f64) -> Interior {
+fn interior(
+    packing: &BondedPacking,
+    depth: f64,
+    whole: &Whole,
+    longest: usize,
+    slab: f64,
+) -> Interior {
     if whole.interior == 0 {
         return Interior::default();
     }
-    let share = whole.interior as f64 / whole.union.points as f64;
+    let fraction = whole.interior as f64 / whole.union.points as f64;
     let spheres = packing.spheres.radii.len() as f64;
     let cells = Cells::new(
         &whole.interior_box,
-        share * packing.shape_volume,
-        points_for(share * spheres),
+        fraction * packing.shape_volume,
+        points_for(fraction * spheres),
     );
-    let question = Question {
+    let question = DepthQuery {
         floor: depth,
         cap: depth * (1.0 + 1e-12),
         layer: f64::INFINITY,

@@ -1,36 +1,38 @@
 //! Distance to the wall at many points, with as few exact (slow) distances as the question needs.
 
-use super::Packing;
+use super::bonded_packing::BondedPacking;
 use rayon::prelude::*;
 
-/// Points that share the last exact distance: fixed, so that results do not depend on the number of threads.
+/// Points that share the last exact distance: fixed, so that results do not depend on the number of
+/// threads.
 const CHUNK: usize = 4096;
 /// Mean number of spheres in a cell of the order in which depths are measured.
 const SPHERES_PER_CELL: f64 = 4.0;
 
-/// Answers depths at points one after the other, best in an order in which neighbours follow each other: the distance
-/// changes by no more than the way from the last point that was measured, which often settles the matter.
-pub(super) struct Probe<'a> {
-    packing: &'a Packing<'a>,
-    question: Question,
+/// Answers depths at points one after the other, best in an order in which neighbours follow each
+/// other: the distance changes by no more than the way from the last point that was measured, which
+/// often settles the matter.
+pub(super) struct DepthProbe<'a> {
+    packing: &'a BondedPacking<'a>,
+    question: DepthQuery,
     last: Option<([f64; 3], f64)>,
 }
 
-/// What is asked of a depth.
+/// A question about a depth.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Question {
+pub(super) struct DepthQuery {
     /// Shallower is all the same.
     pub(super) floor: f64,
     /// Deeper is all the same.
     pub(super) cap: f64,
     /// In which layer of this thickness it is; 0 to know it exactly.
     pub(super) layer: f64,
-    /// Whether it is more than this.
+    /// A depth is above this or not.
     pub(super) limit: f64,
 }
 
-impl Question {
-    /// Whether two depths are the same answer.
+impl DepthQuery {
+    /// True if two depths are the same answer.
     fn same(&self, a: f64, b: f64) -> bool {
         (a <= self.floor && b <= self.floor)
             || (a >= self.cap && b >= self.cap)
@@ -42,8 +44,8 @@ impl Question {
     }
 }
 
-impl<'a> Probe<'a> {
-    pub(super) fn new(packing: &'a Packing<'a>, question: Question) -> Self {
+impl<'a> DepthProbe<'a> {
+    pub(super) fn new(packing: &'a BondedPacking<'a>, question: DepthQuery) -> Self {
         Self {
             packing,
             question,
@@ -51,10 +53,10 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Depth of a point below the surface, or more if that answers the question alike; the cap if deeper, zero if not above
-    /// the floor.
+    /// Depth of a point below the surface, or more if that answers the question alike; the cap if
+    /// deeper, zero if not above the floor.
     pub(super) fn depth(&mut self, point: [f64; 3]) -> f64 {
-        let Question { floor, cap, .. } = self.question;
+        let DepthQuery { floor, cap, .. } = self.question;
         if let Some((measured, distance)) = self.last {
             let way = (0..3)
                 .map(|k| (point[k] - measured[k]).powi(2))
@@ -80,7 +82,7 @@ impl<'a> Probe<'a> {
 }
 
 /// Depth of each centre, at most `cap`: as the packing knows it, or else measured. One per sphere.
-pub(super) fn of_centres(packing: &Packing, cap: f64) -> Vec<f64> {
+pub(super) fn of_centres(packing: &BondedPacking, cap: f64) -> Vec<f64> {
     let mut depths: Vec<f64> = packing
         .wall_distance
         .iter()
@@ -102,13 +104,13 @@ pub(super) fn of_centres(packing: &Packing, cap: f64) -> Vec<f64> {
     let measured: Vec<Vec<f64>> = unknown
         .par_chunks(CHUNK)
         .map(|spheres| {
-            let exactly = Question {
+            let exactly = DepthQuery {
                 floor: 0.0,
                 cap,
                 layer: 0.0,
                 limit: 0.0,
             };
-            let mut probe = Probe::new(packing, exactly);
+            let mut probe = DepthProbe::new(packing, exactly);
             spheres
                 .iter()
                 .map(|i| probe.depth(packing.spheres.positions[*i as usize]))
@@ -121,8 +123,9 @@ pub(super) fn of_centres(packing: &Packing, cap: f64) -> Vec<f64> {
     depths
 }
 
-/// The spheres row by row through the box, so that neighbours follow each other (counting sort by cell).
-fn in_rows(packing: &Packing, spheres: Vec<u32>) -> Vec<u32> {
+/// The spheres row by row through the box, so that neighbours follow each other (counting sort by
+/// cell).
+fn in_rows(packing: &BondedPacking, spheres: Vec<u32>) -> Vec<u32> {
     let volume: f64 = packing.extent.iter().product();
     let edge = (SPHERES_PER_CELL * volume / spheres.len().max(1) as f64).cbrt();
     let count = packing.extent.map(|e| (e / edge) as usize + 1);

@@ -1,11 +1,12 @@
 //! Fabric: whether bonds prefer a direction.
 //!
-//! The tensor is the mean of n n^T over the bonds, n the direction of a bond: isotropic, all eigenvalues are 1/3. For N
-//! independent random directions each diagonal entry scatters by sigma = sqrt(4/45/N), and 15/2 N |tensor - 1/3|^2
-//! follows chi-squared with 5 degrees of freedom. The largest of the three eigenvalue deviations is by itself about 2
-//! sigma for such directions, so that the chance says more than the sigmas.
+//! The tensor is the mean of n n^T over the bonds, n the direction of a bond: isotropic, all
+//! eigenvalues are 1/3. For N independent random directions each diagonal entry scatters by sigma =
+//! sqrt(4/45/N), and 15/2 N |tensor - 1/3|^2 follows chi-squared with 5 degrees of freedom. The
+//! largest of the three eigenvalue deviations is by itself about 2 sigma for such directions, so
+//! that the chance says more than the sigmas.
 
-use crate::Spheres;
+use crate::spheres::Spheres;
 use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -28,11 +29,12 @@ pub struct Fabric {
     pub largest_deviation_in_sigma: f64,
     /// The largest deviation is at most 2 sigma.
     pub isotropic_within_2_sigma: bool,
-    /// How often so many independent random directions deviate as much or more, 0 to 1.
+    /// Probability that so many independent random directions deviate as much or more, 0 to 1.
     pub chance: f64,
 }
 
-/// The fabric of the bonds, each end counted for half a bond if `counts` says that its particle counts. None if none does.
+/// The fabric of the bonds, each end counted for half a bond if `counts` says that its particle
+/// counts. None if none does.
 ///
 /// To count only bonds with both ends in a region would favour directions along its border.
 pub(super) fn of(
@@ -91,8 +93,8 @@ pub(super) fn of(
     })
 }
 
-/// Probability that chi-squared with 5 degrees of freedom exceeds `x`: 1 - sqrt(2/pi)/3 integral of t^4 exp(-t^2/2)
-/// from 0 to sqrt(x), by Simpson's rule.
+/// Probability that chi-squared with 5 degrees of freedom exceeds `x`: 1 - sqrt(2/pi)/3 integral of
+/// t^4 exp(-t^2/2) from 0 to sqrt(x), by Simpson's rule.
 fn chi_squared_5_exceeds(x: f64) -> f64 {
     const INTERVALS: u32 = 400;
     let end = x.sqrt().min(12.0);

@@ -1,10 +1,10 @@
 //! Random points in a box, what covers them and how deep they lie.
 //!
-//! The box is cut into equal cells with two random points each (stratified sampling, the same points for the
-//! same box).
+//! The box is cut into equal cells with two random points each (stratified sampling, the same
+//! points for the same box).
 
-use super::Packing;
-use super::depth::{Probe, Question};
+use super::bonded_packing::BondedPacking;
+use super::depth::{DepthProbe, DepthQuery};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
@@ -13,13 +13,13 @@ const MOST_CELLS: f64 = 4e6;
 const SPHERES_PER_TASK: usize = 1024;
 const ROWS_PER_TASK: usize = 16;
 
-/// What is known of the two points of a cell.
+/// The two points of a cell.
 pub(super) struct Pair {
     /// The smallest corner of the cell, local units.
     pub(super) corner: [f64; 3],
-    /// Where they are, local units.
+    /// Their positions, local units.
     pub(super) points: [[f64; 3]; 2],
-    /// How deep they lie, as far as the probe was asked to tell.
+    /// Their depths, as far as the probe was asked to tell.
     pub(super) depths: [f64; 2],
     /// Covered by spheres of true radius.
     pub(super) in_union: [bool; 2],
@@ -64,7 +64,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// So many cells that about `points` random points fall into a region of `volume` within the box.
+    /// So many cells that about `points` random points fall into a region of `volume` within the
+    /// box.
     pub(super) fn new(within: &Box3, volume: f64, points: f64) -> Self {
         let size = within.size();
         let box_volume: f64 = size.iter().product();
@@ -95,9 +96,9 @@ impl Cells {
         let mut points = [[0.0; 3]; 2];
         for k in 0..3 {
             let random = mixed(3 * index + k as u64);
-            let shares = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
-            for (point, share) in points.iter_mut().zip(shares) {
-                point[k] = corner[k] + (share + 0.5) / 4_294_967_296.0 * self.step[k];
+            let fractions = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
+            for (point, fraction) in points.iter_mut().zip(fractions) {
+                point[k] = corner[k] + (fraction + 0.5) / 4_294_967_296.0 * self.step[k];
             }
         }
         points
@@ -121,8 +122,9 @@ fn mixed(counter: u64) -> u64 {
 const GENERATING: [u8; 2] = [1, 4];
 const UNION: [u8; 2] = [2, 8];
 
-/// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true radii.
-fn cover(packing: &Packing, cells: &Cells) -> Vec<AtomicU8> {
+/// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true
+/// radii.
+fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     let covered: Vec<AtomicU8> = (0..cells.count.iter().product())
         .map(|_| AtomicU8::new(0))
         .collect();
@@ -161,12 +163,12 @@ fn cover(packing: &Packing, cells: &Cells) -> Vec<AtomicU8> {
     covered
 }
 
-/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths answer
-/// the question, see [`Probe`].
+/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths
+/// answer the question, see [`DepthProbe`].
 pub(super) fn over_pairs<T: Default + Send>(
-    packing: &Packing,
+    packing: &BondedPacking,
     cells: &Cells,
-    question: Question,
+    question: DepthQuery,
     add: impl Fn(&mut T, &Pair) + Sync,
 ) -> Vec<T> {
     let covered = cover(packing, cells);
@@ -174,7 +176,7 @@ pub(super) fn over_pairs<T: Default + Send>(
     rows.par_chunks(ROWS_PER_TASK)
         .map(|rows| {
             let mut part = T::default();
-            let mut probe = Probe::new(packing, question);
+            let mut probe = DepthProbe::new(packing, question);
             for row in rows {
                 let (y, z) = (row % cells.count[1], row / cells.count[1]);
                 for x in 0..cells.count[0] {

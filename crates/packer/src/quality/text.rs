@@ -1,126 +1,139 @@
-//! The report for a person.
+//! The human-readable report.
 
-use super::{Fabric, Report, Share};
+use super::densities::{Fraction, Layer};
+use super::fabric::Fabric;
+use super::report::Report;
 use crate::sizes::Fit;
 use dem_io::units::{show_length, significant};
 
-/// The report, one subject a line, the names aligned.
-pub(super) fn of(report: &Report) -> String {
-    let mut lines: Vec<(&str, String)> = Vec::new();
-    let contacts = &report.contacts;
-    lines.push((
-        "particles",
-        format!(
-            "{}, mean diameter {}, overlap {}",
-            report.particles,
-            show_length(report.mean_diameter_m),
-            significant(report.overlap, 4)
-        ),
-    ));
+/// A name and what is said of it.
+type Line = (&'static str, String);
+
+impl Report {
+    /// The human-readable report, about twenty aligned lines, one subject each, and the warnings.
+    pub fn text(&self) -> String {
+        let lines: Vec<Line> = density_lines(self)
+            .into_iter()
+            .chain(profile_lines(self))
+            .chain([
+                ("sizes by number", fit(&self.sizes_by_number)),
+                ("sizes by mass", fit(&self.sizes_by_mass)),
+            ])
+            .chain(bond_lines(self))
+            .chain(structure_lines(self))
+            .collect();
+        let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        let mut text: String = lines
+            .iter()
+            .map(|(name, what)| format!("{name:width$}  {what}\n"))
+            .collect();
+        for warning in &self.warnings {
+            text.push_str(&format!("warning: {warning}\n"));
+        }
+        text
+    }
+}
+
+/// Number and sizes of the particles, and how densely they fill the solid.
+fn density_lines(report: &Report) -> Vec<Line> {
+    let particles = format!(
+        "{}, mean diameter {}, overlap {}",
+        report.particles,
+        show_length(report.mean_diameter_m),
+        significant(report.overlap, 4)
+    );
+    let mut lines = vec![("particles", particles)];
     if let Some(density) = report.solid_density_kg_m3 {
         lines.push((
             "solid density",
             format!("{} kg/m3", significant(density, 4)),
         ));
     }
-    lines.push((
-        "packing density",
-        format!(
-            "{} of the shape is inside spheres, {:.4} in r_gen",
-            share(&report.union_density),
-            report.generating_density
+    let packing = format!(
+        "{} of the shape is inside spheres, {:.4} in r_gen",
+        with_error(&report.union_density),
+        report.generating_density
+    );
+    lines.push(("packing density", packing));
+    let depth = show_length(report.interior_depth_m);
+    let interior = report.interior_union_density.as_ref();
+    let interior = match interior.zip(report.interior_generating_density.as_ref()) {
+        Some((union, generating)) => format!(
+            "{}, {} in r_gen, deeper than {depth}",
+            with_error(union),
+            with_error(generating),
         ),
-    ));
-    lines.push((
-        "interior",
-        match (
-            &report.interior_union_density,
-            &report.interior_generating_density,
-        ) {
-            (Some(union), Some(generating)) => {
-                format!(
-                    "{}, {} in r_gen, deeper than {}",
-                    share(union),
-                    share(generating),
-                    show_length(report.interior_depth_m)
-                )
-            }
-            _ => format!(
-                "none: nowhere deeper than {}",
-                show_length(report.interior_depth_m)
-            ),
-        },
-    ));
+        None => format!("none: nowhere deeper than {depth}"),
+    };
+    lines.push(("interior", interior));
+    lines
+}
+
+/// The density from the wall inwards and along the shape.
+fn profile_lines(report: &Report) -> Vec<Line> {
+    let densities = |layers: &[Layer]| {
+        let values: Vec<String> = layers.iter().map(|l| value(l.density.as_ref())).collect();
+        values.join(" ")
+    };
     // The first two diameters, where it changes; the whole profile is in the JSON.
-    let near: Vec<String> = report
-        .wall_profile
-        .iter()
-        .take(8)
-        .map(|l| value(l.density.as_ref()))
-        .collect();
-    lines.push((
-        "from the wall",
-        format!("{} per quarter diameter, r_gen", near.join(" ")),
-    ));
-    let along: Vec<String> = report
-        .slab_profile
-        .iter()
-        .map(|l| value(l.density.as_ref()))
-        .collect();
+    let near = &report.wall_profile[..report.wall_profile.len().min(8)];
+    let near = format!("{} per quarter diameter, r_gen", densities(near));
+    let mut lines = vec![("from the wall", near)];
     if report.interior_generating_density.is_some() {
-        lines.push((
-            "along the shape",
-            format!("{} interior, r_gen", along.join(" ")),
-        ));
+        let along = format!("{} interior, r_gen", densities(&report.slab_profile));
+        lines.push(("along the shape", along));
     }
-    lines.push(("sizes by number", fit(&report.sizes_by_number)));
-    lines.push(("sizes by mass", fit(&report.sizes_by_mass)));
-    lines.push((
-        "bonds",
+    lines
+}
+
+/// Bonds and contacts.
+fn bond_lines(report: &Report) -> [Line; 4] {
+    let contacts = &report.contacts;
+    let up_to = if report.bonding_radius > 0.0 {
         format!(
-            "{}{}, {} per particle, coordination {}",
-            report.bonds,
-            if report.bonding_radius > 0.0 {
-                format!(
-                    " up to bonding radius {}",
-                    significant(report.bonding_radius, 5)
-                )
-            } else {
-                String::new()
-            },
-            significant(report.bonds_per_particle, 4),
-            significant(report.mean_coordination, 4)
-        ),
-    ));
-    lines.push((
-        "contacts",
-        format!(
-            "{} per particle within {} of a radius, {} at the wall, {:.1} % rattlers",
-            significant(contacts.per_particle, 4),
-            significant(contacts.gap_limit, 2),
-            contacts.at_wall,
-            100.0 * contacts.rattlers
-        ),
-    ));
-    lines.push((
-        "exactness",
-        format!(
-            "overlap in r_gen {}, outside the wall {}",
-            of_a_radius(contacts.largest_overlap),
-            of_a_radius(contacts.largest_protrusion)
-        ),
-    ));
+            " up to bonding radius {}",
+            significant(report.bonding_radius, 5)
+        )
+    } else {
+        String::new()
+    };
+    let bonds = format!(
+        "{}{up_to}, {} per particle, coordination {}",
+        report.bonds,
+        significant(report.bonds_per_particle, 4),
+        significant(report.mean_coordination, 4)
+    );
+    let touching = format!(
+        "{} per particle within {} of a radius, {} at the wall, {:.1} % rattlers",
+        significant(contacts.per_particle, 4),
+        significant(contacts.gap_limit, 2),
+        contacts.at_wall,
+        100.0 * contacts.rattlers
+    );
+    let exactness = format!(
+        "overlap in r_gen {}, outside the wall {}",
+        of_a_radius(contacts.largest_overlap),
+        of_a_radius(contacts.largest_protrusion)
+    );
     let pieces = &report.pieces;
-    lines.push((
-        "pieces",
-        format!(
-            "{}, the largest with {:.2} % of the particles; {} on one bond, {} on none",
-            pieces.count,
-            100.0 * pieces.largest_share,
-            pieces.with_one_bond,
-            pieces.without_bond
-        ),
-    ));
+    let in_pieces = format!(
+        "{}, the largest with {:.2} % of the particles; {} on one bond, {} on none",
+        pieces.count,
+        100.0 * pieces.largest_share,
+        pieces.with_one_bond,
+        pieces.without_bond
+    );
+    [
+        ("bonds", bonds),
+        ("contacts", touching),
+        ("exactness", exactness),
+        ("pieces", in_pieces),
+    ]
+}
+
+/// Directions of the bonds, and the thinnest part.
+fn structure_lines(report: &Report) -> Vec<Line> {
+    let mut lines = Vec::new();
     // Near a wall the layers show, which is no preferred direction of the material.
     match (&report.interior_fabric, &report.fabric) {
         (Some(interior), _) => lines.push(("fabric inside", fabric(interior))),
@@ -136,32 +149,22 @@ pub(super) fn of(report: &Report) -> String {
         } else {
             "about"
         };
-        lines.push((
-            "thinnest part",
-            format!(
-                "{about} {} particles across ({})",
-                significant(thinnest.particles_across, 2),
-                show_length(thinnest.thickness_m)
-            ),
-        ));
+        let across = format!(
+            "{about} {} particles across ({})",
+            significant(thinnest.particles_across, 2),
+            show_length(thinnest.thickness_m)
+        );
+        lines.push(("thinnest part", across));
     }
-    let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let mut text: String = lines
-        .iter()
-        .map(|(name, what)| format!("{name:width$}  {what}\n"))
-        .collect();
-    for warning in &report.warnings {
-        text.push_str(&format!("warning: {warning}\n"));
-    }
-    text
+    lines
 }
 
-fn share(share: &Share) -> String {
-    format!("{:.4} +- {:.4}", share.value, share.error)
+fn with_error(fraction: &Fraction) -> String {
+    format!("{:.4} +- {:.4}", fraction.value, fraction.error)
 }
 
-fn value(share: Option<&Share>) -> String {
-    share.map_or_else(|| "-".to_owned(), |s| format!("{:.3}", s.value))
+fn value(fraction: Option<&Fraction>) -> String {
+    fraction.map_or_else(|| "-".to_owned(), |f| format!("{:.3}", f.value))
 }
 
 fn fit(fit: &Fit) -> String {
@@ -182,9 +185,9 @@ fn fabric(fabric: &Fabric) -> String {
     )
 }
 
-fn of_a_radius(share: f64) -> String {
-    if share > 0.0 {
-        format!("{share:.1e} of a radius")
+fn of_a_radius(fraction: f64) -> String {
+    if fraction > 0.0 {
+        format!("{fraction:.1e} of a radius")
     } else {
         "none".to_owned()
     }

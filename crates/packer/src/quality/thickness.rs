@@ -1,32 +1,35 @@
 //! The thinnest part of a body, as its bonds and the depths of its particles show it.
 //!
-//! Particles are taken from the deepest to the shallowest, bonds joining those taken. Where two sets that are both more
-//! than crumbs meet, there is a neck between them, as deep as the shallower end of the joining bond; where a piece ends up
-//! alone, its deepest particle is its thickness. The thinnest part is the smallest of all these, twice the depth. Centres
-//! of particles seldom lie in the very middle, so that this reads low, by up to two diameters. The same is therefore done
-//! with the points of a lattice that lie deeper than the smallest particle needs, each joined to its six neighbours, and the
-//! larger of the two counts, where there are few across. Every way through the solid passes within half a diagonal of its cells of lattice points, so
-//! that the result is too small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
+//! Particles are taken from the deepest to the shallowest, bonds joining those taken. Where two
+//! sets that are both more than crumbs meet, there is a neck between them, as deep as the shallower
+//! end of the joining bond; where a piece ends up alone, its deepest particle is its thickness. The
+//! thinnest part is the smallest of all these, twice the depth. Centres of particles seldom lie in
+//! the very middle, so that this reads low, by up to two diameters. The same is therefore done with
+//! the points of a lattice that lie deeper than the smallest particle needs, each joined to its six
+//! neighbours, and the larger of the two counts, where there are few across. Every way through the
+//! solid passes within half a diagonal of its cells of lattice points, so that the result is too
+//! small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
 //! in larger bodies. It does not see a fin that grows out of a thick part.
 
-use super::Packing;
-use super::depth::{Probe, Question};
-use super::pieces::Sets;
+use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
+use super::depth::{DepthProbe, DepthQuery};
+use dem_io::disjoint::DisjointSets;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Thicker than twice this is not measured.
-pub(super) const CAP_IN_MEAN_DIAMETERS: f64 = 10.0;
 /// Steps of depth up to the cap.
 const LEVELS: usize = 400;
-/// Where so many mean diameters fit across by the particles, the lattice is left out: two more or less do not matter.
+/// The lattice is left out where so many mean diameters fit across by the particles: two more or
+/// less do not matter.
 const MANY_ACROSS: f64 = 15.0;
-/// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less across.
+/// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less
+/// across.
 const FINEST_EDGE: f64 = 0.25;
-/// Points of the lattice inside the solid, about, and in the whole box, for regions that fill little of it.
+/// Points of the lattice inside the solid, about, and in the whole box, for regions that fill
+/// little of it.
 const MOST_POINTS: f64 = 1.5e5;
 const MOST_POINTS_IN_BOX: f64 = 1e6;
-/// A set of fewer particles, or of a smaller share of them, is a crumb.
+/// A set of fewer particles, or of a smaller fraction of them, is a crumb.
 const FEWEST_PARTICLES: usize = 20;
 const SMALLEST_PART: f64 = 0.01;
 
@@ -42,7 +45,11 @@ pub struct Thinnest {
 }
 
 /// The thinnest part: see above. None without particles.
-pub(super) fn thinnest(packing: &Packing, depths: &[f64], mean_diameter: f64) -> Option<Thinnest> {
+pub(super) fn thinnest(
+    packing: &BondedPacking,
+    depths: &[f64],
+    mean_diameter: f64,
+) -> Option<Thinnest> {
     let cap = CAP_IN_MEAN_DIAMETERS * mean_diameter;
     let by_particles = neck(depths, packing.bonds, cap, FEWEST_PARTICLES)?;
     let are_many = by_particles > 0.5 * MANY_ACROSS * mean_diameter;
@@ -62,9 +69,10 @@ pub(super) fn thinnest(packing: &Packing, depths: &[f64], mean_diameter: f64) ->
     })
 }
 
-/// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of neighbours. A point is in the middle of the box, so
-/// that the middle of a symmetric shape is not missed.
-fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
+/// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of
+/// neighbours. A point is in the middle of the box, so that the middle of a symmetric shape is not
+/// missed.
+fn lattice(packing: &BondedPacking, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
     let box_volume: f64 = packing.extent.iter().product();
     let edge = (FINEST_EDGE * mean_diameter)
         .max((packing.shape_volume / MOST_POINTS).cbrt())
@@ -72,7 +80,7 @@ fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u
     let each_side = packing.extent.map(|e| (0.5 * e / edge) as usize);
     let [nx, ny, nz] = each_side.map(|n| 2 * n + 1);
     let smallest = (packing.spheres.radii.iter().copied()).fold(f64::INFINITY, f64::min);
-    let to_a_level = Question {
+    let to_a_level = DepthQuery {
         floor: smallest * (1.0 - 1e-9),
         cap,
         layer: cap / LEVELS as f64,
@@ -82,7 +90,7 @@ fn lattice(packing: &Packing, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u
         (0..ny * nz)
             .into_par_iter()
             .flat_map_iter(|row| {
-                let mut probe = Probe::new(packing, to_a_level);
+                let mut probe = DepthProbe::new(packing, to_a_level);
                 (0..nx).map(move |x| {
                     let at = [x, row % ny, row / ny];
                     probe.depth([0, 1, 2].map(|k| {
@@ -127,7 +135,7 @@ fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f
     let levels: Vec<u16> = depths.iter().map(|d| level(*d) as u16).collect();
     let crumb = fewest.max((SMALLEST_PART * depths.len() as f64) as usize) as u32;
 
-    let mut sets = Sets::new(depths.len());
+    let mut sets = DisjointSets::new(depths.len());
     let mut thinnest = LEVELS;
     for bond in deepest_first(bonds, &levels) {
         let [a, b] = bonds[bond as usize];
@@ -150,8 +158,8 @@ fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f
     Some(top * thinnest as f64 / LEVELS as f64)
 }
 
-/// Indices of the bonds, ordered by the level of the shallower end and then of the deeper one, the deepest first: a
-/// particle joins what lies deeper before it joins its like.
+/// Indices of the bonds, ordered by the level of the shallower end and then of the deeper one, the
+/// deepest first: a particle joins what lies deeper before it joins its like.
 fn deepest_first(bonds: &[[u32; 2]], levels: &[u16]) -> Vec<u32> {
     let ends = |bond: u32| bonds[bond as usize].map(|i| levels[i as usize]);
     let any_order = (0..bonds.len() as u32).collect();

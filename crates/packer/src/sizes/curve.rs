@@ -1,6 +1,7 @@
-//! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick to invert.
+//! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick
+//! to invert.
 
-/// Accepted error of one cell, as a share of the whole.
+/// Accepted error of one cell, as a fraction of the whole.
 const TOLERANCE: f64 = 1e-9;
 /// Cells of the table that says where to begin the search for a quantile.
 const GUIDE_CELLS: usize = 4096;
@@ -13,14 +14,15 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// In `[start, start + width]` the distribution rises from `below` by `share`, along the cubic that leaves with
-/// slope `slope_start` and arrives with `slope_end` (both 1 for a straight line; at most 3, so that it is monotone).
+/// In `[start, start + width]` the distribution rises from `below` by `fraction`, along the cubic
+/// that leaves with slope `slope_start` and arrives with `slope_end` (both 1 for a straight line;
+/// at most 3, so that it is monotone).
 #[derive(Debug, Clone)]
 struct Cell {
     start: f64,
     width: f64,
     below: f64,
-    share: f64,
+    fraction: f64,
     slope_start: f64,
     slope_end: f64,
 }
@@ -36,7 +38,8 @@ impl Cell {
         a + t * (2.0 * (3.0 - 2.0 * a - b) + t * 3.0 * (a + b - 2.0))
     }
 
-    /// Where in the cell (0 to 1) the rise is `wanted` (0 to 1): Newton, kept inside a bracket.
+    /// Position in the cell (0 to 1) at which the rise is `wanted` (0 to 1): Newton, kept inside a
+    /// bracket.
     fn solve(&self, wanted: f64) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         let mut t = wanted;
@@ -79,7 +82,7 @@ impl Curve {
             start: diameter,
             width: 0.0,
             below: 0.0,
-            share: 1.0,
+            fraction: 1.0,
             slope_start: 1.0,
             slope_end: 1.0,
         };
@@ -91,8 +94,9 @@ impl Curve {
         }
     }
 
-    /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i, diameter)`: smooth and
-    /// without a peak much narrower than the piece. Need not be normalised. None if the whole is zero or not finite.
+    /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i,
+    /// diameter)`: smooth and without a peak much narrower than the piece. Need not be normalised.
+    /// None if the whole is zero or not finite.
     pub(super) fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
         let pieces = || {
             knots
@@ -117,21 +121,22 @@ impl Curve {
                 &mut cells,
             );
         }
-        let total: f64 = cells.iter().map(|c: &Cell| c.share).sum();
+        let total: f64 = cells.iter().map(|c: &Cell| c.fraction).sum();
         let mut moment = 0.0;
         let mut below = 0.0;
         for cell in &mut cells {
-            cell.share /= total;
+            cell.fraction /= total;
             cell.below = below;
-            below += cell.share;
-            moment += cell.share * (cell.start + cell.width * cell.mean_position());
+            below += cell.fraction;
+            moment += cell.fraction * (cell.start + cell.width * cell.mean_position());
         }
-        // Cells without share (a flat part of a sieve curve) are never drawn from and say nothing of the rise.
+        // Empty cells (a flat part of a sieve curve) are never drawn from and say nothing
+        // of the rise.
         let guide = (0..GUIDE_CELLS)
             .map(|g| {
                 let u = g as f64 / GUIDE_CELLS as f64;
                 cells
-                    .partition_point(|c| c.below + c.share <= u)
+                    .partition_point(|c| c.below + c.fraction <= u)
                     .min(cells.len() - 1) as u32
             })
             .collect();
@@ -154,21 +159,23 @@ impl Curve {
             return 0.0;
         };
         let t = ((diameter - cell.start) / cell.width).clamp(0.0, 1.0);
-        (cell.below + cell.share * cell.rise(t)).min(1.0)
+        (cell.below + cell.fraction * cell.rise(t)).min(1.0)
     }
 
-    /// The diameter that the share `u` of the distribution lies below. `u` outside [0, 1] counts as the nearer end.
+    /// The diameter that the fraction `u` of the distribution lies below. `u` outside [0, 1] counts
+    /// as the nearer end.
     pub(super) fn quantile(&self, u: f64) -> f64 {
         let u = u.clamp(0.0, 1.0);
         let mut index =
             self.guide[((u * GUIDE_CELLS as f64) as usize).min(GUIDE_CELLS - 1)] as usize;
-        while index + 1 < self.cells.len() && u >= self.cells[index].below + self.cells[index].share
+        while index + 1 < self.cells.len()
+            && u >= self.cells[index].below + self.cells[index].fraction
         {
             index += 1;
         }
         let cell = &self.cells[index];
-        let wanted = if cell.share > 0.0 {
-            ((u - cell.below) / cell.share).clamp(0.0, 1.0)
+        let wanted = if cell.fraction > 0.0 {
+            ((u - cell.below) / cell.fraction).clamp(0.0, 1.0)
         } else {
             1.0
         };
@@ -192,8 +199,8 @@ fn gauss(from: f64, to: f64, density: &impl Fn(f64) -> f64) -> f64 {
         .sum::<f64>()
 }
 
-/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the cells with
-/// their integrals as `share`.
+/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the
+/// cells with their integrals as `fraction`.
 fn refine(
     from: f64,
     to: f64,
@@ -205,19 +212,19 @@ fn refine(
     let middle = 0.5 * (from + to);
     let whole = gauss(from, to, density);
     let left = gauss(from, middle, density);
-    let share = left + gauss(middle, to, density);
+    let fraction = left + gauss(middle, to, density);
     let width = to - from;
     let (first, last) = (density(from) * width, density(to) * width);
-    let cubic_left = 0.5 * share + 0.125 * (first - last);
-    let error = (left - cubic_left).abs() + (share - whole).abs();
-    let steep = first.max(last) > 3.0 * share && share > tolerance;
+    let cubic_left = 0.5 * fraction + 0.125 * (first - last);
+    let error = (left - cubic_left).abs() + (fraction - whole).abs();
+    let steep = first.max(last) > 3.0 * fraction && fraction > tolerance;
     if depth > 0 && (error > tolerance || steep) {
         refine(from, middle, density, tolerance, depth - 1, cells);
         refine(middle, to, density, tolerance, depth - 1, cells);
     } else {
         let slope = |end: f64| {
-            if share > 0.0 {
-                (end / share).min(3.0)
+            if fraction > 0.0 {
+                (end / fraction).min(3.0)
             } else {
                 1.0
             }
@@ -226,7 +233,7 @@ fn refine(
             start: from,
             width,
             below: 0.0,
-            share,
+            fraction,
             slope_start: slope(first),
             slope_end: slope(last),
         });

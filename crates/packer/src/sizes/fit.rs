@@ -1,10 +1,11 @@
-//! How well placed particles follow the sizes asked for: one-sample Kolmogorov-Smirnov distances.
+//! Agreement of the sizes placed with those asked for: one-sample Kolmogorov-Smirnov distances.
 
-use super::Sizes;
+use super::distribution::Sizes;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The Kolmogorov-Smirnov distance that 95 % of large samples stay below, times the root of their size.
+/// The Kolmogorov-Smirnov distance that 95 % of large samples stay below, times the root of their
+/// size.
 const LIMIT_95: f64 = 1.358;
 
 /// The largest difference between the distribution of a sample and the one asked for.
@@ -12,7 +13,8 @@ const LIMIT_95: f64 = 1.358;
 pub struct Fit {
     /// The largest difference of the two distribution functions, 0 to 1.
     pub distance: f64,
-    /// What 95 % of random samples of this size stay below: 1.358/sqrt(n), n the effective size.
+    /// Limit that 95 % of random samples of this size stay below: 1.358/sqrt(n), n the effective
+    /// size.
     pub limit_95: f64,
     /// Number of particles; by mass (sum of masses)^2 / (sum of squared masses).
     pub effective_samples: f64,
@@ -25,13 +27,15 @@ impl Fit {
     }
 }
 
-/// Distance between the shares by number of these diameters (m) and of `sizes`. No diameters: distance 0.
+/// Distance between the fractions by number of these diameters (m) and of `sizes`. No diameters:
+/// distance 0.
 pub fn ks_distance_by_number(diameters_m: &[f64], sizes: &Sizes) -> Fit {
     distance(diameters_m, sizes, |_| 1.0, |d| sizes.cdf_by_number(d))
 }
 
-/// Distance between the shares by mass of these diameters (m) and of `sizes`: each particle weighs the third power of
-/// its diameter. The limit takes the effective number of particles for a plain sample, a good approximation.
+/// Distance between the fractions by mass of these diameters (m) and of `sizes`: each particle
+/// weighs the third power of its diameter. The limit takes the effective number of particles for a
+/// plain sample, a good approximation.
 pub fn ks_distance_by_mass(diameters_m: &[f64], sizes: &Sizes) -> Fit {
     let largest = sizes.max_m();
     distance(
@@ -60,11 +64,11 @@ fn distance(
     let mut distance = 0.0_f64;
     let mut below = 0.0;
     for diameter in &sorted {
-        let share = weight(*diameter) / total;
+        let fraction = weight(*diameter) / total;
         if sizes.is_one_size() {
-            // A step: what counts is the share that is off it, beyond rounding.
+            // A step: what counts is the fraction that is off it, beyond rounding.
             distance += if (diameter / sizes.min_m() - 1.0).abs() > 1e-9 {
-                share
+                fraction
             } else {
                 0.0
             };
@@ -72,9 +76,9 @@ fn distance(
             let wanted = cdf(*diameter);
             distance = distance
                 .max((wanted - below).abs())
-                .max((wanted - below - share).abs());
+                .max((wanted - below - fraction).abs());
         }
-        below += share;
+        below += fraction;
     }
     let limit_95 = if effective_samples > 0.0 {
         LIMIT_95 / effective_samples.sqrt()

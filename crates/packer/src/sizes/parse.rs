@@ -1,4 +1,4 @@
-//! What a user types for the sizes -> a law with checked numbers, in metres.
+//! The sizes as typed -> a law with checked numbers, in metres.
 
 use super::sieve::{self, SieveCurve};
 use dem_io::units::{length_m, show_length};

@@ -1,9 +1,9 @@
 //! Sieve curves: a table of openings and cumulative passing.
 //!
 //! Two columns, separated by comma, semicolon or tab. The unit of the opening stands in the header
-//! (`opening_mm`, `Opening [mm]`) or at each value (`2 mm`). Passing is a percentage or a fraction: by the header
-//! (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or finest first; `#` begins a comment;
-//! with semicolons a decimal comma is understood.
+//! (`opening_mm`, `Opening [mm]`) or at each value (`2 mm`). Passing is a percentage or a fraction:
+//! by the header (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or
+//! finest first; `#` begins a comment; with semicolons a decimal comma is understood.
 
 use dem_io::units::{length_m, length_unit_m, significant};
 use dem_io::{Diagnostic, Result};
@@ -18,7 +18,7 @@ pub(super) struct SieveCurve {
     pub(super) openings_m: Vec<f64>,
     /// Share that passes, never falling, first 0 and last 1. As many as openings.
     pub(super) passing: Vec<f64>,
-    /// What was done to the curve, to be appended to a sentence. May be empty.
+    /// Changes to the curve, to be appended to a sentence. May be empty.
     pub(super) note: String,
 }
 
@@ -163,12 +163,9 @@ fn header_unit_m(header: &[String]) -> Option<f64> {
         .find_map(|word| length_unit_m(word).ok())
 }
 
-/// Checks the rows (passing as fractions) and stretches them to the whole.
-fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
-    if rows[0].opening_m > rows[1].opening_m {
-        rows.reverse();
-    }
-    for row in &rows {
+/// Refuses passing outside 0 to 1, and a curve that does not rise.
+fn check_rising(rows: &[Row]) -> Result<()> {
+    for row in rows {
         if !(0.0..=1.0).contains(&row.passing) {
             let percent = significant(100.0 * row.passing, 6);
             return Err(at(
@@ -199,6 +196,11 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
             ));
         }
     }
+    Ok(())
+}
+
+/// Refuses a curve that begins too far above 0 or ends too far below 1.
+fn check_ends(rows: &[Row]) -> Result<()> {
     let (first, last) = (rows[0].passing, rows[rows.len() - 1].passing);
     if first > LARGEST_GAP {
         return Err(at(
@@ -222,6 +224,17 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
             "add the size that everything passes, with 100 %",
         ));
     }
+    Ok(())
+}
+
+/// Checks the rows (passing as fractions) and stretches them to the whole.
+fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
+    if rows[0].opening_m > rows[1].opening_m {
+        rows.reverse();
+    }
+    check_rising(&rows)?;
+    check_ends(&rows)?;
+    let (first, last) = (rows[0].passing, rows[rows.len() - 1].passing);
     let note = if first > 0.0 || last < 1.0 {
         format!(
             "; {} % below the smallest and {} % above the largest opening left out",

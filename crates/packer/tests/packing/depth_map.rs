@@ -1,11 +1,11 @@
 //! Distances of the depth map against all triangles one by one and winding numbers.
 
-use super::exact::winding_number;
-use super::facets::cuboid;
-use super::solids::{
+use crate::helpers::exact::winding_number;
+use crate::helpers::facets::cuboid;
+use crate::helpers::solids::{
     distance_to_surface, icosphere, local_facets, point_between, random_numbers, surface_of, torus,
 };
-use dem_pack::depth_map::DepthMap;
+use dem_pack::internals::DepthMap;
 
 #[test]
 fn depths_are_exact_inside_and_never_too_far_outside() {

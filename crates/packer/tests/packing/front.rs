@@ -1,22 +1,17 @@
 //! The bare front: every sphere leans on three others or on two and the wall, whatever its seeds.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid, prism};
-use super::solids::{distance_to_surface, icosphere, local_facets, surface_of};
-use dem_pack::pack::{PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::{Facets, cuboid, prism};
+use crate::helpers::packing::{pack_with, settings};
+use crate::helpers::solids::{distance_to_surface, icosphere, surface_of};
+use dem_pack::{PackSettings, Packing};
 
 fn bare_front(facets: &Facets, diameter: &str, overlap: f64) -> (Facets, Packing) {
-    let (surface, boundary) = surface_of(facets);
     let settings = PackSettings {
-        sizes: Sizes::parse(diameter, By::Number).unwrap(),
-        overlap,
         seed: 3,
-        settle: Some(0.0),
-        seed_point_m: None,
+        ..settings(diameter, overlap, Some(0.0))
     };
-    let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
-    (local_facets(&surface), packing)
+    pack_with(facets, &settings)
 }
 
 /// Spheres that touch fewer than three others and walls.
@@ -74,7 +69,8 @@ fn spheres_touch_three_others_or_two_and_the_wall() {
             overlap,
             0.0,
         );
-        // The first three of a front lean on each other only, and some fillers of voids stand where they have most room.
+        // The first three of a front lean on each other only, and some fillers of voids stand where
+        // they have most room.
         let free = 3 * packing.history.fronts + packing.history.loose_fillers;
         let found = unsupported(&facets, &packing, overlap);
         assert!(
@@ -121,7 +117,8 @@ fn no_void_is_left_that_takes_one_more_sphere_of_one_size() {
     let overlap = 0.2;
     let (facets, packing) = bare_front(&cuboid([10.0, 8.0, 7.0]), "1mm", overlap);
     assert_eq!(packing.history.voids_left, 0);
-    // Points on a fine lattice where a sphere would fit with a tenth to spare; a void that takes one more is there to be hit.
+    // Points on a fine lattice where a sphere would fit with a tenth to spare; a void that takes
+    // one more is there to be hit.
     let spheres = &packing.spheres;
     let radius = spheres.radii[0];
     let spacing = 0.1 * radius;

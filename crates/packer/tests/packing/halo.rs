@@ -1,14 +1,14 @@
 //! Corners of a halo, against the three-sphere intersection worked out from scratch.
 
-use super::exact::largest_overlap;
-use super::solids::{between, point_between, random_numbers};
-use dem_pack::Vector3;
-use dem_pack::grid::Ball;
-use dem_pack::halo::{Halo, Neighbours};
+use crate::helpers::exact::largest_overlap;
+use crate::helpers::solids::{between, point_between, random_numbers};
+use dem_pack::internals::ReducedSphere;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::{Halo, Neighbours};
 use rand::rngs::ChaCha8Rng;
 
 /// A front sphere in the middle and others around it, none overlapping another.
-fn crowd(random: &mut ChaCha8Rng) -> Vec<Ball> {
+fn crowd(random: &mut ChaCha8Rng) -> Vec<ReducedSphere> {
     let mut balls = vec![[0.0, 0.0, 0.0, between(random, 0.5, 1.0)]];
     for _ in 0..400 {
         let [x, y, z] = point_between(random, [-3.0; 3], [3.0; 3]);
@@ -20,16 +20,21 @@ fn crowd(random: &mut ChaCha8Rng) -> Vec<Ball> {
     balls
 }
 
-fn centre(ball: &Ball) -> Vector3 {
+fn centre(ball: &ReducedSphere) -> Vector3 {
     Vector3::new(ball[0], ball[1], ball[2])
 }
 
-fn gap(a: &Ball, b: &Ball) -> f64 {
+fn gap(a: &ReducedSphere, b: &ReducedSphere) -> f64 {
     (centre(a) - centre(b)).norm() - a[3] - b[3]
 }
 
 /// Centres of the spheres of radius `new` that touch three others.
-fn touching_three(a: &Ball, b: &Ball, c: &Ball, new: f64) -> Vec<Vector3> {
+fn touching_three(
+    a: &ReducedSphere,
+    b: &ReducedSphere,
+    c: &ReducedSphere,
+    new: f64,
+) -> Vec<Vector3> {
     let (ra, rb, rc) = (a[3] + new, b[3] + new, c[3] + new);
     let (ab, ac) = (centre(b) - centre(a), centre(c) - centre(a));
     let d = ab.norm();

@@ -1,15 +1,16 @@
-//! Which points lie inside, against winding numbers and closed forms, and where rays meet the surface.
+//! Which points lie inside, against winding numbers and closed forms, and where rays meet the
+//! surface.
 
-use super::exact::{length, winding_number};
-use super::facets::{Facets, Point, cuboid, rounded};
-use super::solids::{
+use crate::helpers::exact::{length, winding_number};
+use crate::helpers::facets::{Facets, Point, cuboid, rounded};
+use crate::helpers::solids::{
     icosphere, local_facets, point_between, random_numbers, surface_of, torus, turned,
     turned_inside_out,
 };
 use dem_io::Surface;
-use dem_pack::Vector3;
-use dem_pack::boundary::Boundary;
-use dem_pack::inside::{self, first_hit};
+use dem_pack::internals::Boundary;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::{self, first_hit};
 
 /// A point of the file (mm) in local units.
 fn local(surface: &Surface, p: Point) -> Vector3 {
@@ -17,7 +18,7 @@ fn local(surface: &Surface, p: Point) -> Vector3 {
 }
 
 fn is_inside((surface, boundary): &(Surface, Boundary), p: Point) -> bool {
-    inside::is_inside(boundary, &local(surface, p))
+    internals::is_inside(boundary, &local(surface, p))
 }
 
 #[test]
@@ -40,7 +41,7 @@ fn agrees_with_the_winding_number_everywhere_around_a_torus() {
             );
             let wanted = winding_number(&facets, &p) > 0;
             assert_eq!(
-                inside::is_inside(&boundary, &Vector3::from(p)),
+                internals::is_inside(&boundary, &Vector3::from(p)),
                 wanted,
                 "{p:?}"
             );
@@ -93,7 +94,8 @@ fn points_in_line_with_vertices_and_edges_are_decided() {
 
 #[test]
 fn rays_aimed_at_vertices_and_edges_are_decided() {
-    // The first directions that are tried, and how far the ray starts from the place that it is aimed at.
+    // The first directions that are tried, and how far the ray starts from the place that it is
+    // aimed at.
     let directions = [
         [0.577_215_66, 0.321_309_89, 0.751_988_48],
         [-0.414_213_56, 0.732_050_81, 0.540_963_27],
@@ -243,7 +245,7 @@ fn near_the_wall_the_nearest_triangle_tells_the_side() {
                 let near = boundary.triangles_near(&p, 2.0 * off + 1e-6);
                 tried += 1;
                 if let Some(behind) = boundary.is_behind_nearest(near, &p) {
-                    assert_eq!(behind, inside::is_inside(&boundary, &p), "{p:?}");
+                    assert_eq!(behind, internals::is_inside(&boundary, &p), "{p:?}");
                     decided += 1;
                 }
             }

@@ -1,27 +1,11 @@
 //! The whole packing, exact on shapes of many kinds, sizes and orientations.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid};
-use super::solids::{between, local_facets, random_numbers, random_solid, surface_of, turned};
-use dem_pack::pack::{PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::cuboid;
+use crate::helpers::packing::{pack_with, settings};
+use crate::helpers::solids::{between, random_numbers, random_solid, surface_of, turned};
+use dem_pack::{PackSettings, pack};
 use rand::RngExt;
-
-fn pack_with(facets: &Facets, settings: &PackSettings) -> (Facets, Packing) {
-    let (surface, boundary) = surface_of(facets);
-    let packing = pack(&surface, &boundary, settings, &|_, _| Ok(())).unwrap();
-    (local_facets(&surface), packing)
-}
-
-fn settings(diameter: &str, overlap: f64, settle: Option<f64>) -> PackSettings {
-    PackSettings {
-        sizes: Sizes::parse(diameter, By::Number).unwrap(),
-        overlap,
-        seed: 1,
-        settle,
-        seed_point_m: None,
-    }
-}
 
 /// Packs solids of one kind with random sizes, orientations, diameters, overlaps and seeds.
 fn exact_on(kind: usize) {
@@ -75,7 +59,8 @@ fn exact_on(kind: usize) {
                     "{what}: {d}"
                 );
             }
-            // However bad the shape, no packing of spheres is as thin as this unless a part was forgotten.
+            // However bad the shape, no packing of spheres is as thin as this unless a part was
+            // forgotten.
             let filled = spheres
                 .radii
                 .iter()
@@ -155,7 +140,8 @@ fn a_sphere_that_just_fits_is_placed() {
     );
 }
 
-/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the rounding of the last step.
+/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the
+/// rounding of the last step.
 #[test]
 fn exact_in_a_plate_one_sphere_thick() {
     for seed in 1..=10 {
@@ -177,7 +163,8 @@ fn exact_in_a_plate_one_sphere_thick() {
     }
 }
 
-/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than any sphere can.
+/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than
+/// any sphere can.
 #[test]
 fn exact_from_a_seed_almost_on_the_wall() {
     for settle in [Some(0.0), None] {
@@ -200,19 +187,18 @@ fn exact_from_a_seed_almost_on_the_wall() {
 
 #[test]
 fn the_front_begins_at_the_point_given() {
-    let (surface, boundary) = surface_of(&cuboid([20.0, 10.0, 10.0]));
+    let (surface, _) = surface_of(&cuboid([20.0, 10.0, 10.0]));
     let given = [3e-3, 4e-3, 5e-3];
     let settings = PackSettings {
         seed_point_m: Some(given),
         ..settings("1mm..1.5mm", 0.2, Some(0.0))
     };
-    let packing = pack(&surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
+    let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
     for (found, wanted) in packing.history.seed_point_m.iter().zip(given) {
         assert!((found - wanted).abs() < 1e-15);
     }
     let elsewhere = pack(
         &surface,
-        &boundary,
         &PackSettings {
             seed_point_m: None,
             ..settings.clone()
@@ -225,13 +211,13 @@ fn the_front_begins_at_the_point_given() {
         seed_point_m: Some([-1e-3, 4e-3, 5e-3]),
         ..settings
     };
-    let error = pack(&surface, &boundary, &outside, &|_, _| Ok(())).unwrap_err();
+    let error = pack(&surface, &outside, &|_, _| Ok(())).unwrap_err();
     assert_eq!(error.place, "--seed-point");
 }
 
 #[test]
 fn a_stop_asked_for_by_progress_stops_it() {
-    let (surface, boundary) = surface_of(&cuboid([20.0, 10.0, 10.0]));
+    let (surface, _) = surface_of(&cuboid([20.0, 10.0, 10.0]));
     for stage in ["front", "settling", "filling voids"] {
         let stop = |now: &str, _: f64| {
             if now == stage {
@@ -240,12 +226,7 @@ fn a_stop_asked_for_by_progress_stops_it() {
                 Ok(())
             }
         };
-        let stopped = pack(
-            &surface,
-            &boundary,
-            &settings("1mm..1.5mm", 0.2, Some(0.034)),
-            &stop,
-        );
+        let stopped = pack(&surface, &settings("1mm..1.5mm", 0.2, Some(0.034)), &stop);
         assert_eq!(stopped.unwrap_err().problem, "stopped", "{stage}");
     }
 }

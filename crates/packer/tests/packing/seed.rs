@@ -1,19 +1,22 @@
 //! The deepest point, against closed forms and points tried at random; the first three spheres.
 
-use super::exact::winding_number;
-use super::facets::{Facets, cuboid};
-use super::solids::{
+use crate::helpers::exact::winding_number;
+use crate::helpers::facets::{Facets, cuboid};
+use crate::helpers::solids::{
     between, distance_to_surface, icosphere, local_facets, point_between, random_numbers,
     surface_of, torus, turned, turned_inside_out,
 };
-use dem_pack::seed::{Inscribed, deepest_point, first_spheres, inner_points, spread_points};
+use dem_pack::internals::{
+    InscribedSphere, deepest_point, first_spheres, inner_points, spread_points,
+};
 use std::f64::consts::PI;
 
-/// Radius in mm of the largest ball that is found; checked to be inside, and not beaten by random points.
+/// Radius in mm of the largest ball that is found; checked to be inside, and not beaten by random
+/// points.
 fn deepest_mm(facets: &Facets) -> f64 {
     let (surface, boundary) = surface_of(facets);
     let inner = inner_points(&boundary, &surface);
-    let Inscribed { centre, radius } = deepest_point(&boundary, &surface, &inner).unwrap();
+    let InscribedSphere { centre, radius } = deepest_point(&boundary, &surface, &inner).unwrap();
     let facets = local_facets(&surface);
     let centre = [centre.x, centre.y, centre.z];
     assert!(winding_number(&facets, &centre) > 0);
@@ -67,7 +70,8 @@ fn of_a_ball_its_centre() {
 
 #[test]
 fn of_a_torus_its_tube() {
-    // The tube is 5 where its facets touch the torus, and off by less than the chords' depths elsewhere.
+    // The tube is 5 where its facets touch the torus, and off by less than the chords' depths
+    // elsewhere.
     let (ring, tube) = (96.0, 48.0);
     let chords = 5.0 * (1.0 - (PI / tube).cos()) + 25.0 * (1.0 - (PI / ring).cos());
     let found = deepest_mm(&torus(20.0, 5.0, ring as usize, tube as usize));
@@ -121,7 +125,7 @@ fn inner_points_lie_inside_and_know_their_depth_in_every_part() {
         assert!((distance_to_surface(&facets, &centre) - ball.radius).abs() < 1e-12);
     }
     let in_small_part =
-        |ball: &&Inscribed| surface.origin_m[0] + surface.unit_m * ball.centre.x > 20e-3;
+        |ball: &&InscribedSphere| surface.origin_m[0] + surface.unit_m * ball.centre.x > 20e-3;
     assert!(inner.iter().filter(in_small_part).count() >= 6);
 }
 
@@ -130,7 +134,8 @@ fn the_first_three_spheres_touch_each_other() {
     let mut random = random_numbers(5);
     for _ in 0..200 {
         let reduced = [0; 3].map(|_| between(&mut random, 0.2, 2.0));
-        let centre = dem_pack::Vector3::from(point_between(&mut random, [-5.0; 3], [5.0; 3]));
+        let centre =
+            dem_pack::internals::Vector3::from(point_between(&mut random, [-5.0; 3], [5.0; 3]));
         let placed = first_spheres(&centre, reduced.map(|r| 1.25 * r), reduced, &|_, _| true);
         assert_eq!(placed.len(), 3);
         for (a, b) in [(0, 1), (0, 2), (1, 2)] {
@@ -143,7 +148,7 @@ fn the_first_three_spheres_touch_each_other() {
 
 #[test]
 fn only_as_many_first_spheres_as_fit() {
-    let centre = dem_pack::Vector3::zeros();
+    let centre = dem_pack::internals::Vector3::zeros();
     let one = first_spheres(&centre, [1.0; 3], [1.0; 3], &|p, _| p.norm() < 1e-9);
     assert_eq!(one.len(), 1);
     assert_eq!(

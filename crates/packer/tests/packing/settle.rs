@@ -1,17 +1,20 @@
-//! Settling: what overlaps is pushed apart and away from the wall, and where there is no room spheres are taken out.
+//! Settling: what overlaps is pushed apart and away from the wall, and where there is no room
+//! spheres are taken out.
 
-use super::exact::assert_exact;
-use super::facets::{Facets, cuboid};
-use super::solids::{between, icosphere, local_facets, point_between, random_numbers, surface_of};
-use dem_pack::Vector3;
-use dem_pack::boundary::Boundary;
-use dem_pack::grid::Ball;
-use dem_pack::inside::is_inside;
-use dem_pack::settle::{Settled, WhenJammed, settle};
+use crate::helpers::exact::assert_exact;
+use crate::helpers::facets::{Facets, cuboid};
+use crate::helpers::solids::{
+    between, icosphere, local_facets, point_between, random_numbers, surface_of,
+};
+use dem_pack::internals::Boundary;
+use dem_pack::internals::ReducedSphere;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::is_inside;
+use dem_pack::internals::{Settled, WhenJammed, minimise_overlaps};
 use std::f64::consts::PI;
 
-/// Spheres at random places inside until their reduced volumes are this share of the solid, none nearer to another or to the
-/// wall than the share `apart` of where they would touch.
+/// Spheres at random places inside until their reduced volumes are this share of the solid, none
+/// nearer to another or to the wall than the share `apart` of where they would touch.
 fn cloud(
     facets: &Facets,
     share: f64,
@@ -19,12 +22,12 @@ fn cloud(
     overlap: f64,
     apart: f64,
     seed: u64,
-) -> (Facets, Vec<Ball>, Boundary) {
+) -> (Facets, Vec<ReducedSphere>, Boundary) {
     let (surface, boundary) = surface_of(facets);
     let unit_mm = surface.unit_m * 1e3;
     let volume = surface.volume_m3() / surface.unit_m.powi(3);
     let mut random = random_numbers(seed);
-    let mut balls: Vec<Ball> = Vec::new();
+    let mut balls: Vec<ReducedSphere> = Vec::new();
     let mut filled = 0.0;
     while filled < share * volume {
         let radius = between(&mut random, 0.5 * sizes[0], 0.5 * sizes[1]) / unit_mm;
@@ -43,14 +46,14 @@ fn cloud(
     (local_facets(&surface), balls, boundary)
 }
 
-fn assert_settled(name: &str, facets: &Facets, balls: &[Ball], overlap: f64) {
+fn assert_settled(name: &str, facets: &Facets, balls: &[ReducedSphere], overlap: f64) {
     let positions: Vec<[f64; 3]> = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
     let radii: Vec<f64> = balls.iter().map(|b| b[3] * (1.0 + overlap)).collect();
     assert_exact(name, facets, &positions, &radii, overlap, 0.0);
 }
 
 /// Sizes, sorted.
-fn sizes_of(balls: &[Ball]) -> Vec<f64> {
+fn sizes_of(balls: &[ReducedSphere]) -> Vec<f64> {
     let mut sizes: Vec<f64> = balls.iter().map(|b| b[3]).collect();
     sizes.sort_by(f64::total_cmp);
     sizes
@@ -66,10 +69,11 @@ fn assert_clouds_settle(apart: f64) {
     for (name, facets, share, overlap, seed) in cases {
         let (facets, mut balls, boundary) = cloud(&facets, share, [0.8, 1.2], overlap, apart, seed);
         let before = sizes_of(&balls);
-        let settled = settle(&boundary, &mut balls, overlap, WhenJammed::TakeOut, &|_| {
-            Ok(())
-        })
-        .unwrap();
+        let settled =
+            minimise_overlaps(&boundary, &mut balls, overlap, WhenJammed::TakeOut, &|_| {
+                Ok(())
+            })
+            .unwrap();
         assert_settled(name, &facets, &balls, overlap);
         assert!(settled.steps > 0, "{name}");
         let after = sizes_of(&balls);
@@ -101,7 +105,8 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     let (facets, mut balls, boundary) =
         cloud(&cuboid([10.0, 8.0, 7.0]), 0.68, [0.9, 1.3], 0.0, 0.67, 4);
     let before = balls.len();
-    let settled = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
+    let settled =
+        minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_settled("jammed", &facets, &balls, 0.0);
     assert!(settled.taken_out > 0);
     assert_eq!(balls.len(), before - settled.taken_out);
@@ -117,10 +122,12 @@ fn where_there_is_no_room_spheres_are_taken_out() {
 fn spheres_that_only_the_wall_jams_are_taken_out() {
     let (surface, boundary) = surface_of(&cuboid([10.0, 8.0, 2.0]));
     let local = |mm: f64| mm * 1e-3 / surface.unit_m;
-    let mut balls: Vec<Ball> = [(1.5, 1.1), (3.5, 0.9), (5.5, 1.1), (7.5, 0.9), (8.9, 0.5)]
-        .map(|(x, radius)| [local(x), local(4.0), local(1.0), local(radius)])
-        .to_vec();
-    let settled = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
+    let mut balls: Vec<ReducedSphere> =
+        [(1.5, 1.1), (3.5, 0.9), (5.5, 1.1), (7.5, 0.9), (8.9, 0.5)]
+            .map(|(x, radius)| [local(x), local(4.0), local(1.0), local(radius)])
+            .to_vec();
+    let settled =
+        minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_eq!(settled.taken_out, 2);
     let left: Vec<f64> = sizes_of(&balls)
         .iter()
@@ -133,7 +140,7 @@ fn spheres_that_only_the_wall_jams_are_taken_out() {
 #[test]
 fn what_does_not_overlap_stays_where_it_is() {
     let (_, boundary) = surface_of(&cuboid([10.0, 8.0, 7.0]));
-    let mut balls: Vec<Ball> = (0..4)
+    let mut balls: Vec<ReducedSphere> = (0..4)
         .flat_map(|i| {
             (0..3).map(move |j| {
                 [
@@ -147,7 +154,7 @@ fn what_does_not_overlap_stays_where_it_is() {
         .collect();
     let before = balls.clone();
     assert_eq!(
-        settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap(),
+        minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap(),
         Settled {
             steps: 0,
             taken_out: 0,
@@ -164,7 +171,7 @@ fn what_does_not_overlap_stays_where_it_is() {
 fn two_spheres_part_along_the_line_of_their_centres() {
     let (_, boundary) = surface_of(&cuboid([10.0, 10.0, 10.0]));
     let mut balls = vec![[0.55, 0.6, 0.6, 0.1], [0.7, 0.6, 0.6, 0.1]];
-    settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
+    minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert!(balls[1][0] - balls[0][0] >= 0.2);
     assert!((balls[0][0] + balls[1][0] - 1.25).abs() < 1e-12);
     assert!(
@@ -179,14 +186,14 @@ fn no_spheres_and_one_sphere() {
     let (_, boundary) = surface_of(&cuboid([10.0, 10.0, 10.0]));
     let mut none = Vec::new();
     assert_eq!(
-        settle(&boundary, &mut none, 0.0, WhenJammed::TakeOut, &|_| Ok(()))
+        minimise_overlaps(&boundary, &mut none, 0.0, WhenJammed::TakeOut, &|_| Ok(()))
             .unwrap()
             .steps,
         0
     );
     // Pushed away from the wall to where it fits.
     let mut one = vec![[0.05, 0.6, 0.6, 0.1]];
-    settle(&boundary, &mut one, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
+    minimise_overlaps(&boundary, &mut one, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap();
     assert_eq!(one.len(), 1);
     assert!(one[0][0] >= 0.1);
 }
@@ -194,7 +201,7 @@ fn no_spheres_and_one_sphere() {
 #[test]
 fn what_progress_says_ends_it() {
     let (_, mut balls, boundary) = cloud(&cuboid([10.0, 8.0, 7.0]), 0.3, [0.8, 1.2], 0.0, 0.6, 9);
-    let stopped = settle(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| {
+    let stopped = minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| {
         Err(dem_io::Diagnostic::failed("here", "stopped", ""))
     });
     assert_eq!(stopped.unwrap_err().problem, "stopped");

@@ -1,15 +1,18 @@
-//! The wall of crossing parts: that it is closed, what it encloses, and how far it is, against closed forms.
+//! The wall of crossing parts: that it is closed, what it encloses, and how far it is, against
+//! closed forms.
 
-use super::exact::{cross, distance_to_triangle, dot, length, scaled, sub, winding_number};
-use super::facets::{Facets, Point};
-use super::solids::{
+use crate::helpers::exact::{
+    cross, distance_to_triangle, dot, length, scaled, sub, winding_number,
+};
+use crate::helpers::facets::{Facets, Point};
+use crate::helpers::solids::{
     icosphere, local_facets, point_between, random_numbers, random_solid, surface_of, turned,
     turned_inside_out,
 };
 use dem_io::Surface;
-use dem_pack::Vector3;
-use dem_pack::boundary::Boundary;
-use dem_pack::union::outer_pieces;
+use dem_pack::internals::Boundary;
+use dem_pack::internals::Vector3;
+use dem_pack::internals::outer_pieces;
 use rand::rngs::ChaCha8Rng;
 use std::f64::consts::PI;
 
@@ -73,7 +76,8 @@ impl Block {
         dot(self.edges[0], cross(self.edges[1], self.edges[2]))
     }
 
-    /// The convex polygons of which the rest of a convex polygon consists when the inner part of the box is taken away.
+    /// The convex polygons of which the rest of a convex polygon consists when the inner part of
+    /// the box is taken away.
     fn taken_from(&self, polygon: Vec<Point>) -> Vec<Vec<Point>> {
         let mut rest = Vec::new();
         let mut inner = polygon;
@@ -161,9 +165,10 @@ fn gap(triangles: &[[Point; 3]]) -> f64 {
     length(areas().fold([0.0; 3], plus)) / area
 }
 
-/// The volume that the wall encloses, in mm3. Checked: the wall is closed, and each piece has the solid behind it and nothing before it.
+/// The volume that the wall encloses, in mm3. Checked: the wall is closed, and each piece has the
+/// solid behind it and nothing before it.
 fn enclosed_mm3(surface: &Surface, boundary: &Boundary) -> f64 {
-    let wall = outer_pieces(surface, boundary);
+    let wall = outer_pieces(surface, boundary.facets());
     assert!(gap(&wall) < 1e-12, "open by {:e}", gap(&wall));
     let facets = local_facets(surface);
     for [a, b, c] in &wall {
@@ -180,7 +185,8 @@ fn enclosed_mm3(surface: &Surface, boundary: &Boundary) -> f64 {
     signed_volume(&wall) * (surface.unit_m * 1e3).powi(3)
 }
 
-/// Checks the distance to the wall at random points of the solid against `distance_mm`, which takes points in mm.
+/// Checks the distance to the wall at random points of the solid against `distance_mm`, which takes
+/// points in mm.
 fn assert_distances(
     surface: &Surface,
     boundary: &Boundary,
@@ -408,7 +414,8 @@ fn of_three_balls() {
         .copied()
         .filter(|p| middles.iter().all(|m| length(sub(*p, *m)) > 10.0 - 1e-4))
         .collect();
-    // No facet has an edge longer than 1.1: no point of the boundary is farther from a corner of it than about twice that.
+    // No facet has an edge longer than 1.1: no point of the boundary is farther from a corner of it
+    // than about twice that.
     assert_distances(&surface, &boundary, 1.0, &|p| {
         let nearest = corners
             .iter()
@@ -443,7 +450,7 @@ fn of_random_solids_is_closed() {
             turned_about(&mut random, facets)
         });
         let (surface, boundary) = surface_of(&[first, second].concat());
-        let wall = outer_pieces(&surface, &boundary);
+        let wall = outer_pieces(&surface, boundary.facets());
         // Pieces narrower than 1e-7 stay on both sides of a crossing.
         assert!(gap(&wall) < 1e-7, "{round}: open by {:e}", gap(&wall));
         let volume = signed_volume(&wall) * surface.unit_m.powi(3);

@@ -1,15 +1,16 @@
-//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes, without halos, grids or trees.
+//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes,
+//! without halos, grids or trees.
 
-use super::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
-use super::facets::{Facets, Point, cuboid, prism};
-use super::solids::{icosphere, local_facets, surface_of, torus};
+use crate::helpers::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
+use crate::helpers::facets::{Facets, Point, cuboid, prism};
+use crate::helpers::packing::settings;
+use crate::helpers::solids::{icosphere, local_facets, surface_of, torus};
 use dem_io::Surface;
-use dem_pack::boundary::Boundary;
-use dem_pack::pack::{PackHistory, PackSettings, Packing, pack};
-use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
+use dem_pack::{PackHistory, PackSettings, Packing, pack};
+use dem_pack::{Sizes, ks_distance_by_mass, ks_distance_by_number};
 
-/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes spheres larger by so much than
-/// the smallest is found, a narrower one need not be.
+/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes
+/// spheres larger by so much than the smallest is found, a narrower one need not be.
 const FINEST: f64 = 1e-3;
 
 struct Search<'a> {
@@ -21,7 +22,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// How far a point is from the nearest place where the smallest sphere would touch something; less than 0 where it would overlap.
+    /// How far a point is from the nearest place where the smallest sphere would touch something;
+    /// less than 0 where it would overlap.
     fn clearance(&self, p: &Point, facets: &[u32], balls: &[u32]) -> f64 {
         let to_wall = facets
             .iter()
@@ -114,17 +116,12 @@ fn voids(facets: &[[Point; 3]], packing: &Packing, overlap: f64, radius: f64) ->
 }
 
 fn bare_front(surface: &Surface, diameter: &str, overlap: f64, seed: u64) -> (Sizes, Packing) {
-    let boundary = Boundary::new(surface).unwrap();
-    let sizes = Sizes::parse(diameter, By::Number).unwrap();
     let settings = PackSettings {
-        sizes: sizes.clone(),
-        overlap,
         seed,
-        settle: Some(0.0),
-        seed_point_m: None,
+        ..settings(diameter, overlap, Some(0.0))
     };
-    let packing = pack(surface, &boundary, &settings, &|_, _| Ok(())).unwrap();
-    (sizes, packing)
+    let packing = pack(surface, &settings, &|_, _| Ok(())).unwrap();
+    (settings.sizes, packing)
 }
 
 fn assert_full_and_true(
@@ -228,7 +225,8 @@ fn no_void_is_left_that_takes_the_smallest_sphere() {
     }
 }
 
-/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make up for small spheres put into voids.
+/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make
+/// up for small spheres put into voids.
 #[test]
 fn a_ball_is_full_and_true_after_a_few_attempts() {
     let (surface, _) = surface_of(&icosphere(3, &|_| 10.0));

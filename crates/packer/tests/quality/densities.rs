@@ -1,6 +1,8 @@
 //! Densities: lattices, lenses, layers, and the error that is stated beside them.
 
-use crate::{Case, Random, close, cubic};
+use super::{Case, close};
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use std::f64::consts::PI;
 
@@ -62,7 +64,8 @@ fn simple_cubic() {
 
 #[test]
 fn face_centred_cubic() {
-    // Cell a = sqrt 2 for spheres of diameter 1; the interior, 2 from each wall, holds 6 x 6 x 6 cells.
+    // Cell a = sqrt 2 for spheres of diameter 1; the interior, 2 from each wall, holds 6 x 6 x 6
+    // cells.
     let a = 2.0_f64.sqrt();
     let extent = 4.0 + 6.0 * a;
     let mut spheres = Spheres::default();
@@ -159,7 +162,8 @@ fn overlapping_lattice() {
 
 #[test]
 fn profile_from_a_wall() {
-    // Two planes, at z = 0 and 14; the layer [a, b] of the first row of cells is filled by pi (b - a)/4 - ...
+    // Two planes, at z = 0 and 14; the layer [a, b] of the first row of cells is filled by pi (b -
+    // a)/4 - ...
     let case = Case::new(cubic([12, 12, 14], 0.5), [12.0, 12.0, 14.0]);
     let report = case.report_in(&|p| p[2].min(14.0 - p[2]));
     let filled = |z: f64| PI * (0.25 * z - (z - 0.5).powi(3) / 3.0);
@@ -182,8 +186,8 @@ fn profile_from_a_wall() {
 
 #[test]
 fn the_stated_error_is_the_error() {
-    // Balls without overlap at random places in a box: the covered share is known, the error is as often too small as
-    // it should be.
+    // Balls without overlap at random places in a box: the covered share is known, the error is as
+    // often too small as it should be.
     let mut random = Random(4);
     let mut squares = 0.0;
     let cases = 40;
@@ -211,7 +215,8 @@ fn the_stated_error_is_the_error() {
 
 #[test]
 fn outside_costs_nothing_of_the_solid() {
-    // A ball of radius 8 in its box, filled without overlap. Outside, perhaps nothing is known but that it is outside.
+    // A ball of radius 8 in its box, filled without overlap. Outside, perhaps nothing is known but
+    // that it is outside.
     let inside = |p: [f64; 3]| 8.0 - p.iter().map(|x| (x - 8.0).powi(2)).sum::<f64>().sqrt();
     let mut spheres = cubic([16; 3], 0.5);
     spheres.positions.retain(|p| inside(*p) >= 0.5);

@@ -1,9 +1,11 @@
 //! Structure: fabric, pieces, contacts and the thinnest part.
 
-use crate::{Case, Random, cubic};
+use super::Case;
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
 use dem_pack::Spheres;
-use dem_pack::quality::{DEFAULT_GAP_LIMIT, Packing, assess};
-use dem_pack::sizes::{By, Sizes};
+use dem_pack::internals::{BondedPacking, DEFAULT_GAP_LIMIT, assess};
+use dem_pack::{Basis, Sizes};
 
 #[test]
 fn a_line_has_one_direction() {
@@ -65,12 +67,12 @@ fn chance_of_a_fabric_is_a_chance() {
         let bonds: Vec<[u32; 2]> = (0..300).map(|i| [2 * i, 2 * i + 1]).collect();
         let no_wall = |_: [f64; 3]| -1.0;
         let open = |_: u32, _: u32| false;
-        let report = assess(&Packing {
+        let report = assess(&BondedPacking {
             spheres: &spheres,
             overlap: 0.0,
             bonds: &bonds,
             bonding_radius: 0.0,
-            sizes: &Sizes::parse("1m", By::Number).unwrap(),
+            sizes: &Sizes::parse("1m", Basis::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: 1e9,
             extent: [1.0; 3],
@@ -89,7 +91,8 @@ fn chance_of_a_fabric_is_a_chance() {
     }
     // Binomial of 400 at 0.05: 20 with a standard deviation of 4.4.
     assert!((7..=34).contains(&rare), "{rare}");
-    // Of three eigenvalues the largest deviation is beyond two sigma in almost half of all isotropic samples.
+    // Of three eigenvalues the largest deviation is beyond two sigma in almost half of all
+    // isotropic samples.
     assert!((180..=250).contains(&within), "{within}");
 }
 

@@ -1,8 +1,12 @@
-//! The report as a whole: the same for any number of threads, its text and JSON, and the smallest packings.
+//! The report as a whole: the same for any number of threads, its text and JSON, and the smallest
+//! packings.
 
-use crate::{Case, Random, close, cubic};
+use super::{Case, close};
+use crate::helpers::lattice::cubic;
+use crate::helpers::random::Random;
+use dem_pack::Report;
 use dem_pack::Spheres;
-use dem_pack::quality::{Report, depth_needed};
+use dem_pack::internals::depth_needed;
 use std::f64::consts::PI;
 
 #[test]

@@ -1,11 +1,11 @@
 //! Distribution functions by number and by mass, and their moments.
 
-use crate::{Below, laws, normal_below};
-use dem_pack::sizes::{By, Sizes};
+use super::{Below, laws, normal_below};
+use dem_pack::{Basis, Sizes};
 use std::f64::consts::PI;
 
-/// The function G(d) = integral of x^power dF from F alone, integrated by parts on a fine grid with Richardson
-/// extrapolation of the trapezoidal rule: d^p F(d) - a^p F(a) - integral of p x^(p-1) F.
+/// The function G(d) = integral of x^power dF from F alone, integrated by parts on a fine grid with
+/// Richardson extrapolation of the trapezoidal rule: d^p F(d) - a^p F(a) - integral of p x^(p-1) F.
 fn moment_below(below: &Below, power: i32, from: f64, to: f64) -> f64 {
     let integrand = |x: f64| f64::from(power) * x.powi(power - 1) * below(x);
     let trapezoid = |n: usize| {
@@ -20,8 +20,8 @@ fn moment_below(below: &Below, power: i32, from: f64, to: f64) -> f64 {
 #[test]
 fn the_distribution_counts_what_it_is_asked_to_count() {
     for (text, below) in laws() {
-        let by_number = Sizes::parse(&text, By::Number).unwrap();
-        let by_mass = Sizes::parse(&text, By::Mass).unwrap();
+        let by_number = Sizes::parse(&text, Basis::Number).unwrap();
+        let by_mass = Sizes::parse(&text, Basis::Mass).unwrap();
         for i in 0..=1000 {
             let d = (by_number.min_m()
                 + (by_number.max_m() - by_number.min_m()) * f64::from(i) / 1000.0)
@@ -45,8 +45,8 @@ fn number_and_mass_are_converted_by_the_third_power() {
         .into_iter()
         .filter(|(t, _)| !t.contains("0.002") && !t.contains(",200,"))
     {
-        let by_number = Sizes::parse(&text, By::Number).unwrap();
-        let by_mass = Sizes::parse(&text, By::Mass).unwrap();
+        let by_number = Sizes::parse(&text, Basis::Number).unwrap();
+        let by_mass = Sizes::parse(&text, Basis::Mass).unwrap();
         let (min, max) = (by_number.min_m() * 1e3, by_number.max_m() * 1e3);
         let volume = moment_below(&below, 3, min, max);
         let count = moment_below(&below, -3, min, max);
@@ -87,7 +87,7 @@ fn number_and_mass_are_converted_by_the_third_power() {
 #[test]
 fn uniform_by_mass_has_its_closed_form() {
     // Number density ~ d^-3: N(d) = (a^-2 - d^-2)/(a^-2 - b^-2), mean 2 (1/a - 1/b)/(a^-2 - b^-2).
-    let sizes = Sizes::parse("uniform: 2mm .. 3mm", By::Mass).unwrap();
+    let sizes = Sizes::parse("uniform: 2mm .. 3mm", Basis::Mass).unwrap();
     let whole = 0.25 - 1.0 / 9.0;
     for i in 0..=100 {
         let d = 2.0 + f64::from(i) / 100.0;
@@ -104,10 +104,11 @@ fn uniform_by_mass_has_its_closed_form() {
 
 #[test]
 fn means_of_cut_distributions() {
-    // Symmetric cut: the mean stays. Lognormal wide open: mean and third moment of the whole, exp(3 mu + 9/2 sigma^2).
-    let normal = Sizes::parse("normal:3mm,0.5mm,2mm..4mm", By::Number).unwrap();
+    // Symmetric cut: the mean stays. Lognormal wide open: mean and third moment of the whole, exp(3
+    // mu + 9/2 sigma^2).
+    let normal = Sizes::parse("normal:3mm,0.5mm,2mm..4mm", Basis::Number).unwrap();
     assert!((normal.mean_m() - 3e-3).abs() < 1e-11);
-    let lognormal = Sizes::parse("lognormal:3mm,0.6mm,0.5mm..20mm", By::Number).unwrap();
+    let lognormal = Sizes::parse("lognormal:3mm,0.6mm,0.5mm..20mm", Basis::Number).unwrap();
     assert!((lognormal.mean_m() - 3e-3).abs() < 1e-10);
     let third = 27.0 * (1.0_f64 + 0.04).powi(3);
     assert!((lognormal.mean_volume_m3() * 1e9 / (PI / 6.0 * third) - 1.0).abs() < 1e-7);
@@ -129,11 +130,11 @@ fn without_limits_the_outer_thousandths_are_cut() {
             Box::new(move |d: f64| normal_below(((d / 3.0).ln() + 0.5 * sigma * sigma) / sigma))
         }),
     ] {
-        let sizes = Sizes::parse(text, By::Mass).unwrap();
+        let sizes = Sizes::parse(text, Basis::Mass).unwrap();
         assert!((below(sizes.min_m() * 1e3) - 0.001).abs() < 1e-9, "{text}");
         assert!((below(sizes.max_m() * 1e3) - 0.999).abs() < 1e-9, "{text}");
     }
-    let error = Sizes::parse("normal:3mm,1.5mm", By::Number).unwrap_err();
+    let error = Sizes::parse("normal:3mm,1.5mm", Basis::Number).unwrap_err();
     assert!(
         error.problem.contains("-1.635 mm") && error.remedy.contains("MIN..MAX"),
         "{error}"

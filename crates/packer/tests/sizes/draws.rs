@@ -1,20 +1,8 @@
 //! Draws against the distribution, and the Kolmogorov-Smirnov distances that the report gives.
 
-use crate::{TextFile, laws};
-use dem_pack::sizes::{By, Sizes, ks_distance_by_mass, ks_distance_by_number};
-
-/// Uniform numbers in [0, 1), splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-}
+use super::{TextFile, laws};
+use crate::helpers::random::Random;
+use dem_pack::{Basis, Sizes, ks_distance_by_mass, ks_distance_by_number};
 
 fn draws(sizes: &Sizes, count: usize, seed: u64) -> Vec<f64> {
     let mut random = Random(seed);
@@ -43,7 +31,7 @@ fn a_hundred_thousand_draws_follow_the_distribution() {
     ));
     for (text, below) in all {
         let count = 100_000;
-        let sizes = Sizes::parse(&text, By::Number).unwrap();
+        let sizes = Sizes::parse(&text, Basis::Number).unwrap();
         let mut sample = draws(&sizes, count, 1);
         sample.sort_by(f64::total_cmp);
         let mut distance = 0.0_f64;
@@ -65,7 +53,7 @@ fn a_hundred_thousand_draws_follow_the_distribution() {
         assert!(fit.passes() && (fit.effective_samples - 1e5).abs() < 1e-6);
 
         // By mass: the weighted sample against the closed form.
-        let sizes = Sizes::parse(&text, By::Mass).unwrap();
+        let sizes = Sizes::parse(&text, Basis::Mass).unwrap();
         let mut sample = draws(&sizes, count, 2);
         sample.sort_by(f64::total_cmp);
         let total: f64 = sample.iter().map(|d| d.powi(3)).sum();
@@ -94,7 +82,7 @@ fn a_hundred_thousand_draws_follow_the_distribution() {
 
 #[test]
 fn the_limit_is_passed_by_about_nineteen_samples_of_twenty() {
-    let sizes = Sizes::parse("lognormal:2.5mm,0.6mm,1mm..6mm", By::Mass).unwrap();
+    let sizes = Sizes::parse("lognormal:2.5mm,0.6mm,1mm..6mm", Basis::Mass).unwrap();
     let samples = 400;
     let (mut number, mut mass) = (0, 0);
     for seed in 0..samples {
@@ -109,7 +97,7 @@ fn the_limit_is_passed_by_about_nineteen_samples_of_twenty() {
 
 #[test]
 fn a_wrong_sample_is_seen() {
-    let sizes = Sizes::parse("2mm..3mm", By::Number).unwrap();
+    let sizes = Sizes::parse("2mm..3mm", Basis::Number).unwrap();
     let mut random = Random(3);
     let small: Vec<f64> = (0..2000).map(|_| 2e-3 + 0.9e-3 * random.next()).collect();
     let fit = ks_distance_by_number(&small, &sizes);
@@ -118,7 +106,7 @@ fn a_wrong_sample_is_seen() {
         "{fit:?}"
     );
     assert!(!ks_distance_by_mass(&small, &sizes).passes());
-    let one = Sizes::parse("2mm", By::Number).unwrap();
+    let one = Sizes::parse("2mm", Basis::Number).unwrap();
     assert_eq!(ks_distance_by_number(&[2e-3; 50], &one).distance, 0.0);
     assert!(
         (ks_distance_by_number(&[2e-3, 2e-3, 2e-3, 2.1e-3], &one).distance - 0.25).abs() < 1e-12

@@ -1,13 +1,13 @@
 //! What a user may type, and what a mistake is answered with.
 
-use crate::TextFile;
-use dem_pack::sizes::{By, Sizes};
+use super::TextFile;
+use dem_pack::{Basis, Sizes};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
 #[test]
 fn one_size_and_descriptions() {
-    let sizes = Sizes::parse(" 2.5 mm ", By::Mass).unwrap();
+    let sizes = Sizes::parse(" 2.5 mm ", Basis::Mass).unwrap();
     assert_eq!(
         (sizes.min_m(), sizes.max_m(), sizes.mean_m()),
         (2.5e-3, 2.5e-3, 2.5e-3)
@@ -20,14 +20,14 @@ fn one_size_and_descriptions() {
     );
     assert!((sizes.mean_volume_m3() / (PI / 6.0 * 2.5e-3_f64.powi(3)) - 1.0).abs() < 1e-15);
     assert_eq!(sizes.describe(), "all 2.5 mm");
-    let sizes = Sizes::parse("2mm..2mm", By::Number).unwrap();
+    let sizes = Sizes::parse("2mm..2mm", Basis::Number).unwrap();
     assert!(sizes.is_one_size());
-    let sizes = Sizes::parse("0.002..0.003", By::Number).unwrap();
+    let sizes = Sizes::parse("0.002..0.003", Basis::Number).unwrap();
     assert_eq!(
         sizes.describe(),
         "uniform by number, 2 mm to 3 mm, mean 2.5 mm by number and 2.597 mm by mass"
     );
-    let sizes = Sizes::parse("Normal: 3mm, 0.5mm, 2mm..4mm", By::Number).unwrap();
+    let sizes = Sizes::parse("Normal: 3mm, 0.5mm, 2mm..4mm", Basis::Number).unwrap();
     assert!(
         sizes
             .describe()
@@ -116,7 +116,7 @@ fn bad_sizes_name_value_limit_and_remedy() {
             "path of a text file",
         ),
     ] {
-        let error = Sizes::parse(text, By::Mass).expect_err(text);
+        let error = Sizes::parse(text, Basis::Mass).expect_err(text);
         assert!(
             error.place.starts_with(&format!("--diameter '{text}'")),
             "{text}: {error}"
@@ -126,7 +126,7 @@ fn bad_sizes_name_value_limit_and_remedy() {
         assert_eq!(error.exit_code(), 2);
     }
     let file = TextFile::new("opening_mm,%\n1,0\n2,60\n3,50\n4,100\n");
-    let error = Sizes::parse(&format!("sieve:{}", file.0.display()), By::Mass).unwrap_err();
+    let error = Sizes::parse(&format!("sieve:{}", file.0.display()), Basis::Mass).unwrap_err();
     assert!(error.place.ends_with(".csv: line 4"), "{error}");
 }
 
@@ -135,12 +135,12 @@ proptest! {
 
     #[test]
     fn any_text_is_answered(text in "\\PC{0,40}") {
-        let _ = Sizes::parse(&text, By::Mass);
+        let _ = Sizes::parse(&text, Basis::Mass);
     }
 
     #[test]
     fn any_nearly_good_text_is_answered(text in "(normal|lognormal|weibull|uniform|sieve|):?[-+0-9.e]{0,6}(mm|um|m|),?[-+0-9.e]{0,6}(mm|),?[0-9.]{0,4}(mm|)(\\.\\.)?[0-9.]{0,4}(mm|)") {
-        if let Ok(sizes) = Sizes::parse(&text, By::Number) {
+        if let Ok(sizes) = Sizes::parse(&text, Basis::Number) {
             prop_assert!(sizes.min_m() > 0.0 && sizes.max_m() >= sizes.min_m() && sizes.max_m().is_finite());
             prop_assert!(sizes.mean_m() >= sizes.min_m() * (1.0 - 1e-9) && sizes.mean_m() <= sizes.max_m() * (1.0 + 1e-9));
         }
@@ -158,7 +158,7 @@ proptest! {
             2 => format!("lognormal:{mean}mm,{}mm,{min}mm..{max}mm", spread * mean),
             _ => format!("weibull:{mean}mm,{},{min}mm..{max}mm", 1.0 / spread),
         };
-        let sizes = Sizes::parse(&text, if mass { By::Mass } else { By::Number }).unwrap();
+        let sizes = Sizes::parse(&text, if mass { Basis::Mass } else { Basis::Number }).unwrap();
         let mut previous = sizes.min_m();
         let mut us = us;
         us.sort_by(f64::total_cmp);

@@ -1,0 +1,308 @@
+//! A bonded body from a surface: spheres, bonds, and a report of how good they are.
+
+use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance, find_bonds};
+use crate::density::{DensitySearch, pack_to_density};
+use crate::geometry::boundary::Boundary;
+use crate::geometry::depth_map::DepthMap;
+use crate::pack::{
+    PackHistory, PackSettings, Packing, Progress, Solid, can_fill_voids, pack_solid,
+};
+use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
+use crate::sizes::Sizes;
+use crate::spheres::{Spheres, Vector3};
+use dem_io::body::About;
+use dem_io::body::mass::{BodyMass, of_body, of_named_density, volume_m3};
+use dem_io::units::significant;
+use dem_io::{Body, Result, Surface};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Spheres whose distance to the wall one task measures.
+const SPHERES_PER_TASK: usize = 256;
+
+/// Settings of a body.
+#[derive(Debug, Clone)]
+pub struct BodySettings {
+    /// The spheres.
+    pub packing: PackSettings,
+    /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
+    pub bonding_radius: f64,
+    /// Choose the bonding radius so that bonds / particles is this.
+    pub bonds_per_particle: Option<f64>,
+    /// Bond radius / smaller particle radius.
+    pub bond_radius_factor: f64,
+    /// Density of the particles' material, kg/m3.
+    pub particle_density_kg_m3: Option<f64>,
+    /// Choose the overlap so that mass of the particles / volume of the shape is this, kg/m3.
+    pub solid_density_kg_m3: Option<f64>,
+}
+
+impl BodySettings {
+    /// Bonds between spheres up to 1.1 times the sum of their radii apart, as thick as the smaller
+    /// of the two, as the program makes them unless told otherwise.
+    pub fn new(packing: PackSettings) -> Self {
+        Self {
+            packing,
+            bonding_radius: 1.1,
+            bonds_per_particle: None,
+            bond_radius_factor: 1.0,
+            particle_density_kg_m3: None,
+            solid_density_kg_m3: None,
+        }
+    }
+}
+
+/// More spheres than this fraction taken out are worth a warning.
+const MANY_TAKEN_OUT: f64 = 0.005;
+
+/// Times of the stages, s.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct StageSeconds {
+    /// Front, settling, filling, and every packing of a density search.
+    pub packing: f64,
+    /// Finding the bonds.
+    pub bonds: f64,
+    /// Distances to the wall, checking and judging.
+    pub report: f64,
+}
+
+/// All that is known of a new body.
+#[derive(Debug, Clone, Serialize)]
+pub struct BodyReport {
+    /// Its quality.
+    pub quality: Report,
+    /// Its mass, beside that of its shape filled with the density of the particles, if that is
+    /// given.
+    pub mass: Option<BodyMass>,
+    /// Mass of the particles over that of the shape filled with their density, whatever it is.
+    pub mass_over_shape: f64,
+    /// Centre of mass, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// The course of its packing. Its seconds are those of all packings of a density search.
+    pub history: PackHistory,
+    /// The bonding radius that was used.
+    pub bonding_radius: f64,
+    /// The search for the overlap, if there was one.
+    pub density_search: Option<DensitySearch>,
+    /// Repairs of the surface.
+    pub repairs: dem_io::surface::Repairs,
+    /// Times of the stages.
+    pub seconds: StageSeconds,
+}
+
+/// Packs, bonds and judges.
+///
+/// # Errors
+/// As [`crate::pack()`] and [`find_bonds`]; a density that no overlap gives.
+pub fn make_body(
+    surface: &Surface,
+    settings: &BodySettings,
+    progress: Progress,
+) -> Result<(Body, BodyReport)> {
+    let started = Instant::now();
+    let solid = Solid::new(surface)?;
+    let prepared = started.elapsed().as_secs_f64();
+    let mut packed = packed(&solid, settings, progress)?;
+    packed.packing.history.front_seconds += prepared;
+    let mut seconds = StageSeconds {
+        packing: started.elapsed().as_secs_f64(),
+        ..StageSeconds::default()
+    };
+
+    let started = Instant::now();
+    progress("report", 0.0)?;
+    let spheres = &packed.packing.spheres;
+    let map = depth_map(&solid, spheres);
+    let wall_distance: Vec<f64> = spheres
+        .positions
+        .par_iter()
+        .with_min_len(SPHERES_PER_TASK)
+        .map(|p| map.depth(*p))
+        .collect();
+    seconds.report = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    progress("bonds", 0.0)?;
+    let crosses = |a: u32, b: u32| {
+        let (p, q) = (spheres.positions[a as usize], spheres.positions[b as usize]);
+        // Balls that clear the surface and cover the line between their centres.
+        let clear = wall_distance[a as usize] + wall_distance[b as usize];
+        clear <= centre_distance(spheres, a, b) && crosses_surface(&solid.boundary, p, q)
+    };
+    let bonding_radius = match settings.bonds_per_particle {
+        Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
+        None => settings.bonding_radius,
+    };
+    let bonds = find_bonds(spheres, bonding_radius, &crosses)?;
+    seconds.bonds = started.elapsed().as_secs_f64();
+
+    let started = Instant::now();
+    progress("report", 0.0)?;
+    let mut quality = assess(&BondedPacking {
+        spheres,
+        overlap: packed.settings.overlap,
+        bonds: &bonds,
+        bonding_radius,
+        sizes: &settings.packing.sizes,
+        unit_m: surface.unit_m,
+        shape_volume: surface.volume_m3() / surface.unit_m.powi(3),
+        extent: surface.extent(),
+        particle_density_kg_m3: settings.particle_density_kg_m3,
+        wall_distance: &wall_distance,
+        distance_inside: &|p| map.depth(p),
+        distance_bounds: &|p| map.bounds(p),
+        crosses_surface: &crosses,
+        gap_limit: DEFAULT_GAP_LIMIT,
+        parts: parts(surface),
+    })?;
+    quality.warnings.extend(packed.warnings());
+    seconds.report += started.elapsed().as_secs_f64();
+
+    let body = body_of(&solid, settings, &packed, bonds, bonding_radius, &quality);
+    let report = BodyReport {
+        mass: of_named_density(&body),
+        mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
+        centre_m: of_body(&body, 1.0).centre_m,
+        quality,
+        history: packed.packing.history,
+        bonding_radius,
+        density_search: packed.density_search,
+        repairs: surface.repairs.clone(),
+        seconds,
+    };
+    Ok((body, report))
+}
+
+/// Distances to the wall as far as the report needs them, in cells two mean diameters wide.
+fn depth_map<'a>(solid: &'a Solid, spheres: &Spheres) -> DepthMap<'a> {
+    let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
+    let reach = depth_needed(spheres);
+    DepthMap::new(solid.surface, &solid.boundary, reach, 4.0 * mean_radius)
+}
+
+/// Spheres, and how they were packed.
+struct Packed {
+    packing: Packing,
+    /// With the overlap that was found, if it was looked for.
+    settings: PackSettings,
+    density_search: Option<DensitySearch>,
+}
+
+fn packed(solid: &Solid, settings: &BodySettings, progress: Progress) -> Result<Packed> {
+    let densities = settings
+        .solid_density_kg_m3
+        .zip(settings.particle_density_kg_m3);
+    let mut settings = settings.packing.clone();
+    let (packing, density_search) = match densities {
+        Some((wanted, particle)) => {
+            let (packing, search) =
+                pack_to_density(solid, &mut settings, wanted, particle, progress)?;
+            (packing, Some(search))
+        }
+        None => (pack_solid(solid, &settings, progress)?, None),
+    };
+    Ok(Packed {
+        packing,
+        settings,
+        density_search,
+    })
+}
+
+impl Packed {
+    /// Warnings about the packing.
+    fn warnings(&self) -> impl Iterator<Item = String> {
+        let history = &self.packing.history;
+        let density = self
+            .density_search
+            .as_ref()
+            .and_then(DensitySearch::warning);
+        let jammed = jam_warning(history, self.packing.spheres.radii.len());
+        let open = void_warning(history, &self.settings.sizes);
+        density.into_iter().chain(jammed).chain(open)
+    }
+}
+
+/// The body in metres.
+fn body_of(
+    solid: &Solid,
+    settings: &BodySettings,
+    packed: &Packed,
+    bonds: Vec<[u32; 2]>,
+    bonding_radius: f64,
+    quality: &Report,
+) -> Body {
+    let surface = solid.surface;
+    let spheres = &packed.packing.spheres;
+    let in_metres = |lengths: Vec<f64>| lengths.into_iter().map(|l| l * surface.unit_m).collect();
+    Body {
+        bond_radii: in_metres(bond_radii(spheres, &bonds, settings.bond_radius_factor)),
+        bond_lengths: in_metres(bond_lengths(spheres, &bonds)),
+        positions: spheres
+            .positions
+            .iter()
+            .map(|p| solid.to_metres(&Vector3::from(*p)))
+            .collect(),
+        radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
+        bonds,
+        about: About {
+            program: Some(format!("dem-pack {}", env!("CARGO_PKG_VERSION"))),
+            source: Some(surface.source.clone()),
+            source_hash: Some(surface.source_hash),
+            shape_volume_m3: Some(surface.volume_m3()),
+            particle_density_kg_m3: settings.particle_density_kg_m3,
+            overlap: Some(packed.settings.overlap),
+            bonding_radius: Some(bonding_radius),
+            seed: Some(packed.settings.seed),
+            warnings: quality.warnings.clone(),
+        },
+    }
+}
+
+fn spheres_volume_m3(body: &Body) -> f64 {
+    body.radii.iter().map(|radius| volume_m3(*radius)).sum()
+}
+
+/// Separate parts of the solid; parts that cross each other are taken for one.
+fn parts(surface: &Surface) -> usize {
+    if surface.repairs.self_intersections > 0 {
+        1
+    } else {
+        surface.parts()
+    }
+}
+
+/// A warning if many spheres jammed.
+fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
+    let fraction = history.taken_out as f64 / particles.max(1) as f64;
+    (fraction > MANY_TAKEN_OUT).then(|| {
+        format!(
+            "{} spheres ({} %) jammed while settling and were taken out: --settle {} leaves them more room",
+            history.taken_out,
+            significant(100.0 * fraction, 2),
+            significant(0.8 * history.settle, 2)
+        )
+    })
+}
+
+/// A warning if voids are left although the sizes would not forbid to fill them.
+fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
+    (can_fill_voids(sizes) && history.voids_left > 0).then(|| {
+        format!(
+            "about {} voids would take the smallest sphere: to fill them all would change the sizes; take smaller particles, or less different ones",
+            history.voids_left
+        )
+    })
+}
+
+/// True if the straight line between two points inside the solid (local units) meets the surface.
+fn crosses_surface(boundary: &Boundary, a: [f64; 3], b: [f64; 3]) -> bool {
+    let (a, b) = (Vector3::from(a), Vector3::from(b));
+    let length = (b - a).norm();
+    let middle = 0.5 * (a + b);
+    if boundary.clears(&middle, 0.5 * length) {
+        return false;
+    }
+    crate::geometry::inside::first_hit(boundary, &a, &((b - a) / length), 0.0)
+        .is_some_and(|distance| distance < length)
+}

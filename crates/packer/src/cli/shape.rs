@@ -1,0 +1,54 @@
+//! The shape: an STL file or standard input.
+
+use super::arguments::Reading;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::units::length_unit_m;
+use dem_io::{Diagnostic, Result, Surface};
+use std::io::Read;
+use std::path::Path;
+
+/// The surface of the shape in a file, or in standard input (`-`).
+///
+/// # Errors
+/// A file that cannot be read; a surface that bounds no solid; a scale or unit that is none.
+pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
+    if !(reading.scale > 0.0 && reading.scale.is_finite()) {
+        return Err(Diagnostic::input(
+            "--scale",
+            format!("{} is not a positive number", reading.scale),
+            "1 leaves the shape as it is",
+        ));
+    }
+    let unit_m = length_unit_m(&reading.unit).map_err(|e| e.within("--unit"))?;
+    let (name, bytes) = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map(|_| ("standard input".to_owned(), bytes))
+    } else {
+        std::fs::read(path).map(|bytes| (path.display().to_string(), bytes))
+    }
+    .map_err(|e| {
+        let (problem, remedy) = if path.is_dir() {
+            ("this is a folder".to_owned(), "name a file in it")
+        } else if e.kind() == std::io::ErrorKind::NotFound {
+            (
+                "there is no such file".to_owned(),
+                "check its name and folder",
+            )
+        } else {
+            (format!("cannot be read: {e}"), "")
+        };
+        Diagnostic::input(path.display().to_string(), problem, remedy)
+    })?;
+    surface_from_stl(
+        &bytes,
+        &name,
+        ReadSettings {
+            unit_m,
+            scale: reading.scale,
+            fill_holes: reading.fill_holes,
+        },
+    )
+}

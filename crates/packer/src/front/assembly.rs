@@ -1,0 +1,154 @@
+//! The spheres placed so far (the source's assemblyList and grid), and what room they and the wall
+//! leave.
+
+use crate::geometry::boundary::Boundary;
+use crate::grid::Grid;
+use crate::spheres::{ReducedSphere, Vector3, distance};
+use rayon::prelude::*;
+
+/// The sizes that are to be placed, and how near to each other and to the wall. Lengths in local
+/// units.
+pub(crate) struct SizeSettings<'a> {
+    /// Radius (not reduced) from a uniform random number in [0, 1).
+    pub(crate) radius: Box<dyn Fn(f64) -> f64 + Sync + 'a>,
+    /// Smallest and largest radius that `radius` can give.
+    pub(crate) radius_range: [f64; 2],
+    /// Reduced radius = radius / (1 + overlap).
+    pub(crate) overlap: f64,
+    /// A sphere keeps its radius times this clear of the wall: more than 1 if it is to grow later.
+    pub(crate) wall_factor: f64,
+    /// Cells of the grid at most: for shapes that fill little of their box.
+    pub(crate) most_cells: usize,
+}
+
+/// A sphere of the front: itself, and the number of the seed that its front grew from.
+pub(crate) type FrontSphere = (ReducedSphere, u32);
+
+/// Spheres inside a solid, in a grid of cells.
+pub(crate) struct Assembly<'a> {
+    pub(crate) settings: SizeSettings<'a>,
+    pub(super) boundary: &'a Boundary,
+    pub(super) grid: Grid,
+    /// Cells that a sphere may have its centre in only after a distance query.
+    near_wall: Vec<bool>,
+    /// All spheres in order of placement.
+    pub(crate) spheres: Vec<ReducedSphere>,
+}
+
+impl<'a> Assembly<'a> {
+    /// No spheres yet, in the box up to `extent`.
+    pub(crate) fn new(
+        settings: SizeSettings<'a>,
+        boundary: &'a Boundary,
+        extent: &Vector3,
+    ) -> Self {
+        let largest = settings.radius_range[1];
+        let reduced = largest / (1.0 + settings.overlap);
+        let origin = Vector3::zeros();
+        let grid = Grid::new(&origin, extent, 4.0 * reduced, settings.most_cells);
+        let near_wall = cells_near_wall(&grid, boundary, largest * settings.wall_factor);
+        Self {
+            settings,
+            boundary,
+            grid,
+            near_wall,
+            spheres: Vec::new(),
+        }
+    }
+
+    /// Adds a sphere where it is known to fit.
+    pub(crate) fn add(&mut self, sphere: ReducedSphere) {
+        self.grid.insert(sphere);
+        self.spheres.push(sphere);
+    }
+
+    /// A sphere of this (not reduced) radius.
+    pub(crate) fn sphere(&self, centre: &Vector3, radius: f64) -> ReducedSphere {
+        [centre.x, centre.y, centre.z, self.reduced(radius)]
+    }
+
+    /// Radius (not reduced) of a quantile of the sizes.
+    pub(crate) fn radius(&self, quantile: f64) -> f64 {
+        (self.settings.radius)(quantile)
+    }
+
+    /// The part of a (not reduced) radius within which spheres do not overlap.
+    pub(crate) fn reduced(&self, radius: f64) -> f64 {
+        radius / (1.0 + self.settings.overlap)
+    }
+
+    /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`,
+    /// local units.
+    pub(crate) fn gap(&self, point: &Vector3, cut_off: f64) -> f64 {
+        let largest = self.reduced(self.settings.radius_range[1]);
+        let mut gap = cut_off;
+        self.grid
+            .near(point.x, point.y, point.z, cut_off + largest, |cell| {
+                for sphere in cell {
+                    gap = gap.min(distance(sphere, point) - sphere[3]);
+                }
+            });
+        gap
+    }
+
+    /// True if a sphere of this (not reduced) radius with its centre here, known to be inside the
+    /// solid, overlaps neither sphere nor wall.
+    pub(crate) fn fits(&self, centre: &Vector3, radius: f64) -> bool {
+        let reduced = self.reduced(radius);
+        self.gap(centre, 1.001 * reduced) >= reduced * (1.0 - 1e-12)
+            && self.boundary.clears(centre, self.wall_clearance(radius))
+    }
+
+    /// Radius (not reduced) of the largest sphere around `point` that overlaps no other, at most
+    /// `cut_off`, local units.
+    pub(crate) fn reach_to_spheres(&self, point: &Vector3, cut_off: f64) -> f64 {
+        self.gap(point, cut_off) * (1.0 + self.settings.overlap)
+    }
+
+    /// True if a sphere of this (not reduced) radius lies inside the surface, given that its centre
+    /// does not lie beyond it.
+    pub(super) fn clears_wall(&self, centre: &Vector3, radius: f64) -> bool {
+        !self.is_near_wall(&[centre.x, centre.y, centre.z, 0.0])
+            || self.boundary.clears(centre, self.wall_clearance(radius))
+    }
+
+    /// Least distance from the wall of the centre of a sphere of this (not reduced) radius.
+    pub(super) fn wall_clearance(&self, radius: f64) -> f64 {
+        radius * self.settings.wall_factor
+    }
+
+    /// True if the cell that the sphere's centre lies in is near the wall.
+    pub(super) fn is_near_wall(&self, sphere: &ReducedSphere) -> bool {
+        self.near_wall[self.cell_of(sphere)]
+    }
+
+    /// The number of the cell that the sphere's centre lies in.
+    pub(super) fn cell_of(&self, sphere: &ReducedSphere) -> usize {
+        let lattice = &self.grid.lattice;
+        lattice.index(lattice.cell_of(sphere[0], sphere[1], sphere[2]))
+    }
+
+    /// Distance from a place to the wall, over the factor that a sphere keeps clear of it; at most
+    /// that to the spheres around, as a (not reduced) radius.
+    pub(crate) fn clearance(&self, place: &Vector3, cut_off: f64) -> f64 {
+        let to_spheres = self.reach_to_spheres(place, cut_off);
+        let factor = self.settings.wall_factor;
+        let wall = self.boundary.nearest(place, to_spheres * factor);
+        wall.map_or(to_spheres, |near| near.distance / factor)
+    }
+}
+
+/// For each cell of a grid whether a point of it may be closer than `distance` to the wall.
+pub(super) fn cells_near_wall(grid: &Grid, boundary: &Boundary, distance: f64) -> Vec<bool> {
+    let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.lattice.cell;
+    let [nx, ny, nz] = grid.lattice.counts;
+    let is_near = |at: usize| {
+        let cell = [at % nx, at / nx % ny, at / (nx * ny)];
+        let is_outermost = cell
+            .iter()
+            .zip(grid.lattice.counts)
+            .any(|(c, n)| *c == 0 || *c + 1 == n);
+        is_outermost || !boundary.clears(&grid.lattice.centre(cell), half_diagonal + distance)
+    };
+    (0..nx * ny * nz).into_par_iter().map(is_near).collect()
+}

@@ -1,0 +1,210 @@
+//! The parts of the rims of caps that no other cap covers: in single precision, `LANES` caps at a
+//! time.
+//!
+//! A rim is a circle on the unit sphere. Another cap covers one arc of it. The circle is cut into
+//! 64 sectors; a sector that lies within one such arc is covered, and once all 64 are, the rim
+//! holds no corner of the free area. Most rims end so after a few caps. A place that is called
+//! covered here is covered; one that is called open may still be covered: the caller looks at it in
+//! double precision.
+
+use crate::spheres::Vector3;
+
+/// Caps handled at once, without a branch.
+pub(crate) const LANES: usize = 8;
+/// Numbers of `LANES` caps side by side.
+type Lanes = [f32; LANES];
+
+const SECTORS: f32 = 64.0;
+/// An arc is taken to be shorter than it is by this part of a sector at either end, far more than
+/// rounding can change it.
+const MARGIN: f32 = 0.02;
+/// A corner is looked for this many sectors to either side of where it seems to be.
+const CORNER_MARGIN: f32 = 0.1;
+/// Two rims whose planes are so nearly parallel (sine times sine, squared) that rounding could
+/// misplace their corners by more than that.
+const BLUNT: f32 = 4e-4;
+/// An arc shorter than about a sector (sine of half its angle, squared) counts for nothing.
+const SHORT: f32 = 0.01;
+/// Rims that pass each other by less than this (cosines, squared) may meet.
+const NEARLY_MEET: f32 = 1e-5;
+
+/// In place of a position on a rim: the two rims do not meet.
+const APART: f32 = -1.0;
+/// In place of a position on a rim: they may meet anywhere.
+const ANYWHERE: f32 = -2.0;
+
+/// Caps in groups of `LANES`: x, y, z of the axes and the cosines of the caps' angles. The last
+/// group is filled up with caps that cover nothing.
+#[derive(Debug, Default)]
+pub(crate) struct Rims {
+    groups: Vec<[Lanes; 4]>,
+    /// Begin and end of the arcs on the rim that was looked at last, in sectors.
+    ends: Vec<[Lanes; 2]>,
+}
+
+/// A cap with two directions across its axis, along which positions on its rim are measured.
+struct Rim {
+    axis: [f32; 3],
+    across: [[f32; 3]; 2],
+    cosine: f32,
+    sine_squared: f32,
+}
+
+/// The arcs of a rim that the caps of one group cover.
+struct Arcs {
+    /// A bit for each sector.
+    covered: u64,
+    ends: [Lanes; 2],
+}
+
+impl Rims {
+    pub(crate) fn clear(&mut self) {
+        self.groups.clear();
+    }
+
+    /// Adds caps, `LANES` or, at the end, fewer: axis and cosine of the cap's angle.
+    pub(crate) fn push(&mut self, caps: impl Iterator<Item = (Vector3, f64)>) {
+        let mut group = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [2.0; LANES]];
+        for (lane, (axis, cosine)) in caps.enumerate() {
+            let numbers = [axis.x, axis.y, axis.z, cosine];
+            for (array, number) in group.iter_mut().zip(numbers) {
+                array[lane] = number as f32;
+            }
+        }
+        self.groups.push(group);
+    }
+
+    /// Calls `visit` with each cap k < `j` of which a corner with cap `j` may be free.
+    #[inline(always)]
+    pub(crate) fn open_corners(&mut self, j: usize, mut visit: impl FnMut(usize)) {
+        let rim = self.rim(j);
+        let mut covered = 0;
+        self.ends.clear();
+        for group in &self.groups {
+            let arcs = rim.arcs(group);
+            covered |= arcs.covered;
+            if covered == u64::MAX {
+                return;
+            }
+            self.ends.push(arcs.ends);
+        }
+        for (group, [from, to]) in self.ends[..j.div_ceil(LANES)].iter().enumerate() {
+            for lane in 0..LANES.min(j - group * LANES) {
+                let open = !covered & (around(from[lane]) | around(to[lane])) != 0;
+                if from[lane] != APART && (from[lane] == ANYWHERE || open) {
+                    visit(group * LANES + lane);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn rim(&self, j: usize) -> Rim {
+        let [x, y, z, cosine] = self.groups[j / LANES].map(|array| array[j % LANES]);
+        // Duff et al. 2017, Building an orthonormal basis, revisited.
+        let sign = 1.0_f32.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        Rim {
+            axis: [x, y, z],
+            across: [
+                [1.0 + sign * x * x * a, sign * b, -sign * x],
+                [b, sign + y * y * a, -y],
+            ],
+            cosine,
+            sine_squared: 1.0 - cosine * cosine,
+        }
+    }
+}
+
+impl Rim {
+    /// The point of this rim in direction p of the plane across its axis is covered by a cap with
+    /// axis (along, u, v) where p . (u, v) sine > t, t = cosine of that cap - along * cosine of
+    /// this one.
+    #[inline(always)]
+    fn arcs(&self, [x, y, z, cosine]: &[Lanes; 4]) -> Arcs {
+        let dot = |a: &[f32; 3], k: usize| a[0] * x[k] + a[1] * y[k] + a[2] * z[k];
+        let (mut begin, mut end) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+        let mut kind = [0.0; LANES];
+        let (mut length, mut whole) = ([0_i32; LANES], [0_u64; LANES]);
+        let mut first = [0_i32; LANES];
+        let mut ends = [[0.0; LANES]; 2];
+        let mut masks = [0_u64; LANES];
+        for k in 0..LANES {
+            let (u, v) = (dot(&self.across[0], k), dot(&self.across[1], k));
+            let t = cosine[k] - dot(&self.axis, k) * self.cosine;
+            let reach_squared = self.sine_squared * (u * u + v * v);
+            let off_squared = reach_squared - t * t;
+            let off = if off_squared > 0.0 { off_squared } else { 0.0 }.sqrt();
+            begin[0][k] = u * t + v * off;
+            begin[1][k] = v * t - u * off;
+            end[0][k] = u * t - v * off;
+            end[1][k] = v * t + u * off;
+            let apart = off_squared < -NEARLY_MEET;
+            let blunt = reach_squared < BLUNT;
+            kind[k] = if apart {
+                APART
+            } else if blunt {
+                ANYWHERE
+            } else {
+                0.0
+            };
+            whole[k] = if apart & (t < 0.0) { u64::MAX } else { 0 };
+            length[k] = if (off_squared > SHORT * reach_squared) & !blunt {
+                63
+            } else {
+                0
+            };
+        }
+        for k in 0..LANES {
+            let from = position(begin[0][k], begin[1][k]);
+            let to = position(end[0][k], end[1][k]);
+            let after = if to < from { to + SECTORS } else { to };
+            first[k] = nearest_integer(from + MARGIN + 0.5);
+            let sectors = nearest_integer(after - MARGIN + 0.5) - 1 - first[k];
+            let sectors = if sectors > 0 { sectors } else { 0 };
+            length[k] = if sectors < length[k] {
+                sectors
+            } else {
+                length[k]
+            };
+            ends[0][k] = if kind[k] < 0.0 { kind[k] } else { from };
+            ends[1][k] = to;
+        }
+        for k in 0..LANES {
+            let arc = (1_u64 << length[k]) - 1;
+            masks[k] = arc.rotate_left(first[k] as u32 & 63) | whole[k];
+        }
+        Arcs {
+            covered: masks.iter().fold(0, |all, mask| all | mask),
+            ends,
+        }
+    }
+}
+
+/// Position of a direction on the circle, in sectors: grows with its angle, though not evenly.
+#[inline(always)]
+fn position(x: f32, y: f32) -> f32 {
+    let sum = x.abs() + y.abs();
+    let fraction = x / if sum > 1e-30 { sum } else { 1e-30 };
+    0.25 * SECTORS
+        * if y < 0.0 {
+            3.0 + fraction
+        } else {
+            1.0 - fraction
+        }
+}
+
+/// The integer nearest to x, 0 <= x < 2^22: in single precision the last bit of x + 2^23 is worth
+/// 1.
+#[inline(always)]
+fn nearest_integer(x: f32) -> i32 {
+    (x + 8_388_608.0).to_bits() as i32 & 0x7f_ffff
+}
+
+/// The sectors within `CORNER_MARGIN` of a position.
+#[inline(always)]
+fn around(position: f32) -> u64 {
+    let bit = |at: f32| 1_u64 << (at as u32 & 63);
+    bit(position + SECTORS - CORNER_MARGIN) | bit(position + CORNER_MARGIN)
+}

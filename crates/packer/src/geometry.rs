@@ -1,0 +1,10 @@
+//! The solid that a surface bounds: its wall, what lies inside, and how deep.
+//!
+//! [`tree`] <- [`winding`] <- [`union`] <- [`boundary`] <- [`inside`] <- [`depth_map`].
+
+pub(crate) mod boundary;
+pub(crate) mod depth_map;
+pub(crate) mod inside;
+mod tree;
+pub(crate) mod union;
+mod winding;

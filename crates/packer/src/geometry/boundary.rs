@@ -1,0 +1,308 @@
+//! The wall of the solid: how far it is from a point, on which side of it a point lies, and what of
+//! it a ball would meet.
+
+use super::tree::{Corners, TriangleTree};
+use super::union::outer_pieces;
+use crate::spheres::Vector3;
+use dem_io::{Diagnostic, Result, Surface};
+
+/// The point of the surface nearest to some other point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Its position, in local units.
+    pub point: Vector3,
+    /// Its distance, in local units.
+    pub distance: f64,
+}
+
+/// The facets of a surface in a tree, for distance queries and rays.
+pub struct Boundary {
+    /// All facets of the surface, in its order: what rays are counted against.
+    facets: TriangleTree,
+    /// The triangles that bound the solid, where those are not all facets: parts of the surface may
+    /// lie inside others.
+    union: Option<TriangleTree>,
+    /// The triangles of the wall, prepared for `nearest_on`.
+    planes: Vec<Plane>,
+}
+
+/// A triangle as the plane that it lies in: p is above it where u = (p - corner) . along_u >= 0, v
+/// >= 0 and u + v <= 1.
+struct Plane {
+    corner: Vector3,
+    normal: Vector3,
+    along_u: Vector3,
+    along_v: Vector3,
+}
+
+/// Triangles whose height is a smaller fraction of their longest edge have no plane: its normal
+/// would be off by more than 1e-10.
+const THINNEST: f64 = 1e-6;
+
+impl Plane {
+    fn new(corners: Corners) -> Self {
+        let [a, b, c] = corners.map(Vector3::from);
+        let (edge_u, edge_v) = (b - a, c - a);
+        let normal = edge_u.cross(&edge_v);
+        let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
+        // A thin triangle does not tell its normal well, and has hardly an inner part that a point
+        // could be above: NaN fails every comparison.
+        let squared = if normal.norm() < THINNEST * longest * longest {
+            f64::NAN
+        } else {
+            normal.norm_squared()
+        };
+        Self {
+            corner: a,
+            normal: normal / squared.sqrt(),
+            along_u: edge_v.cross(&normal) / squared,
+            along_v: normal.cross(&edge_u) / squared,
+        }
+    }
+
+    /// u and v of a point given from the corner.
+    fn along_triangle(&self, from_corner: &Vector3) -> [f64; 2] {
+        [&self.along_u, &self.along_v].map(|along| from_corner.dot(along))
+    }
+
+    /// Distance of a point from the plane, positive on the side of the normal, if it is above or
+    /// below the triangle.
+    fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
+        let from_corner = point - self.corner;
+        let [u, v] = self.along_triangle(&from_corner);
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
+    }
+}
+
+impl Boundary {
+    /// Builds the tree.
+    ///
+    /// # Errors
+    /// A surface without triangles.
+    pub fn new(surface: &Surface) -> Result<Self> {
+        let refused = |e: String| {
+            Diagnostic::input(
+                surface.source.clone(),
+                format!("the surface cannot be used: {e}"),
+                "",
+            )
+        };
+        let vertices = surface.vertices.iter().copied();
+        let facets = TriangleTree::new(vertices, surface.triangles.clone()).map_err(refused)?;
+        let mut union = None;
+        if surface.repairs.self_intersections > 0 || surface.overlap_volume_m3 != 0.0 {
+            let pieces = outer_pieces(surface, &facets);
+            let triangles = (0..pieces.len() as u32)
+                .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
+                .collect();
+            let corners = pieces.into_iter().flatten();
+            union = Some(TriangleTree::new(corners, triangles).map_err(refused)?);
+        }
+        let planes = union.as_ref().unwrap_or(&facets).all().map(Plane::new);
+        Ok(Self {
+            planes: planes.collect(),
+            facets,
+            union,
+        })
+    }
+
+    /// All facets of the surface, in its order.
+    pub fn facets(&self) -> &TriangleTree {
+        &self.facets
+    }
+
+    /// The triangles that bound the solid.
+    fn wall(&self) -> &TriangleTree {
+        self.union.as_ref().unwrap_or(&self.facets)
+    }
+
+    /// The nearest point of the surface, if it is closer than `cut_off` (local units).
+    pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
+        self.nearest_triangle(point, cut_off).map(|(_, near)| near)
+    }
+
+    /// As [`Boundary::nearest`], with the triangle of the wall that the nearest point lies on.
+    pub(crate) fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
+        self.wall().nearest(point, cut_off, |triangle, closest| {
+            self.nearest_below(triangle, point, closest)
+        })
+    }
+
+    /// True if a point is behind the triangle of the wall that is nearest to it, on the inner side:
+    /// then it is inside. None where that is not sure: the nearest point is at an edge, or the
+    /// point on the wall itself.
+    pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
+        const EDGE: f64 = 1e-6;
+        let plane = self.planes.get(nearest_triangle as usize)?;
+        let from_corner = point - plane.corner;
+        let [u, v] = plane.along_triangle(&from_corner);
+        let height = from_corner.dot(&plane.normal);
+        let sure =
+            u > EDGE && v > EDGE && u + v < 1.0 - EDGE && height.abs() > EDGE * from_corner.norm();
+        sure.then_some(height < 0.0)
+    }
+
+    /// True if the surface leaves a ball of this radius (local units) free.
+    pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
+        !self
+            .wall()
+            .reaches_into(centre, radius, |triangle, closest| {
+                self.nearest_below(triangle, centre, closest)
+            })
+    }
+
+    /// The nearest point of a triangle of the wall with its distance, unless its plane is farther
+    /// away than `closest`.
+    fn nearest_below(
+        &self,
+        triangle: u32,
+        point: &Vector3,
+        closest: f64,
+    ) -> Option<(f64, Nearest)> {
+        let plane = &self.planes[triangle as usize];
+        // The plane of a thin triangle is NaN, and not farther away than anything.
+        if (point - plane.corner).dot(&plane.normal).abs() >= closest {
+            return None;
+        }
+        let near = self.nearest_on(triangle, point);
+        Some((near.distance, near))
+    }
+
+    /// The triangles of the wall whose boxes come within `reach` (local units) of `point`.
+    pub fn triangles_near(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
+        self.wall().within(point, reach)
+    }
+
+    /// The triangles of the wall whose boxes a ray passes, by their corners.
+    pub(crate) fn walls_on_ray(
+        &self,
+        origin: &Vector3,
+        direction: &Vector3,
+    ) -> impl Iterator<Item = Corners> + '_ {
+        let wall = self.wall();
+        wall.on_ray(origin, direction).map(|t| wall.corners(t))
+    }
+
+    /// The planes of the triangles that come within `reach` (local units) of a point inside, as
+    /// directions to them and distances, if the solid lies behind each of these planes as far as
+    /// the triangles go: a ball within reach then clears the wall where it clears the planes. False
+    /// where the wall is curved or hollow.
+    pub(crate) fn flat_walls(
+        &self,
+        point: &Vector3,
+        reach: f64,
+        found: &mut Vec<(Vector3, f64)>,
+    ) -> bool {
+        const MOST: usize = 24;
+        const SAME_PLANE: f64 = 1e-11;
+        found.clear();
+        for triangle in self.triangles_near(point, reach).take(MOST + 1) {
+            let plane = &self.planes[triangle as usize];
+            let distance = (plane.corner - point).dot(&plane.normal);
+            let is_known = |(normal, other): &(Vector3, f64)| {
+                (normal - plane.normal).norm() < SAME_PLANE
+                    && (other - distance).abs() < SAME_PLANE * reach
+            };
+            if !found.iter().any(is_known) {
+                found.push((plane.normal, distance));
+            }
+        }
+        self.triangles_near(point, reach)
+            .enumerate()
+            .all(|(k, triangle)| {
+                k < MOST
+                    && self.wall().corners(triangle).iter().all(|corner| {
+                        let from_point = Vector3::from(*corner) - point;
+                        // NaN, of a thin triangle, is behind nothing.
+                        found.iter().all(|(normal, distance)| {
+                            from_point.dot(normal) <= distance + SAME_PLANE * reach
+                        })
+                    })
+            })
+    }
+
+    /// The walls that a ball of this radius (local units) would meet: nearest points in directions
+    /// that differ by more than 14 degrees, a face hidden behind a nearer one (the same plane, the
+    /// far side of an edge) left out. `triangles` limits the search; the 8 nearest are found.
+    pub fn walls(
+        &self,
+        triangles: impl Iterator<Item = u32>,
+        centre: &Vector3,
+        radius: f64,
+        found: &mut Vec<Nearest>,
+    ) {
+        const SAME_DIRECTION: f64 = 0.97;
+        const MOST: usize = 8;
+        found.clear();
+        let toward = |near: &Nearest| (near.point - centre) / near.distance;
+        for triangle in triangles {
+            let near = self.nearest_on(triangle, centre);
+            if near.distance >= radius || near.distance <= 0.0 {
+                continue;
+            }
+            let direction = toward(&near);
+            match found
+                .iter()
+                .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
+            {
+                Some(k) if near.distance < found[k].distance => found[k] = near,
+                None => found.push(near),
+                _ => {}
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept = 0;
+        for k in 0..found.len() {
+            let near = found[k];
+            let hidden = found[..kept]
+                .iter()
+                .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
+            if !hidden {
+                found[kept] = near;
+                kept += 1;
+            }
+        }
+        found.truncate(kept.min(MOST));
+    }
+
+    /// The nearest point of one triangle of the wall.
+    pub(crate) fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
+        let plane = &self.planes[triangle as usize];
+        if let Some(height) = plane.height_over_triangle(point) {
+            return Nearest {
+                point: point - plane.normal * height,
+                distance: height.abs(),
+            };
+        }
+        let (point, distance) = self.wall().projection(triangle, point);
+        Nearest { point, distance }
+    }
+
+    /// True if a point (local units) lies inside the solid, judged by the normal of the nearest
+    /// triangle: much faster than a ray. `triangles` must hold the nearest one and all that are as
+    /// near.
+    ///
+    /// `None` where this decides nothing, and [`is_inside`](super::inside::is_inside) does: the
+    /// nearest place is an edge or a corner, or several triangles within 1e-9 of the nearest
+    /// contradict each other (as where two parts touch).
+    pub fn is_behind_nearest(
+        &self,
+        triangles: impl Iterator<Item = u32>,
+        point: &Vector3,
+    ) -> Option<bool> {
+        const AS_NEAR: f64 = 1e-9;
+        let mut near: Vec<(f64, Option<bool>)> = triangles
+            .map(|triangle| {
+                let height = self.planes[triangle as usize].height_over_triangle(point);
+                match height {
+                    Some(height) => (height.abs(), Some(height < 0.0)),
+                    None => (self.nearest_on(triangle, point).distance, None),
+                }
+            })
+            .collect();
+        let nearest = near.iter().map(|n| n.0).fold(f64::INFINITY, f64::min);
+        near.retain(|n| n.0 <= nearest + AS_NEAR);
+        let (_, first) = *near.first()?;
+        near.iter().all(|n| n.1 == first).then_some(first)?
+    }
+}

@@ -1,0 +1,130 @@
+//! Triangles in a tree of boxes. The only module that knows parry3d.
+
+use crate::spheres::Vector3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::BvhNode;
+use parry3d_f64::query::{PointQueryWithLocation, Ray};
+use parry3d_f64::shape::TriMesh;
+
+/// Three corners, local units.
+pub(super) type Corners = [[f64; 3]; 3];
+
+/// Triangles in a tree of boxes, numbered as they were given. Lengths in local units.
+pub struct TriangleTree(TriMesh);
+
+impl TriangleTree {
+    /// The tree over triangles given by the indices of their vertices.
+    ///
+    /// # Errors
+    /// No triangles, in words.
+    pub(super) fn new(
+        vertices: impl Iterator<Item = [f64; 3]>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, String> {
+        TriMesh::new(vertices.map(Vector::from).collect(), triangles)
+            .map(Self)
+            .map_err(|e| e.to_string())
+    }
+
+    /// The corners of all triangles.
+    pub(super) fn all(&self) -> impl Iterator<Item = Corners> + '_ {
+        self.0.triangles().map(|t| [t.a, t.b, t.c].map(Into::into))
+    }
+
+    /// The corners of a triangle.
+    pub(super) fn corners(&self, triangle: u32) -> Corners {
+        let triangle = self.0.triangle(triangle);
+        [triangle.a, triangle.b, triangle.c].map(Into::into)
+    }
+
+    /// The triangles whose boxes come within `reach` of `point`.
+    pub(super) fn within(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
+        let (centre, half) = (to_parry(point), Vector::splat(reach));
+        self.in_box(Aabb::new(centre - half, centre + half))
+    }
+
+    /// The triangles whose boxes meet that of `triangle`, itself among them.
+    pub(super) fn beside(&self, triangle: u32) -> impl Iterator<Item = u32> + '_ {
+        self.in_box(self.0.triangle(triangle).local_aabb())
+    }
+
+    fn in_box(&self, query: Aabb) -> impl Iterator<Item = u32> + '_ {
+        let query = BvhNode::leaf(query, 0);
+        self.0.bvh().leaves(move |node| node.intersects(&query))
+    }
+
+    /// The triangles whose boxes a ray passes.
+    pub(super) fn on_ray(
+        &self,
+        origin: &Vector3,
+        direction: &Vector3,
+    ) -> impl Iterator<Item = u32> + use<'_> {
+        let ray = Ray::new(to_parry(origin), to_parry(direction));
+        self.0
+            .bvh()
+            .leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
+    }
+
+    /// The triangle nearest to `point`, if it is closer than `cut_off`, with what `measure` says of
+    /// it: `measure(triangle, closest)` gives its distance, or None if that is not below `closest`.
+    #[inline]
+    pub(super) fn nearest<T>(
+        &self,
+        point: &Vector3,
+        cut_off: f64,
+        measure: impl Fn(u32, f64) -> Option<(f64, T)>,
+    ) -> Option<(u32, T)> {
+        let distance = |node: &BvhNode, _: f64| distance_to_box(node, point);
+        let (triangle, (_, found)) = self.0.bvh().find_best(cut_off, distance, measure)?;
+        Some((triangle, found))
+    }
+
+    /// True if any triangle is closer to `point` than `radius`; `measure` as for
+    /// [`TriangleTree::nearest`].
+    #[inline]
+    pub(super) fn reaches_into<T>(
+        &self,
+        point: &Vector3,
+        radius: f64,
+        measure: impl Fn(u32, f64) -> Option<(f64, T)>,
+    ) -> bool {
+        // The first triangle within the radius decides: no box is worth a look after it.
+        let distance = |node: &BvhNode, closest: f64| {
+            if closest < radius {
+                f64::MAX
+            } else {
+                distance_to_box(node, point)
+            }
+        };
+        self.0.bvh().find_best(radius, distance, measure).is_some()
+    }
+
+    /// The point of a triangle that is nearest to `point`, and its distance.
+    pub(super) fn projection(&self, triangle: u32, point: &Vector3) -> (Vector3, f64) {
+        let from = to_parry(point);
+        let (projection, _) = self
+            .0
+            .triangle(triangle)
+            .project_local_point_and_get_location(from, false);
+        let distance = (projection.point - from).length();
+        (from_parry(&projection.point), distance)
+    }
+}
+
+/// Distance from a point to the box of a node.
+fn distance_to_box(node: &BvhNode, point: &Vector3) -> f64 {
+    let from = to_parry(point);
+    (node.mins() - from)
+        .max(from - node.maxs())
+        .max(Vector::ZERO)
+        .length()
+}
+
+fn to_parry(v: &Vector3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn from_parry(v: &Vector) -> Vector3 {
+    Vector3::new(v.x, v.y, v.z)
+}

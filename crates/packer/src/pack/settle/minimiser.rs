@@ -1,0 +1,288 @@
+//! The minimiser of the overlaps' energy: damped dynamics.
+
+use super::forces::{ForcesOn, MARGIN, wall_overlap};
+use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
+use crate::geometry::boundary::Boundary;
+use crate::geometry::inside::is_inside;
+use crate::spheres::{ReducedSphere, centre_of};
+use dem_io::{Diagnostic, Result};
+use pulp::Arch;
+use rayon::prelude::*;
+
+/// Neighbours are listed this far beyond contact, in mean radii.
+const SKIN: f64 = 0.8;
+/// Fraction of the velocity that damping takes in step n: `DAMPING` / n, between the two limits.
+const DAMPING: f64 = 9.0;
+const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
+/// Velocity that a unit of force gives in a step to a sphere of few neighbours; with half as much
+/// again the dynamics becomes unstable.
+const LARGEST_RESPONSE: f64 = 0.75;
+/// So many listed neighbours are few: 6 of them touch. With more the response is less in
+/// proportion.
+const FEW_NEIGHBOURS: f64 = 10.0;
+/// No sphere moves farther in a step, in mean radii: centres that begin almost on each other are
+/// not shot through a wall.
+const LARGEST_MOVE: f64 = 0.2;
+
+/// Steps before spheres are taken out, at first and then between one time and the next.
+const PATIENCE: [usize; 2] = [1500, 200];
+/// Fraction of the spheres taken out the first time; each further time twice as many, up to the
+/// second fraction.
+const TAKEN_OUT: [f64; 2] = [0.001, 0.016];
+/// After so many steps settling is given up.
+const MOST_STEPS: usize = 60_000;
+
+/// Treatment of spheres that are jammed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WhenJammed {
+    /// A few are taken out, until the rest has room.
+    TakeOut,
+    /// Settling ends: they are to be fewer from the start.
+    Stop,
+}
+
+/// The end of a settling run.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Settled {
+    /// Steps of the minimiser.
+    pub steps: usize,
+    /// Spheres taken out because they were jammed.
+    pub taken_out: usize,
+    /// True if it was stopped because spheres were jammed: they still overlap.
+    pub is_stopped: bool,
+}
+
+/// Spheres with what the minimiser knows of them.
+struct State<'a> {
+    boundary: &'a Boundary,
+    balls: Vec<ReducedSphere>,
+    /// Radius over reduced radius: 1 + overlap.
+    enlarge: f64,
+    /// x, y, z and 0, as `force`: four numbers each, like the spheres, so that all four are handled
+    /// at once.
+    velocity: Vec<[f64; 4]>,
+    force: Vec<[f64; 4]>,
+    /// Velocity gained per step and unit of force: less for spheres with many neighbours.
+    response: Vec<f64>,
+    near: NeighbourLists,
+    /// The spheres as they were when neighbours were listed.
+    listed_at: Vec<ReducedSphere>,
+    skin: f64,
+    largest_move: f64,
+}
+
+/// Moves spheres (reduced radii at full size) until none overlaps another or the wall. Where they
+/// are jammed, some are taken out, if that is wanted: of the pairs that overlap most the one with
+/// the higher index, which favours no size, and spheres that overlap the wall as much.
+///
+/// `progress` is told the fraction of the work done.
+///
+/// # Errors
+/// What `progress` returns; no end after very many steps.
+pub fn minimise_overlaps(
+    boundary: &Boundary,
+    balls: &mut Vec<ReducedSphere>,
+    overlap: f64,
+    when_jammed: WhenJammed,
+    progress: &dyn Fn(f64) -> Result<()>,
+) -> Result<Settled> {
+    let mut settled = Settled::default();
+    if balls.is_empty() {
+        return Ok(settled);
+    }
+    for ball in balls.iter_mut() {
+        ball[3] *= 1.0 + MARGIN;
+    }
+    let mut state = State::new(boundary, std::mem::take(balls), 1.0 + overlap);
+    let mut patience = PATIENCE[0];
+    let mut fraction = TAKEN_OUT[0];
+    loop {
+        let worst = state.forces();
+        if worst < MARGIN {
+            break;
+        }
+        if settled.steps >= MOST_STEPS {
+            return Err(Diagnostic::failed(
+                "--settle",
+                format!(
+                    "the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps",
+                    worst
+                ),
+                "use a smaller share, or --settle 0 for the bare front",
+            ));
+        }
+        if settled.steps >= patience {
+            if when_jammed == WhenJammed::Stop {
+                settled.is_stopped = true;
+                return Ok(settled);
+            }
+            patience += PATIENCE[1];
+            settled.taken_out += state.take_out_jammed(fraction);
+            fraction = TAKEN_OUT[1].min(2.0 * fraction);
+        } else {
+            settled.steps += 1;
+            let damping =
+                (DAMPING / settled.steps as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1]);
+            if state.accelerate_and_move(damping) {
+                state.list_neighbours();
+            }
+        }
+        if settled.steps.is_multiple_of(16) {
+            progress((worst.ln() / MARGIN.ln()).clamp(0.0, 1.0))?;
+        }
+    }
+    *balls = state.balls;
+    settled.taken_out += remove_outside(boundary, balls);
+    for ball in balls.iter_mut() {
+        ball[3] /= 1.0 + MARGIN;
+    }
+    Ok(settled)
+}
+
+/// Removes spheres that began almost on the wall and were pushed through it. Returns how many.
+fn remove_outside(boundary: &Boundary, spheres: &mut Vec<ReducedSphere>) -> usize {
+    let inside: Vec<bool> = spheres
+        .par_iter()
+        .map(|sphere| is_inside(boundary, &centre_of(sphere)))
+        .collect();
+    let mut inside = inside.into_iter();
+    let before = spheres.len();
+    spheres.retain(|_| inside.next().unwrap_or(false));
+    before - spheres.len()
+}
+
+impl<'a> State<'a> {
+    fn new(boundary: &'a Boundary, balls: Vec<ReducedSphere>, enlarge: f64) -> Self {
+        let n = balls.len();
+        let mean = balls.iter().map(|b| b[3]).sum::<f64>() / n as f64;
+        let mut state = Self {
+            boundary,
+            balls,
+            enlarge,
+            velocity: vec![[0.0; 4]; n],
+            force: vec![[0.0; 4]; n],
+            response: Vec::new(),
+            near: NeighbourLists::default(),
+            listed_at: Vec::new(),
+            skin: SKIN * mean,
+            largest_move: LARGEST_MOVE * mean,
+        };
+        state.list_neighbours();
+        state
+    }
+
+    /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns
+    /// how many.
+    fn take_out_jammed(&mut self, fraction: f64) -> usize {
+        let mut worst: Vec<(f64, usize)> = (0..self.balls.len())
+            .into_par_iter()
+            .map(|i| {
+                let ball = &self.balls[i];
+                let earlier = (self.near.spheres.of(i).iter()).filter(|j| (**j as usize) < i);
+                let overlap = |j: &u32| {
+                    let other = &self.balls[*j as usize];
+                    (ball[3] + other[3] - squared_distance(ball, other).sqrt())
+                        / ball[3].min(other[3])
+                };
+                let spheres = earlier.map(overlap).fold(0.0, f64::max);
+                let centre = centre_of(ball);
+                let radius = ball[3] * self.enlarge;
+                let wall = self.boundary.nearest(&centre, radius);
+                let wall = wall.map_or(0.0, |near| wall_overlap(radius, near.distance));
+                (spheres.max(wall), i)
+            })
+            .filter(|(overlap, _)| *overlap > MARGIN)
+            .collect();
+        worst.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        worst.truncate((self.balls.len() as f64 * fraction).ceil() as usize);
+        let mut out = vec![false; self.balls.len()];
+        for (_, i) in &worst {
+            out[*i] = true;
+        }
+        let mut index = 0;
+        self.balls.retain(|_| {
+            index += 1;
+            !out[index - 1]
+        });
+        let boundary = self.boundary;
+        *self = Self::new(boundary, std::mem::take(&mut self.balls), self.enlarge);
+        worst.len()
+    }
+
+    /// Lists, for each sphere, the others that could come to touch it before the lists are made
+    /// again.
+    fn list_neighbours(&mut self) {
+        let balls = &self.balls;
+        // The old lists make room for the new ones.
+        self.near = NeighbourLists::default();
+        self.near = NeighbourLists::new(self.boundary, balls, self.enlarge, self.skin);
+        self.listed_at.clone_from(balls);
+        self.response = (0..balls.len())
+            .map(|i| {
+                let neighbours = self.near.spheres.of(i).len() + self.near.walls.of(i).len();
+                LARGEST_RESPONSE * (FEW_NEIGHBOURS / neighbours as f64).min(1.0)
+            })
+            .collect();
+    }
+
+    /// Forces at the present positions. Returns the largest overlap, in radii.
+    fn forces(&mut self) -> f64 {
+        let (boundary, balls, near, enlarge) =
+            (self.boundary, &self.balls, &self.near, self.enlarge);
+        self.force
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .map(|(chunk, part)| {
+                Arch::new().dispatch(ForcesOn {
+                    force: part,
+                    first: chunk * CHUNK,
+                    boundary,
+                    balls,
+                    near,
+                    enlarge,
+                })
+            })
+            .reduce(|| 0.0, f64::max)
+    }
+
+    /// v = (1 - damping) v + response F; x += v. Returns whether a sphere is now farther than half
+    /// the skin from where it was listed.
+    fn accelerate_and_move(&mut self, damping: f64) -> bool {
+        let keep = 1.0 - damping;
+        let most = self.largest_move;
+        let balls = self.balls.par_chunks_mut(CHUNK);
+        let velocity = self.velocity.par_chunks_mut(CHUNK);
+        let force = self.force.par_chunks(CHUNK);
+        let response = self.response.par_chunks(CHUNK);
+        let listed_at = self.listed_at.par_chunks(CHUNK);
+        let farthest = (balls, velocity, force, response, listed_at)
+            .into_par_iter()
+            .map(|(balls, velocity, force, response, listed_at)| {
+                let mut farthest = 0.0;
+                for k in 0..balls.len() {
+                    let v = &mut velocity[k];
+                    for axis in 0..4 {
+                        v[axis] = keep * v[axis] + response[k] * force[k][axis];
+                    }
+                    let speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+                    if speed_squared > most * most {
+                        *v = v.map(|v| v * most / speed_squared.sqrt());
+                    }
+                    let mut moved = [0.0; 4];
+                    for axis in 0..4 {
+                        balls[k][axis] += v[axis];
+                        moved[axis] = balls[k][axis] - listed_at[k][axis];
+                    }
+                    let squared = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+                    farthest = if squared > farthest {
+                        squared
+                    } else {
+                        farthest
+                    };
+                }
+                farthest
+            })
+            .reduce(|| 0.0, f64::max);
+        farthest > (0.5 * self.skin).powi(2)
+    }
+}

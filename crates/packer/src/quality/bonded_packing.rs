@@ -1,0 +1,65 @@
+//! The packing that is judged: spheres, their bonds, and the solid that they fill.
+
+use crate::bonds::CrossesSurface;
+use crate::sizes::Sizes;
+use crate::spheres::Spheres;
+
+/// Contacts are counted up to a gap of this fraction of the smaller radius: settled spheres keep
+/// moving a little until none overlaps, and so stay apart by a few thousandths, seldom more than
+/// this.
+pub const DEFAULT_GAP_LIMIT: f64 = 0.02;
+/// The interior begins so many largest diameters from the wall.
+pub(super) const INTERIOR_DEPTH_IN_LARGEST_DIAMETERS: f64 = 2.0;
+/// Thicker than twice this is not measured.
+pub(super) const CAP_IN_MEAN_DIAMETERS: f64 = 10.0;
+
+/// A packing with its bonds, to be judged. Lengths in local units of the surface.
+#[derive(Clone, Copy)]
+pub struct BondedPacking<'a> {
+    /// The spheres, with true radii.
+    pub spheres: &'a Spheres,
+    /// Spheres touch at r_gen = r/(1 + overlap).
+    pub overlap: f64,
+    /// Bonded pairs, the smaller index first, each once.
+    pub bonds: &'a [[u32; 2]],
+    /// The bonds are all pairs up to this times the sum of their radii, but for those with surface
+    /// between them; 0 if the bonds were chosen otherwise.
+    pub bonding_radius: f64,
+    /// The sizes that were asked for.
+    pub sizes: &'a Sizes,
+    /// One local unit in metres.
+    pub unit_m: f64,
+    /// Volume of the solid, local units cubed.
+    pub shape_volume: f64,
+    /// Largest corner of the bounding box, whose smallest is the origin. Length 3.
+    pub extent: [f64; 3],
+    /// Density of the particles' material, kg/m3, if known.
+    pub particle_density_kg_m3: Option<f64>,
+    /// Distance of each centre to the surface, exact where finite; the others are measured. One per
+    /// sphere.
+    pub wall_distance: &'a [f64],
+    /// Distance of a point to the surface, positive inside the solid; may be infinite farther than
+    /// [`depth_needed`]. Outside it is negative or zero, and at most as far below zero as the
+    /// surface is away. The only slow part: called a few hundred thousand times.
+    pub distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
+    /// Least and largest value that `distance_inside` can have at a point, if that is known for
+    /// less than the distance costs.
+    pub distance_bounds: &'a (dyn Fn([f64; 3]) -> [f64; 2] + Sync),
+    /// True if surface lies between two spheres; asked only to advise a bonding radius.
+    pub crosses_surface: CrossesSurface<'a>,
+    /// Largest gap of a contact, as a fraction of the smaller radius: [`DEFAULT_GAP_LIMIT`].
+    pub gap_limit: f64,
+    /// Separate parts of the shape: a body in as many pieces is whole.
+    pub parts: usize,
+}
+
+/// Distances to the wall matter up to here, local units; farther is all the same.
+pub fn depth_needed(spheres: &Spheres) -> f64 {
+    let largest = 2.0 * spheres.radii.iter().copied().fold(0.0, f64::max);
+    (INTERIOR_DEPTH_IN_LARGEST_DIAMETERS * largest)
+        .max(CAP_IN_MEAN_DIAMETERS * mean_diameter(spheres))
+}
+
+pub(super) fn mean_diameter(spheres: &Spheres) -> f64 {
+    2.0 * spheres.radii.iter().sum::<f64>() / spheres.radii.len().max(1) as f64
+}

@@ -1,0 +1,108 @@
+//! Warnings about a packing before it is used, with advice.
+
+use super::report::Report;
+use crate::bonds::WELL_BONDED;
+use dem_io::units::{show_length, significant};
+
+/// Below so many particles across, a body shows its particles more than its material.
+const ENOUGH_ACROSS: f64 = 10.0;
+/// A body with fewer bonds per particle is hardly rigid.
+pub(super) const ENOUGH_BONDS: f64 = 4.0;
+/// Overlaps (in r_gen) and protrusions beyond this fraction of a radius are not rounding.
+const EXACT: f64 = 1e-9;
+/// Sizes are called wrong beyond so many times the statistical limit: chance alone goes beyond once
+/// in 2,000 packings, beyond the limit itself once in 20.
+const CLEARLY_OFF: f64 = 1.5;
+/// A fabric that chance makes more rarely than this is called anisotropic.
+const RARE: f64 = 0.01;
+
+pub(super) fn warnings(
+    report: &Report,
+    advised_bonding_radius: Option<f64>,
+    parts: usize,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let contacts = &report.contacts;
+    if contacts.largest_overlap > EXACT {
+        warnings.push(format!(
+            "spheres overlap in r_gen by up to {} of a radius: the packing is not finished: please report the command",
+            significant(contacts.largest_overlap, 2)
+        ));
+    }
+    if contacts.largest_protrusion > EXACT {
+        warnings.push(format!(
+            "spheres stand out of the surface by up to {} of a radius: please report the command",
+            significant(contacts.largest_protrusion, 2)
+        ));
+    }
+    if let Some(thinnest) = report
+        .thinnest
+        .as_ref()
+        .filter(|t| t.particles_across.round() < ENOUGH_ACROSS)
+    {
+        warnings.push(format!(
+            "only about {} particles across the thinnest part ({}): fewer than {ENOUGH_ACROSS} show the particles more than the \
+             material; use diameters around {} or less",
+            significant(thinnest.particles_across, 2),
+            show_length(thinnest.thickness_m),
+            show_length(significant_down(thinnest.thickness_m / ENOUGH_ACROSS)),
+        ));
+    }
+    let pieces = &report.pieces;
+    if pieces.count > parts.max(1) {
+        warnings.push(format!(
+            "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bonding-radius or smaller \
+             particles join them",
+            pieces.count, pieces.outside_largest, report.particles
+        ));
+    }
+    if report.particles > 1 && report.bonds_per_particle < ENOUGH_BONDS {
+        let advice = match advised_bonding_radius {
+            Some(radius) => format!("--bonding-radius {radius} gives {WELL_BONDED}"),
+            None => "use smaller particles".to_owned(),
+        };
+        warnings.push(format!(
+            "{} bonds per particle, fewer than {ENOUGH_BONDS} are hardly rigid; {advice}",
+            significant(report.bonds_per_particle, 3)
+        ));
+    }
+    warnings.extend(statistical_warnings(report));
+    warnings
+}
+
+/// Warnings about what chance does not explain: sizes, and directions of bonds.
+fn statistical_warnings(report: &Report) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (fit, by) in [
+        (report.sizes_by_number, "number"),
+        (report.sizes_by_mass, "mass"),
+    ] {
+        if fit.distance > CLEARLY_OFF * fit.limit_95 {
+            warnings.push(format!(
+                "sizes are off by {} by {by} (Kolmogorov-Smirnov), chance seldom exceeds {}; use a shape larger beside the \
+                 particles, or a narrower distribution",
+                significant(fit.distance, 2),
+                significant(fit.limit_95, 2)
+            ));
+        }
+    }
+    if let Some(fabric) = report.interior_fabric.as_ref().filter(|f| f.chance < RARE) {
+        warnings.push(format!(
+            "bonds prefer a direction in the interior (eigenvalue {} off by {} sigma, chance {}): cracks will too; another \
+             --seed or a larger --settle helps",
+            significant(fabric.eigenvalues[0], 3),
+            significant(fabric.largest_deviation_in_sigma, 2),
+            significant(fabric.chance, 1)
+        ));
+    }
+    warnings
+}
+
+/// Rounded down to two digits.
+fn significant_down(value: f64) -> f64 {
+    if value <= 0.0 {
+        return 0.0;
+    }
+    let step = 10.0_f64.powf(value.log10().floor() - 1.0);
+    (value / step * (1.0 + 1e-12)).floor() * step
+}

@@ -1,0 +1,12 @@
+//! The stages of a packing, and whole packings.
+
+mod depth_map;
+mod front;
+mod halo;
+mod inside;
+mod pack;
+mod seed;
+mod settle;
+mod shrink;
+mod union;
+mod voids;

@@ -1,0 +1,91 @@
+//! The report against closed forms: lattices, lenses, lines, plates and necks.
+
+mod densities;
+mod structure;
+mod whole;
+
+use dem_pack::Spheres;
+use dem_pack::find_bonds;
+use dem_pack::internals::{BondedPacking, DEFAULT_GAP_LIMIT, assess};
+use dem_pack::{Basis, Sizes};
+use dem_pack::{Fraction, Report};
+
+/// Spheres in a box whose walls are all six sides, or a solid given by its own distance.
+struct Case {
+    spheres: Spheres,
+    extent: [f64; 3],
+    overlap: f64,
+    bonding_radius: f64,
+    sizes: String,
+    particle_density: Option<f64>,
+}
+
+impl Case {
+    fn new(spheres: Spheres, extent: [f64; 3]) -> Self {
+        let sizes = format!("{}m", 2.0 * spheres.radii.first().copied().unwrap_or(1.0));
+        Self {
+            spheres,
+            extent,
+            overlap: 0.0,
+            bonding_radius: 1.0 + 1e-9,
+            sizes,
+            particle_density: None,
+        }
+    }
+
+    fn report(&self) -> Report {
+        let extent = self.extent;
+        self.report_in(&move |p| {
+            (0..3)
+                .map(|k| p[k].min(extent[k] - p[k]))
+                .fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    fn report_in(&self, distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync)) -> Report {
+        let wall_distance: Vec<f64> = self
+            .spheres
+            .positions
+            .iter()
+            .map(|p| distance_inside(*p))
+            .collect();
+        self.report_with(&wall_distance, distance_inside)
+    }
+
+    fn report_with(
+        &self,
+        wall_distance: &[f64],
+        distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync),
+    ) -> Report {
+        let open = |_: u32, _: u32| false;
+        let bonds = find_bonds(&self.spheres, self.bonding_radius, &open).unwrap();
+        assess(&BondedPacking {
+            spheres: &self.spheres,
+            overlap: self.overlap,
+            bonds: &bonds,
+            bonding_radius: self.bonding_radius,
+            sizes: &Sizes::parse(&self.sizes, Basis::Number).unwrap(),
+            unit_m: 1.0,
+            shape_volume: self.extent.iter().product(),
+            extent: self.extent,
+            particle_density_kg_m3: self.particle_density,
+            wall_distance,
+            distance_inside,
+            distance_bounds: &|_| [f64::NEG_INFINITY, f64::INFINITY],
+            crosses_surface: &open,
+            gap_limit: DEFAULT_GAP_LIMIT,
+            parts: 1,
+        })
+        .unwrap()
+    }
+}
+
+/// Within four of the stated errors, which is small.
+#[track_caller]
+fn close(share: Fraction, wanted: f64) {
+    assert!(share.error > 0.0 && share.error < 0.003, "{share:?}");
+    assert!(
+        (share.value - wanted).abs() < 4.0 * share.error,
+        "{share:?} {wanted}"
+    );
+}
