@@ -1,24 +1,61 @@
 //! `[loads.NAME]`, and the factor over time that loads, supports and walls share.
 
 use super::field::Field;
+use super::listing::{LISTED, Listing};
+use super::numbers::{number, quantity};
+use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use super::targets::Targets;
+use super::targets::{OF, Targets};
 use super::{Factor, Load};
 use crate::Result;
 use crate::units::{FORCE, NUMBER, TIME, TORQUE};
 
+/// The key `ramp`.
+pub(super) const RAMP: Key = Key::quantity(
+    "ramp",
+    &TIME,
+    "The factor on it rises evenly from 0 to 1 until this time, and stays.",
+)
+.positive();
+
+/// The key `table`.
+pub(super) const TABLE: Key = Key::new(
+    "table",
+    Kind::List(&Kind::Row(&[
+        Kind::Quantity(&TIME),
+        Kind::Quantity(&NUMBER),
+    ])),
+    "Instead of `ramp`: `[[time, factor], ...]`, straight between the rows, constant outside them. Times rise.",
+);
+
+/// The key `end`.
+pub(super) const fn until(doc: &'static str) -> Key {
+    Key::quantity("end", &TIME, doc)
+        .positive()
+        .otherwise("never")
+}
+
+pub(super) static LOAD: Schema = Schema {
+    title: "[loads.NAME]",
+    doc: "A force or a torque on a set, shared equally among its particles.",
+    keys: &[
+        OF,
+        Key::vector("force", &FORCE, "On the whole set."),
+        Key::vector("torque", &TORQUE, "On the whole set."),
+        RAMP,
+        TABLE,
+        until("From then on it is zero; not before the last change of `ramp` or `table`."),
+    ],
+};
+
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
-    let table = field.table(&["of", "force", "torque", "ramp", "table", "end"])?;
-    let of = targets.name(&table.need("of", "\"NAME\", a set, a body or \"all\"")?)?;
+    let table = Table::of(field, &LOAD)?;
+    let of = targets.name(&table.need("of")?)?;
     let factor = factor(&table)?;
     let load = Load {
         of,
-        force_n: table
-            .read("force", |field| field.vector(&FORCE))?
-            .unwrap_or_default(),
-        torque_n_m: table
-            .read("torque", |field| field.vector(&TORQUE))?
-            .unwrap_or_default(),
+        force_n: table.read("force")?,
+        torque_n_m: table.read("torque")?,
         end_s: end(&table, &factor)?,
         factor,
     };
@@ -40,8 +77,8 @@ pub(super) fn over_time<'a>(table: &Table<'a>) -> Option<Field<'a>> {
 pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
     match (table.get("ramp"), table.get("table")) {
         (None, None) => Ok(Factor::One),
-        (Some(field), None) => Ok(Factor::Ramp {
-            until_s: field.positive(&TIME)?,
+        (Some(_), None) => Ok(Factor::Ramp {
+            until_s: table.read("ramp")?,
         }),
         (None, Some(field)) => points(&field),
         (Some(_), Some(field)) => {
@@ -56,7 +93,7 @@ pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
     let Some(field) = table.get("end") else {
         return Ok(None);
     };
-    let end_s = field.positive(&TIME)?;
+    let end_s = table.read("end")?;
     let (last_s, which) = match factor {
         Factor::One => return Ok(Some(end_s)),
         Factor::Ramp { until_s } => (*until_s, "the ramp"),
@@ -110,4 +147,26 @@ fn points(field: &Field<'_>) -> Result<Factor> {
         points.push([time_s, factor.quantity(&NUMBER)?]);
     }
     Ok(Factor::Table(points))
+}
+
+pub(super) fn list(load: &Load, listing: &mut Listing) {
+    listing.text("of", &load.of);
+    listing.value("force", &load.force_n);
+    listing.value("torque", &load.torque_n_m);
+    list_factor(&load.factor, listing);
+    listing.value("end", &load.end_s);
+}
+
+pub(super) fn list_factor(factor: &Factor, listing: &mut Listing) {
+    match factor {
+        Factor::One => listing.text("factor", "1"),
+        Factor::Ramp { until_s } => listing.value("ramp", until_s),
+        Factor::Table(points) => {
+            let row = |[time_s, factor]: &[f64; 2]| {
+                format!("{}: {}", quantity(*time_s, "s"), number(*factor))
+            };
+            let shown: Vec<String> = points.iter().take(LISTED).map(row).collect();
+            listing.some("table", &shown, points.len());
+        }
+    }
 }

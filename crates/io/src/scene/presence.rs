@@ -63,7 +63,7 @@ impl Presence<'_> {
     /// Refuses the set `field` of the body `body`, or of all bodies, where it could pick particles of a clump, or where the body is fed.
     pub(super) fn refuse_set(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
-            let table = field.any_table()?;
+            let table = Table::any(field)?;
             return match table.get("body") {
                 Some(field) => self.refuse_body(&field, name),
                 None => self.refuse_only(&table, name),

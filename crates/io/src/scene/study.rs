@@ -1,6 +1,7 @@
 //! A study: a scene, what varies in it, what is measured and against what. Plain data, as read from TOML.
 
 mod check;
+mod keys;
 mod rewrite;
 mod values;
 
@@ -8,12 +9,14 @@ use std::path::{Component, Path, PathBuf};
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
-use super::read::{named_path, text_of};
+use super::paths::{named_path, text_of};
+use super::schema::Word;
 use super::table::Table;
 use super::tree::{Document, Value};
 use crate::{Diagnostic, Result};
 
 pub use check::{override_text, reference_values, scene_with};
+use keys::{MEASURE, PAGE, REFERENCE, STUDY};
 pub use rewrite::rewritten;
 use values::MOST_VALUES;
 
@@ -164,20 +167,28 @@ const LEDGERS: [(&str, &str); 3] = [
     ("angular-momentum", "angular_momentum_error"),
 ];
 
-const PIECES: [(&str, Pieces); 2] = [("left", Pieces::Left), ("at-end", Pieces::AtEnd)];
-
 /// The curves of a laboratory test.
 const CURVES: [(&str, ()); 1] = [("force-displacement", ())];
 
-const TIMES: [(&str, RunTime); 2] = [("wall", RunTime::Wall), ("processor", RunTime::Processor)];
+impl Word for Pieces {
+    const WORDS: &'static [(&'static str, Self)] = &[("left", Self::Left), ("at-end", Self::AtEnd)];
+}
 
-const COMBINATIONS: [(&str, Combine); 2] = [("grid", Combine::Grid), ("paired", Combine::Paired)];
+impl Word for RunTime {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("wall", Self::Wall), ("processor", Self::Processor)];
+}
+
+impl Word for Combine {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("grid", Self::Grid), ("paired", Self::Paired)];
+}
 
 /// Most axes of a study.
 const MOST_AXES: usize = 100;
 
 /// Most repeats, threads.
-const MOST: u64 = 1024;
+const MOST: f64 = 1024.0;
 
 /// Reads a study from a TOML file.
 ///
@@ -193,29 +204,16 @@ pub fn read_study(path: &Path) -> Result<Study> {
 /// Those of [`read_study`], but for reading the file.
 pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     let document = Document::parse(source, text)?;
-    let root = Table::root(&document)?;
-    let version = root.need("version", &STUDY_VERSION.to_string())?;
-    if version.count(&format!("write version = {STUDY_VERSION}"))? > STUDY_VERSION {
+    let root = Table::root(&document, &STUDY)?;
+    if root.read::<u64>("version")? > STUDY_VERSION {
+        let version = root.need("version")?;
         return Err(version.wrong(&format!("at most {STUDY_VERSION}"), "use a newer program"));
     }
-    root.refuse_unknown(&[
-        "version",
-        "scene",
-        "repeats",
-        "threads",
-        "force_step",
-        "time",
-        "combine",
-        "set",
-        "vary",
-        "together",
-        "measures",
-        "page",
-    ])?;
+    root.refuse_unknown()?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
     let mut axes = Vec::new();
     if let Some(vary) = root.get("vary") {
-        let table = vary.any_table()?;
+        let table = Table::any(&vary)?;
         for (path, node) in table.entries {
             let mut field = table.field(path, node);
             field.path = format!("vary.\"{path}\"");
@@ -252,35 +250,16 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         let remedy = "add [measures.NAME] with the name of a measure of the scene";
         return Err(root.refuse("nothing is measured", remedy));
     }
-    let series = match root.get("page") {
-        Some(page) => page
-            .table(&["series"])?
-            .read("series", |field| axis_named(&field, &axes))?,
-        None => None,
-    };
-    let count = |key: &str, usual: u32| {
-        let remedy = format!("write {key} = {usual}");
-        root.read(key, |field| match field.count(&remedy)? {
-            // Not above the limit, a u32.
-            few @ 0..=MOST => Ok(few as u32),
-            _ => Err(field.wrong(&format!("at most {MOST}"), remedy)),
-        })
-        .map(|given| given.unwrap_or(usual))
-    };
+    let page = root.table("page", &PAGE)?;
+    let series = page.read_by("series", |field| axis_named(&field, &axes))?;
     Ok(Study {
         source: source.to_owned(),
-        scene: tidy(named_path(&root.need("scene", "\"scene.toml\"")?, folder)?),
-        repeats: count("repeats", 3)?,
-        threads: count("threads", 1)?,
-        force_step: root
-            .read("force_step", |field| field.boolean())?
-            .unwrap_or_default(),
-        time: root
-            .read("time", |field| field.choice(&TIMES))?
-            .unwrap_or(RunTime::Wall),
-        combine: root
-            .read("combine", |field| field.choice(&COMBINATIONS))?
-            .unwrap_or(Combine::Grid),
+        scene: tidy(named_path(&root.need("scene")?, folder)?),
+        repeats: root.read("repeats")?,
+        threads: root.read("threads")?,
+        force_step: root.read("force_step")?,
+        time: root.read("time")?,
+        combine: root.read("combine")?,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
         fixed,
         axes,
@@ -351,14 +330,7 @@ fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
 }
 
 fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure> {
-    let table = field.table(&[
-        "measure",
-        "figure",
-        "masses",
-        "curve",
-        "ledger",
-        "reference",
-    ])?;
+    let table = Table::of(field, &MEASURE)?;
     let kinds = ["measure", "figure", "masses", "curve", "ledger"];
     let given: Vec<_> = table.given(&kinds).collect();
     if let [(one, _), (_, other), ..] = given.as_slice() {
@@ -369,7 +341,7 @@ fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure>
         None => MeasureOf::Measure(name.to_owned()),
         Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
         Some(("figure", field)) => MeasureOf::Figure(field.text()?.to_owned()),
-        Some(("masses", field)) => MeasureOf::Masses(field.choice(&PIECES)?),
+        Some(("masses", field)) => MeasureOf::Masses(field.choice(Pieces::WORDS)?),
         Some(("curve", field)) => {
             field.choice(&CURVES)?;
             MeasureOf::Curve
@@ -422,7 +394,7 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
             )),
         };
     }
-    let table = field.table(&["value", "finest", "richardson"])?;
+    let table = Table::of(field, &REFERENCE)?;
     let given: Vec<_> = table.given(&["value", "finest", "richardson"]).collect();
     let [(kind, named)] = given.as_slice() else {
         let problem = format!("{} names {} references", field.path, given.len());

@@ -6,34 +6,85 @@ mod shape;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::direction::rotation;
+use super::direction::ROTATION;
 use super::field::Field;
+use super::listing::Listing;
+use super::load::{RAMP, TABLE};
 use super::names::meaning;
+use super::schema::{Key, Schema};
+use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
 use super::{BodyEntry, Factor, Material, ParticleSet};
 use crate::Result;
-use crate::units::{ANGLE, LENGTH, VELOCITY};
+use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-const KEYS: [&str; 18] = [
-    "plane",
-    "box",
-    "cylinder",
-    "stl",
-    "unit",
-    "scale",
-    "material",
-    "rotation",
-    "tilt",
-    "pivot",
-    "surface_velocity",
-    "velocity",
-    "angular_velocity",
-    "displacement",
-    "turn",
-    "servo",
-    "ramp",
-    "table",
-];
+pub(super) static WALL: Schema = Schema {
+    title: "[walls.NAME]",
+    doc: "What particles bounce off, of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
+          a servo.",
+    keys: &[
+        Key::table("plane", &shape::PLANE, "A plane without end."),
+        Key::table("box", &BOX, "Solid, with particles outside."),
+        Key::table(
+            "cylinder",
+            &CYLINDER,
+            "A solid pin, with particles outside.",
+        ),
+        Key::text(
+            "stl",
+            "a file",
+            "Triangles, from the folder of the scene, with `unit`.",
+        ),
+        UNIT,
+        Key::number("scale", "Of `stl`: a factor on all its lengths.")
+            .positive()
+            .or(1.0),
+        Key::text("material", "a name in [materials]", "What it is of.")
+            .required("\"NAME\", a name in [materials]"),
+        Key::table(
+            "rotation",
+            &ROTATION,
+            "It is turned about the pivot, then tilted.",
+        )
+        .or(0.0),
+        Key::quantity(
+            "tilt",
+            &ANGLE,
+            "It is turned about the y axis through the pivot.",
+        )
+        .or(0.0),
+        Key::vector("pivot", &LENGTH, "What it turns about."),
+        Key::vector(
+            "surface_velocity",
+            &VELOCITY,
+            "Of a belt: its surface moves, its shape stays; in space, not turned with the wall.",
+        ),
+        Key::vector("velocity", &VELOCITY, "Of the pivot."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "About the pivot, which moves along.",
+        ),
+        Key::vector(
+            "displacement",
+            &LENGTH,
+            "Of the pivot. Needs a `ramp` or `table` that begins at 0.",
+        ),
+        Key::table(
+            "turn",
+            &ROTATION,
+            "About the pivot. Needs a `ramp` or `table` that begins at 0.",
+        )
+        .or(0.0),
+        Key::table(
+            "servo",
+            &motion::SERVO,
+            "Moves such that it pushes as wanted.",
+        ),
+        RAMP,
+        TABLE,
+    ],
+};
 
 /// What particles bounce off. It moves as it is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,24 +205,26 @@ pub(super) fn read_all(
 }
 
 fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path) -> Result<Wall> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &WALL)?;
     Ok(Wall {
         shape: shape::read(&table, folder)?,
         material: table
-            .need("material", "\"NAME\", a name in [materials]")?
+            .need("material")?
             .reference(materials.keys(), "materials")?,
-        rotation_rad: table
-            .read("rotation", |field| rotation(&field))?
-            .unwrap_or_default(),
-        tilt_rad: table
-            .read("tilt", |field| field.quantity(&ANGLE))?
-            .unwrap_or_default(),
-        pivot_m: table
-            .read("pivot", |field| field.vector(&LENGTH))?
-            .unwrap_or_default(),
+        rotation_rad: table.read("rotation")?,
+        tilt_rad: table.read("tilt")?,
+        pivot_m: table.read("pivot")?,
         motion: motion::read(&table)?,
-        surface_velocity_m_s: table
-            .read("surface_velocity", |field| field.vector(&VELOCITY))?
-            .unwrap_or_default(),
+        surface_velocity_m_s: table.read("surface_velocity")?,
     })
+}
+
+pub(super) fn list(wall: &Wall, listing: &mut Listing) {
+    shape::list(&wall.shape, listing);
+    listing.text("material", &wall.material);
+    listing.value("pivot", &wall.pivot_m);
+    listing.value("rotation", &wall.rotation_rad);
+    listing.value("tilt", &wall.tilt_rad);
+    listing.value("surface_velocity", &wall.surface_velocity_m_s);
+    motion::list(&wall.motion, listing);
 }

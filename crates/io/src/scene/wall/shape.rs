@@ -4,11 +4,28 @@ use std::path::Path;
 
 use crate::Result;
 use crate::scene::WallShape;
-use crate::scene::direction::direction;
 use crate::scene::field::Field;
-use crate::scene::shape::{corners, cylinder, refuse_without_stl, stl};
+use crate::scene::listing::Listing;
+use crate::scene::schema::{Key, Kind, Schema};
+use crate::scene::shape::{
+    corners, cylinder, list_box, list_cylinder, list_stl, refuse_without_stl, stl,
+};
 use crate::scene::table::Table;
-use crate::units::{LENGTH, NUMBER};
+use crate::units::LENGTH;
+
+pub(super) static PLANE: Schema = Schema {
+    title: "plane = { point, normal }",
+    doc: "A plane without end.",
+    keys: &[
+        Key::new("point", Kind::Vector(&LENGTH), "A point of it.").required("[0, 0, 0]"),
+        Key::new(
+            "normal",
+            Kind::Direction("a normal"),
+            "Into the free side; its length does not matter.",
+        )
+        .required("[0, 0, 1], into the free side"),
+    ],
+};
 
 const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
@@ -44,20 +61,39 @@ pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
             Ok(WallShape::Stl {
                 path,
                 unit_m,
-                scale: wall
-                    .read("scale", |field| field.positive(&NUMBER))?
-                    .unwrap_or(1.0),
+                scale: wall.read("scale")?,
             })
         }
     }
 }
 
 fn plane(field: &Field<'_>) -> Result<WallShape> {
-    let table = field.table(&["point", "normal"])?;
-    let point_m = table.need("point", "[0, 0, 0]")?.vector(&LENGTH)?;
-    let normal = table.need("normal", "[0, 0, 1], into the free side")?;
+    let table = Table::of(field, &PLANE)?;
     Ok(WallShape::Plane {
-        point_m,
-        normal: direction(&normal, "a normal")?,
+        point_m: table.read("point")?,
+        normal: table.read("normal")?,
     })
+}
+
+pub(super) fn list(shape: &WallShape, listing: &mut Listing) {
+    match shape {
+        WallShape::Plane { point_m, normal } => listing.table("plane", &PLANE, |listing| {
+            listing.value("point", point_m);
+            listing.value("normal", normal);
+        }),
+        WallShape::Box { min, max } => list_box(*min, *max, listing),
+        WallShape::Cylinder {
+            from_m,
+            to_m,
+            radius_m,
+        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        WallShape::Stl {
+            path,
+            unit_m,
+            scale,
+        } => {
+            list_stl(path, *unit_m, listing);
+            listing.value("scale", scale);
+        }
+    }
 }
