@@ -25,6 +25,7 @@ mod overrides;
 mod paths;
 mod presence;
 mod read;
+pub mod reference;
 mod region;
 mod relaxation;
 mod replacement;

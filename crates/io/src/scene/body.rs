@@ -45,7 +45,7 @@ pub(super) static BODY: Schema = Schema {
             Kind::List(&Kind::Row(&[INDEX, INDEX])),
             "Bonds between `particles` by their numbers, from 0: `[[0, 1], ...]`.",
         ),
-        Key::text("material", "a name in [materials]", "What it is of.")
+        Key::text("material", "a name in [materials]", "Its material.")
             .required("\"NAME\", a name in [materials]"),
         Key::quantity(
             "body_density",
@@ -60,8 +60,8 @@ pub(super) static BODY: Schema = Schema {
         )
         .positive()
         .otherwise("that of its particles"),
-        Key::text("bonds", "a name in [bonds]", "What its bonds are of.")
-            .required("\"NAME\", a name in [bonds]"),
+        Key::text("bonds", "a name in [bonds]", "The kind of its bonds; a body without bonds needs none.")
+            .sometimes_required("\"NAME\", a name in [bonds]"),
         Key::vector("position", &LENGTH, "It is moved by this, after `rotation`."),
         Key::table("rotation", &ROTATION, "It is turned about the origin of its file.").or(0.0),
         Key::vector("velocity", &VELOCITY, "Of the centre of mass."),

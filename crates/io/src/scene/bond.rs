@@ -61,7 +61,7 @@ pub(super) static BOND: Schema = Schema {
 };
 
 pub(super) static DAMPING: Schema = Schema {
-    title: "damping = { ... }",
+    title: "Damping",
     doc: "Viscous damping at the bond. Both kinds may act together.",
     keys: &[
         Key::number(
@@ -92,7 +92,7 @@ pub(super) static DAMPING: Schema = Schema {
 };
 
 pub(super) static FAILURE: Schema = Schema {
-    title: "failure = { ... }",
+    title: "Failure",
     doc: "What breaks a bond, whichever comes first. At least one strength is given.",
     keys: &[
         Key::quantity("tension", &STRESS, "Largest stress at the pulled edge.").not_negative(),

@@ -47,7 +47,7 @@ pub(super) const START_AS: Key = Key::new(
 .or_word("bonded");
 
 pub(super) static CLUMP: Schema = Schema {
-    title: "clump = { scale, mass }",
+    title: "Clump",
     doc: "How a rigid clump is made of a body. Its spheres are the body's particles.",
     keys: &[
         Key::number(

@@ -39,7 +39,7 @@ pub(super) static CONTACT: Schema = Schema {
             "Of the law `linear`, which needs it.",
         )
         .positive()
-        .required("\"100 kN/m\""),
+        .sometimes_required("\"100 kN/m\""),
         Key::number(
             "tangential_ratio",
             "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
@@ -68,7 +68,7 @@ pub(super) static CONTACT: Schema = Schema {
         )
         .positive()
         .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
-        .required("0.05"),
+        .sometimes_required("0.05"),
         Key::number(
             "rolling_damping",
             "Of `spring-dashpot`: share of the critical damping.",

@@ -7,7 +7,7 @@ use crate::Result;
 use crate::units::{ANGLE, NUMBER};
 
 pub(super) static ROTATION: Schema = Schema {
-    title: "{ axis, angle }",
+    title: "Rotation",
     doc: "A rotation.",
     keys: &[
         Key::new(

@@ -23,7 +23,7 @@ pub(super) static INLET: Schema = Schema {
             "bodies",
             Kind::Either(&[
                 Kind::List(&Kind::Text("a name in [bodies]")),
-                Kind::Named("a name in [bodies]", &Kind::Quantity(&NUMBER)),
+                Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
             ]),
             "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, shares by number, of any sum.",
         )

@@ -46,7 +46,7 @@ pub(super) static OUTPUT: Schema = Schema {
 };
 
 pub(super) static VIEW: Schema = Schema {
-    title: "view = { from }",
+    title: "View",
     doc: "Where pictures are taken from.",
     keys: &[Key::new(
         "from",

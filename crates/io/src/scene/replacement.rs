@@ -35,7 +35,7 @@ pub(super) static REPLACEMENT: Schema = Schema {
 };
 
 pub(super) static WHEN: Schema = Schema {
-    title: "when = { ... }",
+    title: "When",
     doc: "What makes a clump its bonded cluster.",
     keys: &[
         Key::text("enters", "a name in [regions]", "Its centre of mass is in this region.")
@@ -57,7 +57,7 @@ pub(super) static WHEN: Schema = Schema {
 };
 
 pub(super) static BACK: Schema = Schema {
-    title: "back = { ... }",
+    title: "Back",
     doc: "What makes a fragment rigid again.",
     keys: &[
         Key::text("leaves", "a name in [regions]", "Its centre is outside this region.")

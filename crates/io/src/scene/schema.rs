@@ -9,7 +9,7 @@ use crate::units::{Dimension, NUMBER};
 
 /// A table and its keys.
 pub(super) struct Schema {
-    /// As it is written: `[run]`, `[bodies.NAME]` or, within another table, `damping = { ... }`.
+    /// `[run]`, `[bodies.NAME]`; of a table within others, what it is.
     pub(super) title: &'static str,
     /// One sentence.
     pub(super) doc: &'static str,
@@ -86,6 +86,8 @@ pub(super) enum Kind {
 pub(super) enum Unless {
     /// The scene is refused; how the value may look.
     Required(&'static str),
+    /// The same in some cases, of which the sentence tells; else there is no value.
+    SometimesRequired(&'static str),
     /// This number, in SI, or three of it.
     Number(f64),
     Word(&'static str),
@@ -182,6 +184,12 @@ impl Key {
         self
     }
 
+    /// The scene is refused without it in some cases.
+    pub(super) const fn sometimes_required(mut self, example: &'static str) -> Self {
+        self.unless_given = Unless::SometimesRequired(example);
+        self
+    }
+
     /// Unless given, it is this number, in SI.
     pub(super) const fn or(mut self, number: f64) -> Self {
         self.unless_given = Unless::Number(number);
@@ -269,7 +277,8 @@ impl Key {
     /// What holds where it is left out, as the listing of a scene says it.
     pub(super) fn usual(&self) -> String {
         match self.unless_given {
-            Unless::Required(_) => String::new(),
+            Unless::Required(_) => "needed".to_owned(),
+            Unless::SometimesRequired(_) => "none".to_owned(),
             Unless::Number(usual) => match self.kind {
                 Kind::Vector(_) => vector([usual; 3], self.unit()),
                 Kind::Table(_) => vector([usual; 3], "rad"),

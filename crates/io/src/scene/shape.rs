@@ -6,13 +6,13 @@ use super::field::Field;
 use super::listing::Listing;
 use super::numbers::quantity;
 use super::paths::named_path;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use crate::Result;
-use crate::units::{LENGTH, length_unit_m};
+use crate::units::{LENGTH, LENGTH_UNITS, length_unit_m};
 
 pub(super) static BOX: Schema = Schema {
-    title: "box = { min, max }",
+    title: "Box",
     doc: "A box along the axes.",
     keys: &[
         Key::new("min", Kind::Vector(&LENGTH), "Smallest corner.").required("[0, 0, 0]"),
@@ -21,7 +21,7 @@ pub(super) static BOX: Schema = Schema {
 };
 
 pub(super) static SPHERE: Schema = Schema {
-    title: "sphere = { centre, radius }",
+    title: "Sphere",
     doc: "A sphere.",
     keys: &[
         Key::new("centre", Kind::Vector(&LENGTH), "Its centre.").required("[0, 0, 0]"),
@@ -32,7 +32,7 @@ pub(super) static SPHERE: Schema = Schema {
 };
 
 pub(super) static CYLINDER: Schema = Schema {
-    title: "cylinder = { from, to, radius }",
+    title: "Cylinder",
     doc: "A solid cylinder.",
     keys: &[
         Key::new("from", Kind::Vector(&LENGTH), "Centre of one end.").required("[0, 0, 0]"),
@@ -49,12 +49,15 @@ pub(super) static CYLINDER: Schema = Schema {
 };
 
 /// The key `unit` beside `stl`.
-pub(super) const UNIT: Key = Key::text(
+pub(super) const UNIT: Key = Key::new(
     "unit",
-    "a unit of length",
+    Kind::Either(&[
+        Kind::Word(|| words_of(&LENGTH_UNITS)),
+        Kind::Text("a unit of length"),
+    ]),
     "Of the file that `stl` names, which needs it.",
 )
-.required("\"mm\", the file's unit of length");
+.sometimes_required("\"mm\", the file's unit of length");
 
 /// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each axis; `limit` says in words what min must be to max.
 pub(super) fn corners(

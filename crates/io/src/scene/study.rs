@@ -16,7 +16,8 @@ use super::tree::{Document, Value};
 use crate::{Diagnostic, Result};
 
 pub use check::{override_text, reference_values, scene_with};
-use keys::{MEASURE, PAGE, REFERENCE, STUDY};
+pub(in crate::scene) use keys::STUDY;
+use keys::{MEASURE, PAGE, REFERENCE};
 pub use rewrite::rewritten;
 use values::MOST_VALUES;
 

@@ -42,7 +42,7 @@ pub(super) static SUPPORT: Schema = Schema {
 };
 
 pub(super) static VELOCITIES: Schema = Schema {
-    title: "velocity = { x, y, z, rx, ry, rz }",
+    title: "Velocities of freedoms",
     doc: "Velocities of freedoms.",
     keys: &[
         Key::quantity("x", &VELOCITY, "Along x.").otherwise("free"),
@@ -55,7 +55,7 @@ pub(super) static VELOCITIES: Schema = Schema {
 };
 
 pub(super) static DISPLACEMENTS: Schema = Schema {
-    title: "displacement = { x, y, z, rx, ry, rz }",
+    title: "Displacements of freedoms",
     doc: "Displacements of freedoms.",
     keys: &[
         Key::quantity("x", &LENGTH, "Along x.").otherwise("free"),

@@ -172,7 +172,9 @@ impl<'a> Table<'a> {
 
     fn missing(&self, key: &Key) -> Diagnostic {
         match key.unless_given {
-            Unless::Required(example) => self.without(key.name, example),
+            Unless::Required(example) | Unless::SometimesRequired(example) => {
+                self.without(key.name, example)
+            }
             _ => self.without(key.name, key.dimension().example),
         }
     }

@@ -10,8 +10,12 @@ use super::{ParticleSet, Wall};
 use crate::{Diagnostic, Result};
 
 /// The key `of` of supports, loads and `[initial]`.
-pub(super) const OF: Key = Key::text("of", "a set, a body or `all`", "What it is of.")
-    .required("\"NAME\", a set, a body or \"all\"");
+pub(super) const OF: Key = Key::text(
+    "of",
+    "a set, a body or `all`",
+    "The particles that it acts on.",
+)
+.required("\"NAME\", a set, a body or \"all\"");
 
 /// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can only be measured.
 pub(super) struct Targets<'a> {

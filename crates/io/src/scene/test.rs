@@ -19,7 +19,7 @@ pub(super) static TEST: Schema = Schema {
     doc: "A laboratory test. `run.end_time` may be left out then.",
     keys: &[
         Key::new("kind", Kind::Word(|| words_of(&KINDS)), "Which test.").required("\"four-point-bending\""),
-        Key::text("body", "a name in [bodies]", "What is tested.").otherwise("the only one"),
+        Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
         Key::new(
             "moves",
             Kind::List(&Kind::Text("a name in [walls], for tension in [sets]")),

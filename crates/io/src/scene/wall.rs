@@ -39,7 +39,7 @@ pub(super) static WALL: Schema = Schema {
         Key::number("scale", "Of `stl`: a factor on all its lengths.")
             .positive()
             .or(1.0),
-        Key::text("material", "a name in [materials]", "What it is of.")
+        Key::text("material", "a name in [materials]", "Its material.")
             .required("\"NAME\", a name in [materials]"),
         Key::table(
             "rotation",

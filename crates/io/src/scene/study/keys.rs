@@ -4,9 +4,9 @@ use super::{CURVES, Combine, LEDGERS, MOST, Pieces, RunTime};
 use crate::scene::schema::{Key, Kind, Schema, words_of};
 
 /// Any value of a scene.
-const ANYTHING: Kind = Kind::Anything("a value, as the scene wants it");
+const ANYTHING: Kind = Kind::Anything("a value");
 
-pub(super) static STUDY: Schema = Schema {
+pub(in crate::scene) static STUDY: Schema = Schema {
     title: "",
     doc: "A study: a scene, what varies in it, what is measured and against what.",
     keys: &[
@@ -92,7 +92,7 @@ const NAMES: Key = Key::new(
 );
 
 pub(super) static VALUES: Schema = Schema {
-    title: "{ values, size, names }",
+    title: "Values",
     doc: "The values of a path.",
     keys: &[
         Key::new("values", Kind::List(&ANYTHING), "The values.").required("[0.9, 0.5]"),
@@ -102,7 +102,7 @@ pub(super) static VALUES: Schema = Schema {
 };
 
 pub(super) static RANGE: Schema = Schema {
-    title: "{ from, to, count, spacing }",
+    title: "Range",
     doc: "Values of a path from one end to another.",
     keys: &[
         Key::new(
@@ -171,7 +171,7 @@ pub(super) static MEASURE: Schema = Schema {
 };
 
 pub(super) static REFERENCE: Schema = Schema {
-    title: "reference = { ... }",
+    title: "Reference",
     doc: "One of these.",
     keys: &[
         Key::new(

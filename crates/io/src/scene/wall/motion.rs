@@ -10,7 +10,7 @@ use crate::scene::{Factor, WallMotion};
 use crate::units::{FORCE, VELOCITY};
 
 pub(super) static SERVO: Schema = Schema {
-    title: "servo = { force, direction, velocity }",
+    title: "Servo",
     doc: "A wall that moves along a direction such that it pushes as wanted.",
     keys: &[
         Key::quantity(

@@ -14,7 +14,7 @@ use crate::scene::table::Table;
 use crate::units::LENGTH;
 
 pub(super) static PLANE: Schema = Schema {
-    title: "plane = { point, normal }",
+    title: "Plane",
     doc: "A plane without end.",
     keys: &[
         Key::new("point", Kind::Vector(&LENGTH), "A point of it.").required("[0, 0, 0]"),
