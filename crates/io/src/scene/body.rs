@@ -1,18 +1,67 @@
 //! `[bodies.NAME]`
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::bond::BondKind;
+use super::clump;
+use super::clump::StartAs;
 use super::direction::ROTATION;
 use super::field::Field;
 use super::listing::Listing;
+use super::material::Material;
 use super::names::meaning;
 use super::paths::named_path;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use super::{BodyEntry, BodySource, BondKind, Material, StartAs, WholeMass, clump};
 use crate::Result;
 use crate::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
+
+/// Where a body comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodySource {
+    /// `file`, resolved against the folder of the scene; "-" is standard input.
+    File(PathBuf),
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its particles, times `radius_factor`, and as long as they are apart.
+    Inline {
+        /// `particles = [[x, y, z, radius], ...]`, m.
+        particles: Vec<[f64; 4]>,
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here, in any order in the file.
+        bonds: Vec<[u32; 2]>,
+    },
+}
+
+/// A body and how it stands and moves at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// Where its particles and bonds come from.
+    pub source: BodySource,
+    /// `material`: a name of `[materials]`.
+    pub material: String,
+    /// `bonds`: a name of `[bonds]`. None only for bodies without bonds.
+    pub bond_kind: Option<String>,
+    /// `position`: moved by this, m. Length 3. After `rotation`.
+    pub position_m: [f64; 3],
+    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation vector, rad. Length 3.
+    pub rotation_rad: [f64; 3],
+    /// `velocity` of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// `angular_velocity` about the centre of mass, as a rigid body, rad/s. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// `start_as`, "bonded" unless given, and `clump`.
+    pub start_as: StartAs,
+    /// `body_density` or `mass`. None: its spheres have the density of the material.
+    pub whole_mass: Option<WholeMass>,
+}
+
+/// What a body weighs as a whole: the density of its spheres follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeMass {
+    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    Density(f64),
+    /// `mass`, kg.
+    Mass(f64),
+}
 
 const PARTICLE: Kind = Kind::Row(&[
     Kind::Quantity(&LENGTH),

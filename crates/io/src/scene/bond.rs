@@ -6,9 +6,103 @@ use super::material::poisson_ratio;
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
-use super::{BondDamping, BondFailure, BondKind, BondModel, Formulation, RateOf};
+
 use crate::Result;
 use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
+
+/// Which beam a bond is taken for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BondModel {
+    /// "parallel": `kappa` is normal over shear stiffness, 2 (1 + nu) unless given.
+    Parallel {
+        /// Normal over shear stiffness.
+        kappa: Option<f64>,
+    },
+    /// "euler-bernoulli"
+    EulerBernoulli,
+    /// "timoshenko"
+    Timoshenko,
+    /// "elastic-solid"
+    ElasticSolid,
+    /// "shear-coefficient": `shear_coefficient`, 0.9 unless given.
+    ShearCoefficient {
+        /// Shear coefficient of the section.
+        alpha: f64,
+    },
+}
+
+/// How forces follow from motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Formulation {
+    /// "total": the gradient of an energy of positions and orientations.
+    Total,
+    /// "incremental": summed step by step.
+    Incremental,
+}
+
+/// What bonds are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondKind {
+    /// `model`, "timoshenko" unless given.
+    pub model: BondModel,
+    /// `formulation`, "total" unless given.
+    pub formulation: Formulation,
+    /// `young_modulus`, Pa.
+    pub young_modulus_pa: f64,
+    /// `poisson_ratio`, in (-1, 0.5].
+    pub poisson_ratio: f64,
+    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
+    pub radius_factor: Option<f64>,
+    /// `damping = { ... }`
+    pub damping: BondDamping,
+    /// `failure = { ... }`
+    pub failure: BondFailure,
+}
+
+/// Viscous damping at the bond. Both may act together.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondDamping {
+    /// `viscous`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
+    pub viscous: f64,
+    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional one.
+    pub each_mode: bool,
+    /// `force`: d of Platzer 2022, eq. 7, N s/m. 0: none.
+    pub force_n_s_m: f64,
+    /// `torque`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
+    pub torque: f64,
+}
+
+/// What the rate is of that strengthens bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RateOf {
+    /// "elongation": relative velocity along the bond over its initial length.
+    #[default]
+    Elongation,
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    RelativeVelocity,
+}
+
+/// What breaks a bond; whichever comes first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondFailure {
+    /// `tension`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
+    /// the sign of the force).
+    pub tension_pa: Option<f64>,
+    /// `compression`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
+    /// breaks there.
+    pub compression_pa: Option<f64>,
+    /// `shear`: largest shear stress, Pa (MUSEN's tau_max).
+    pub shear_pa: Option<f64>,
+    /// `von_mises`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
+    pub von_mises_pa: Option<f64>,
+    /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
+    /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
+    pub rate_strengthening_from_1_s: Option<f64>,
+    /// `rate_of`: what that rate is of. The elongation unless given.
+    pub rate_of: RateOf,
+    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale is the strength given. None: all alike.
+    pub weibull_modulus: Option<f64>,
+}
 
 /// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20, 21] begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Included};
 
 use self::pair::named_pair;
-use super::Material;
 use super::field::Field;
 use super::listing::Listing;
+use super::material::Material;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use crate::Result;

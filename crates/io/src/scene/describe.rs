@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::listing::Listing;
+use super::root::Scene;
 use super::schema::Schema;
 use super::{
-    Scene, body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output,
-    region, relaxation, replacement, run, search, set, sleep, support, test, wall,
+    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
+    relaxation, replacement, run, search, set, sleep, support, test, wall,
 };
 use crate::text::visible;
 

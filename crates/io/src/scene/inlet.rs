@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::body::BodyEntry;
 use super::field::Field;
 use super::listing::Listing;
 use super::numbers::number;
+use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use super::tree::Value;
-use super::{BodyEntry, Region};
 use crate::Result;
 use crate::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 

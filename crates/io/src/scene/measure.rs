@@ -7,12 +7,104 @@ use super::numbers::quantity as shown;
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::targets::{Subject, Targets};
-use super::{At, Measure, Quantity};
+
 use crate::Result;
 use crate::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
     TORQUE, VELOCITY,
 };
+
+/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies,
+/// forces and counts are
+/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but
+/// torques, count and masses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
+    Position(u8),
+    /// "displacement_x", ... of the centre of mass since the start, m.
+    Displacement(u8),
+    /// "displacement": its magnitude, m.
+    DisplacementMagnitude,
+    /// "velocity_x", ... of the centre of mass, m/s.
+    Velocity(u8),
+    /// "velocity": its magnitude, m/s.
+    VelocityMagnitude,
+    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
+    Rotation(u8),
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
+    /// rad/s.
+    AngularVelocity(u8),
+    /// "reaction_x", ... force of supports on the set, N.
+    Reaction(u8),
+    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N m.
+    ReactionTorque(u8),
+    /// "kinetic_energy", J.
+    KineticEnergy,
+    /// "elastic_energy" of the bonds, each half to its ends, J.
+    ElasticEnergy,
+    /// "broken_bonds" since the start.
+    BrokenBonds,
+    /// "largest_utilisation": stress over strength of the bond nearest to failure.
+    LargestUtilisation,
+    /// "angle_of_repose": slope of the heap that the particles form, degrees.
+    AngleOfRepose,
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
+    /// on a set, N.
+    Force(u8),
+    /// "force": its magnitude, N.
+    ForceMagnitude,
+    /// "contact_force_x", ... force of contacts with what `with` names on the set, N.
+    ContactForce(u8),
+    /// "contact_force": its magnitude, N.
+    ContactForceMagnitude,
+    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    ContactOverlap,
+    /// "contact_duration": how long the two have touched since the start, s.
+    ContactDuration,
+    /// "torque_x", ... torque of particles on the wall about its pivot, N m.
+    Torque(u8),
+    /// "count" of fragments.
+    Count,
+    /// "mass_fraction_of_largest": mass of the heaviest fragment over that of all.
+    MassFractionOfLargest,
+    /// "mass_of_largest": mass of the heaviest fragment, kg.
+    MassOfLargest,
+}
+
+/// Which value of a measure's history is its result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum At {
+    /// "end"
+    End,
+    /// "largest"
+    Largest,
+    /// "smallest"
+    Smallest,
+    /// "mean" over time
+    Mean,
+}
+
+/// A named quantity, with what it should be where that is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// `of`: a set, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
+    pub of: String,
+    /// `quantity`
+    pub quantity: Quantity,
+    /// `with`: the body, set or wall that `of` touches. Only of contacts, which need it.
+    pub with: Option<String>,
+    /// `at`, "end" unless given.
+    pub at: At,
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
+    /// `tolerance`.
+    pub reference: Option<f64>,
+    /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
+    pub tolerance: Option<f64>,
+    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's
+    /// unit.
+    pub tolerance_absolute: Option<f64>,
+}
 
 /// Every quantity and its name in a scene.
 pub(super) const QUANTITIES: [(&str, Quantity); 44] = [

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::field::Field;
+use super::inlet::Inlet;
 use super::listing::Listing;
+use super::region::Region;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use super::{Inlet, Region};
 use crate::Result;
 
 const SIDES: [&str; 2] = ["inside", "outside"];

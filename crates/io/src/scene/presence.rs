@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::body::BodyEntry;
+use super::clump::StartAs;
 use super::field::Field;
+use super::inlet::Inlet;
 use super::names::ALL;
 use super::table::Table;
-use super::{BodyEntry, Inlet, StartAs};
 use crate::Result;
 
 /// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the particles of a rigid clump cannot be

@@ -6,13 +6,14 @@ use std::path::Path;
 use super::paths::text_of;
 use super::presence::Presence;
 use super::root::SCENE;
+use super::root::{SCENE_VERSION, Scene};
+use super::run::Integrator;
 use super::table::Table;
 use super::targets::Targets;
 use super::tree::Document;
 use super::{
-    Integrator, SCENE_VERSION, Scene, body, bond, clusters, contact, initial, inlet, load,
-    material, measure, outlet, output, region, relaxation, replacement, run, search, set, sleep,
-    statics, support, test, wall,
+    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
+    relaxation, replacement, run, search, set, sleep, statics, support, test, wall,
 };
 use crate::Result;
 use crate::scene::field::Field;

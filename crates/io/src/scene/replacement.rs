@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::body::{BodyEntry, BodySource};
+use super::clump::{ClumpMass, StartAs};
 use super::field::Field;
 use super::listing::Listing;
+use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use super::{BodyEntry, BodySource, ClumpMass, Region, StartAs};
 use crate::Result;
 use crate::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
 

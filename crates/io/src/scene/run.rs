@@ -5,9 +5,55 @@ use std::ops::Bound::{Excluded, Included};
 use super::listing::one_field_a_key;
 use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
-use super::{Integrator, Run, StartOverlap};
+
 use crate::Result;
 use crate::units::{ACCELERATION, TIME};
+
+/// When the run ends, how it steps, what acts everywhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
+    pub end_time_s: f64,
+    /// `integrator`, "leapfrog" unless given.
+    pub integrator: Integrator,
+    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
+    pub rest: Option<f64>,
+    /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
+    pub time_step_s: Option<f64>,
+    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and more are for trials only.
+    pub safety: f64,
+    /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
+    pub adaptive: bool,
+    /// `gravity`, m/s2; none unless given. Length 3.
+    pub gravity_m_s2: [f64; 3],
+    /// `particle_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
+    pub particle_damping: f64,
+    /// `seed` of everything random (scatter of strengths); 0 unless given.
+    pub seed: u64,
+    /// `start_overlap`, "refuse" unless given.
+    pub start_overlap: StartOverlap,
+}
+
+/// How a run comes to its end.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// "leapfrog": step by step.
+    #[default]
+    Leapfrog,
+    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded bodies on supports only: nothing touches, breaks, comes or goes.
+    Static,
+}
+
+/// What happens where bodies or walls overlap at the start, although no bond joins them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartOverlap {
+    /// "refuse": the scene is refused.
+    Refuse,
+    /// "relax": the overlap is the origin of their contact law.
+    Relax,
+    /// "keep": contacts like all others, which press with the force of their overlap.
+    Keep,
+}
 
 /// `run.safety` unless given.
 pub const SAFETY: f64 = 0.9;

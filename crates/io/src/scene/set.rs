@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
+use super::body::{BodyEntry, BodySource};
 use super::field::Field;
 use super::listing::{LISTED, Listing};
 use super::names::{FRAGMENTS, meaning};
@@ -9,8 +10,39 @@ use super::presence::Presence;
 use super::schema::{Key, Kind, Schema};
 use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
 use super::table::Table;
-use super::{BodyEntry, BodySource, ParticleSet, Pick};
 use crate::Result;
+
+/// Which particles are meant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParticleSet {
+    /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
+    pub body: Option<String>,
+    /// How they are picked, at the start of the run.
+    pub pick: Pick,
+}
+
+/// How particles are picked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pick {
+    /// `all = true`
+    All,
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there is one body.
+    Particles(Vec<u32>),
+    /// `box = { min, max }`: centres in it, m.
+    Box {
+        /// Smallest corner, m.
+        min: [f64; 3],
+        /// Largest corner, m.
+        max: [f64; 3],
+    },
+    /// `sphere = { centre, radius }`: centres in it, m.
+    Sphere {
+        /// Centre, m.
+        centre: [f64; 3],
+        /// Radius, m.
+        radius: f64,
+    },
+}
 
 /// The ways to pick.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];

@@ -1,17 +1,42 @@
 //! `[supports.NAME]`
 
+use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time, until};
 use super::field::Field;
 use super::listing::Listing;
-use super::load::{RAMP, TABLE, end, factor, factor_from_zero, list_factor, over_time, until};
 use super::names::suggestion;
 use super::numbers::quantity;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
 use super::targets::{OF, Targets};
 use super::tree::Value;
-use super::{Hold, Support};
+
 use crate::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
+
+/// What holds one degree of freedom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hold {
+    /// Does not move.
+    Fixed,
+    /// Moves at this velocity times the factor, m/s or rad/s.
+    Velocity(f64),
+    /// Is displaced by this times the factor, m or rad.
+    Displacement(f64),
+}
+
+/// A support: holds degrees of freedom of a set of particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// `of`: a set, a body or `all`.
+    pub of: String,
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all are free. Length 6.
+    pub holds: [Option<Hold>; 6],
+    /// `ramp` or `table`, for velocities and displacements.
+    pub factor: Factor,
+    /// `end`: from this time on the freedoms are free, s. Not before the factor's last change.
+    /// None: never.
+    pub end_s: Option<f64>,
+}
 
 pub(super) static SUPPORT: Schema = Schema {
     title: "[supports.NAME]",
@@ -194,6 +219,6 @@ pub(super) fn list(support: &Support, listing: &mut Listing) {
         };
         listing.text(freedom, text);
     }
-    list_factor(&support.factor, listing);
+    factor::list(&support.factor, listing);
     listing.value("end", &support.end_s);
 }

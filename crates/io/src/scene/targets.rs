@@ -6,7 +6,8 @@ use super::field::Field;
 use super::names::{ALL, FRAGMENTS, suggestion};
 use super::presence::Presence;
 use super::schema::Key;
-use super::{ParticleSet, Wall};
+use super::set::ParticleSet;
+use super::wall::Wall;
 use crate::{Diagnostic, Result};
 
 /// The key `of` of supports, loads and `[initial]`.

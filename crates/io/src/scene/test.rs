@@ -9,8 +9,10 @@ use super::material::poisson_ratio;
 use super::names::suggestion;
 use super::presence::Presence;
 use super::schema::{Key, Kind, Schema, words_of};
+use super::set::ParticleSet;
+use super::support::Support;
 use super::table::Table;
-use super::{ParticleSet, Support, Wall, WallMotion};
+use super::wall::{Wall, WallMotion};
 use crate::Result;
 use crate::units::{AREA, LENGTH, STRESS, VELOCITY};
 

@@ -6,15 +6,17 @@ mod shape;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::body::BodyEntry;
 use super::direction::ROTATION;
+use super::factor::{Factor, RAMP, TABLE};
 use super::field::Field;
 use super::listing::Listing;
-use super::load::{RAMP, TABLE};
+use super::material::Material;
 use super::names::meaning;
 use super::schema::{Key, Schema};
+use super::set::ParticleSet;
 use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
-use super::{BodyEntry, Factor, Material, ParticleSet};
 use crate::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 

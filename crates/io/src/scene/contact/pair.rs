@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::Material;
 use crate::scene::field::Field;
+use crate::scene::material::Material;
 use crate::scene::names::suggestion;
 use crate::scene::tree::shortened;
 use crate::{Diagnostic, Result};

@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use super::values::in_si;
 use super::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
+use crate::scene::body::BodySource;
 use crate::scene::names::suggestion;
+use crate::scene::read::scene_from_text;
 use crate::scene::root::SCENE;
+use crate::scene::root::Scene;
 use crate::scene::schema::{Key, Kind};
 use crate::scene::table::Table;
 use crate::scene::tree::Document;
-use crate::scene::{BodySource, Scene, scene_from_text};
 use crate::units::quantity;
 use crate::{Diagnostic, Result};
 

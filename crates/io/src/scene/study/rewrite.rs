@@ -7,8 +7,10 @@ use toml::de::{DeTable, DeValue};
 
 use super::values::{quoted, toml};
 use super::{BODY, Setting, Study, key, scene_with};
+use crate::scene::body::BodySource;
+use crate::scene::read::scene_from_text;
+use crate::scene::root::Scene;
 use crate::scene::tree::{Value, parse_value};
-use crate::scene::{BodySource, Scene, scene_from_text};
 use crate::{Diagnostic, Result};
 
 /// The text of a scene file `target` that is the scene of `study`, whose file holds `text`, with `settings`. Read back it is the same scene.

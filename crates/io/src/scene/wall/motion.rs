@@ -1,12 +1,12 @@
 //! How a wall moves: at a velocity, by a displacement, or as a servo.
 
 use crate::Result;
+use crate::scene::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::scene::field::Field;
 use crate::scene::listing::Listing;
-use crate::scene::load::{factor, factor_from_zero, list_factor, over_time};
 use crate::scene::schema::{Key, Kind, Schema};
 use crate::scene::table::Table;
-use crate::scene::{Factor, WallMotion};
+use crate::scene::wall::WallMotion;
 use crate::units::{FORCE, VELOCITY};
 
 pub(super) static SERVO: Schema = Schema {
@@ -123,5 +123,5 @@ pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
             factor
         }
     };
-    list_factor(factor, listing);
+    factor::list(factor, listing);
 }

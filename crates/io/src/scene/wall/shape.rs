@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use crate::Result;
-use crate::scene::WallShape;
 use crate::scene::field::Field;
 use crate::scene::listing::Listing;
 use crate::scene::schema::{Key, Kind, Schema};
@@ -11,6 +10,7 @@ use crate::scene::shape::{
     corners, cylinder, list_box, list_cylinder, list_stl, refuse_without_stl, stl,
 };
 use crate::scene::table::Table;
+use crate::scene::wall::WallShape;
 use crate::units::LENGTH;
 
 pub(super) static PLANE: Schema = Schema {
