@@ -14,7 +14,7 @@ use super::names::meaning;
 use super::paths::named_path;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 
 /// Where a body comes from.

@@ -7,7 +7,7 @@ use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
 
 /// Which beam a bond is taken for.

@@ -5,7 +5,7 @@ use std::ops::Bound::Included;
 use super::listing::{Listing, one_field_a_key};
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// What a body is at first: when the run starts, or when an inlet feeds it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

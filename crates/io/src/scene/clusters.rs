@@ -3,7 +3,7 @@
 use super::listing::one_field_a_key;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// When damaged bodies are searched for their pieces (Platzer 2022, 4.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use super::listing::Listing;
 use super::material::Material;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::STIFFNESS;
 
 /// Least coefficient of restitution: dampers that leave less need steps without end.

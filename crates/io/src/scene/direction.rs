@@ -3,7 +3,7 @@
 use super::field::Field;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGLE, NUMBER};
 
 pub(super) static ROTATION: Schema = Schema {

@@ -5,7 +5,7 @@ use super::listing::{LISTED, Listing};
 use super::numbers::{number, quantity};
 use super::schema::{Key, Kind};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{NUMBER, TIME};
 
 /// Factor on a load or a motion, over time.

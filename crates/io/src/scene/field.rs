@@ -5,8 +5,8 @@ use std::ops::Bound;
 use super::names::{suggestion, well_formed};
 use super::schema::Key;
 use super::tree::{Document, Node, Value, shortened};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::units::{self, Dimension};
-use crate::{Diagnostic, Result};
 
 /// Longest text of a value that a message repeats in full, in characters.
 const SHOWN_TEXT: usize = 40;

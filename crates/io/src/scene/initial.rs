@@ -5,7 +5,7 @@ use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::table::Table;
 use super::targets::{OF, Targets};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 /// How the particles of a set start, on top of how their bodies do. What several of these say of a

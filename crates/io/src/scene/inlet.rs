@@ -10,7 +10,7 @@ use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use super::tree::Value;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
 /// How new bodies may be turned: whether at random.

@@ -66,7 +66,7 @@ impl Listing {
 /// Both ways of a table whose keys stand for one field each: `fields` fills the struct, `list` shows it.
 macro_rules! one_field_a_key {
     ($of:ident { $($field:ident: $key:literal),+ $(,)? }) => {
-        fn fields(table: &$crate::scene::table::Table<'_>) -> $crate::Result<$of> {
+        fn fields(table: &$crate::scene::table::Table<'_>) -> $crate::diagnostic::Result<$of> {
             Ok($of { $($field: table.read($key)?),+ })
         }
 

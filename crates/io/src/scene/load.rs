@@ -6,7 +6,7 @@ use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::table::Table;
 use super::targets::{OF, Targets};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{FORCE, TORQUE};
 
 /// A load on a set of particles, shared equally among them.

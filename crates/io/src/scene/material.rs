@@ -6,7 +6,7 @@ use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{DENSITY, STRESS};
 
 /// What particles and walls are made of.

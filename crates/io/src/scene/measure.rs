@@ -8,7 +8,7 @@ use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::targets::{Subject, Targets};
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
     TORQUE, VELOCITY,

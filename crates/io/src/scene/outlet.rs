@@ -8,7 +8,7 @@ use super::listing::Listing;
 use super::region::Region;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 const SIDES: [&str; 2] = ["inside", "outside"];
 

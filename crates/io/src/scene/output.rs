@@ -7,7 +7,7 @@ use super::listing::Listing;
 use super::paths::named_path;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::TIME;
 
 /// What is written, and how often. Times are simulated seconds.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::field::Field;
 use super::tree::Origin;
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Largest file of a scene or study, bytes: what is larger is something else, or has no end.
 const MOST_BYTES: u64 = 1 << 28;

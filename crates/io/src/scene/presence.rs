@@ -8,7 +8,7 @@ use super::field::Field;
 use super::inlet::Inlet;
 use super::names::ALL;
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the particles of a rigid clump cannot be
 /// held or moved one by one.

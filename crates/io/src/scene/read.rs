@@ -15,7 +15,7 @@ use super::{
     body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
     relaxation, replacement, run, search, set, sleep, statics, support, test, wall,
 };
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::scene::field::Field;
 
 /// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;

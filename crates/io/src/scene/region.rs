@@ -10,7 +10,7 @@ use super::shape::{
     refuse_without_stl, sphere, stl,
 };
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 

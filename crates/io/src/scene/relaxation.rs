@@ -5,7 +5,7 @@ use std::ops::Bound::{Excluded, Included};
 use super::listing::one_field_a_key;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// What becomes of overlaps between particles that cease to be of one piece (Platzer 2022, 4.3).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,7 @@ use super::listing::Listing;
 use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
 
 /// Whether all of `when` must hold, or any.

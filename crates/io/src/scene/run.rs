@@ -6,7 +6,7 @@ use super::listing::one_field_a_key;
 use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ACCELERATION, TIME};
 
 /// When the run ends, how it steps, what acts everywhere.

@@ -5,7 +5,7 @@ use std::ops::Bound::{Excluded, Included};
 use super::listing::one_field_a_key;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// How particles that may touch are found.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,7 +10,7 @@ use super::presence::Presence;
 use super::schema::{Key, Kind, Schema};
 use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Which particles are meant.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use super::numbers::quantity;
 use super::paths::named_path;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{LENGTH, LENGTH_UNITS, length_unit_m};
 
 pub(super) static BOX: Schema = Schema {

@@ -4,7 +4,7 @@ use super::field::Field;
 use super::listing::one_field_a_key;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{TIME, VELOCITY};
 
 /// When bodies at rest are no more stepped, until something comes near them.

@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Tables of what touches, moves by itself, comes or goes, and of how it starts.
 const TABLES: [&str; 8] = [

@@ -10,7 +10,7 @@ use super::table::Table;
 use super::targets::{OF, Targets};
 use super::tree::Value;
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 /// What holds one degree of freedom.

@@ -4,7 +4,7 @@ use super::field::Field;
 use super::names::{suggestion, well_formed};
 use super::schema::{Key, Schema, Unless};
 use super::tree::{Document, Node, Origin, Value, shortened};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// A table of the scene, with its path for messages.
 pub(super) struct Table<'a> {

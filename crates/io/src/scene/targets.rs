@@ -8,7 +8,7 @@ use super::presence::Presence;
 use super::schema::Key;
 use super::set::ParticleSet;
 use super::wall::Wall;
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// The key `of` of supports, loads and `[initial]`.
 pub(super) const OF: Key = Key::text(

@@ -13,7 +13,7 @@ use super::set::ParticleSet;
 use super::support::Support;
 use super::table::Table;
 use super::wall::{Wall, WallMotion};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{AREA, LENGTH, STRESS, VELOCITY};
 
 pub(super) static TEST: Schema = Schema {

@@ -5,7 +5,7 @@ use super::field::{Field, remedy};
 use super::numbers::{quantity, vector, with_unit};
 use super::schema::{Key, Kind, Unless, Word};
 use super::table::Read;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Infinite where the key is left out and there is no value.
 impl Read for f64 {

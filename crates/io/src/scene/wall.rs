@@ -3,12 +3,15 @@
 mod motion;
 mod shape;
 
+pub use motion::WallMotion;
+pub use shape::WallShape;
+
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::body::BodyEntry;
 use super::direction::ROTATION;
-use super::factor::{Factor, RAMP, TABLE};
+use super::factor::{RAMP, TABLE};
 use super::field::Field;
 use super::listing::Listing;
 use super::material::Material;
@@ -17,7 +20,7 @@ use super::schema::{Key, Schema};
 use super::set::ParticleSet;
 use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 pub(super) static WALL: Schema = Schema {
@@ -105,79 +108,6 @@ pub struct Wall {
     pub motion: WallMotion,
     /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given. Length 3.
     pub surface_velocity_m_s: [f64; 3],
-}
-
-/// What a wall looks like, before it is turned.
-#[derive(Debug, Clone, PartialEq)]
-pub enum WallShape {
-    /// `plane = { point, normal }`, without end.
-    Plane {
-        /// A point of it, m. Length 3.
-        point_m: [f64; 3],
-        /// Of length 1, into the free side. Length 3.
-        normal: [f64; 3],
-    },
-    /// `box = { min, max }`: solid, with particles outside.
-    Box {
-        /// Smallest corner, m. Length 3.
-        min: [f64; 3],
-        /// Largest corner, m: above the smallest along every axis. Length 3.
-        max: [f64; 3],
-    },
-    /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
-    Cylinder {
-        /// Centre of one end, m. Length 3.
-        from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere. Length 3.
-        to_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
-    /// `stl`, `unit` and `scale`: triangles.
-    Stl {
-        /// `stl`: the file, resolved against the folder of the scene.
-        path: PathBuf,
-        /// `unit`: size of the file's unit, m.
-        unit_m: f64,
-        /// `scale`: a factor on all lengths, 1 unless given.
-        scale: f64,
-    },
-}
-
-/// How a wall moves.
-#[derive(Debug, Clone, PartialEq)]
-pub enum WallMotion {
-    /// Not at all.
-    Fixed,
-    /// `velocity` and `angular_velocity`, with `ramp` or `table`.
-    Velocity {
-        /// Of the pivot, m/s. Length 3.
-        velocity_m_s: [f64; 3],
-        /// About the pivot, which moves along, rad/s. Length 3.
-        spin_rad_s: [f64; 3],
-        /// On both, over time.
-        factor: Factor,
-    },
-    /// `displacement` and `turn`, with `ramp` or `table`.
-    Displacement {
-        /// Of the pivot, m. Length 3.
-        displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
-        turn_rad: [f64; 3],
-        /// On both, over time.
-        factor: Factor,
-    },
-    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
-    Servo {
-        /// `force`: what it is to push with along `direction`, N; below 0 against it.
-        force_n: f64,
-        /// `direction`, of length 1. Length 3.
-        direction: [f64; 3],
-        /// `velocity`: its largest, m/s; more than 0.
-        largest_velocity_m_s: f64,
-        /// On the force, over time.
-        factor: Factor,
-    },
 }
 
 pub(super) fn read_all(

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use super::values::in_si;
-use super::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::scene::body::BodySource;
 use crate::scene::names::suggestion;
 use crate::scene::read::scene_from_text;
@@ -13,7 +14,6 @@ use crate::scene::schema::{Key, Kind};
 use crate::scene::table::Table;
 use crate::scene::tree::Document;
 use crate::units::quantity;
-use crate::{Diagnostic, Result};
 
 /// The scene of `study`, whose file holds `text`, with these values laid over it.
 ///

@@ -1,7 +1,10 @@
 //! The keys of a study.
 
-use super::{CURVES, Combine, LEDGERS, MOST, Pieces, RunTime};
-use crate::scene::schema::{Key, Kind, Schema, words_of};
+use super::contents::{CURVES, Combine, LEDGERS, Pieces, RunTime};
+use crate::scene::schema::{Key, Kind, Schema, Word, words_of};
+
+/// Most repeats, threads.
+const MOST: f64 = 1024.0;
 
 /// Any value of a scene.
 const ANYTHING: Kind = Kind::Anything("a value");
@@ -144,7 +147,7 @@ pub(super) static MEASURE: Schema = Schema {
         ),
         Key::new(
             "masses",
-            Kind::Word(|| words_of(<Pieces as crate::scene::schema::Word>::WORDS)),
+            Kind::Word(|| words_of(Pieces::WORDS)),
             "Masses of the pieces that went through outlets, or are there at the end.",
         ),
         Key::new(

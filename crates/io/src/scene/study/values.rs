@@ -1,11 +1,12 @@
 //! What varies, and through which values: lists, ranges, several paths together.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
+use super::contents::{Axis, AxisValue, BODY, Setting};
 use super::keys::{RANGE, SPACINGS, TOGETHER, VALUES};
-use super::{Axis, AxisValue, BODY, Setting, key, tidy};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::scene::field::Field;
+use crate::scene::names::well_formed;
 use crate::scene::table::Table;
 use crate::scene::tree::{Node, Value, shortened};
 use crate::units::{DIMENSIONS, quantity};
@@ -362,4 +363,30 @@ pub(super) fn quoted(text: &str) -> String {
     }
     out.push('"');
     out
+}
+
+/// A path without `folder/..`, where that is the same.
+pub(super) fn tidy(path: PathBuf) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leads_down = matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && leads_down {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    match (short.canonicalize(), path.canonicalize()) {
+        (Ok(one), Ok(other)) if one == other => short,
+        _ => path,
+    }
+}
+
+/// A key as TOML wants it.
+pub(super) fn key(name: &str) -> String {
+    if well_formed(name) {
+        name.to_owned()
+    } else {
+        format!("{name:?}")
+    }
 }

@@ -1,13 +1,48 @@
 //! How a wall moves: at a velocity, by a displacement, or as a servo.
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::scene::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::scene::field::Field;
 use crate::scene::listing::Listing;
 use crate::scene::schema::{Key, Kind, Schema};
 use crate::scene::table::Table;
-use crate::scene::wall::WallMotion;
 use crate::units::{FORCE, VELOCITY};
+
+/// How a wall moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WallMotion {
+    /// Not at all.
+    Fixed,
+    /// `velocity` and `angular_velocity`, with `ramp` or `table`.
+    Velocity {
+        /// Of the pivot, m/s. Length 3.
+        velocity_m_s: [f64; 3],
+        /// About the pivot, which moves along, rad/s. Length 3.
+        spin_rad_s: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `displacement` and `turn`, with `ramp` or `table`.
+    Displacement {
+        /// Of the pivot, m. Length 3.
+        displacement_m: [f64; 3],
+        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
+        turn_rad: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
+    Servo {
+        /// `force`: what it is to push with along `direction`, N; below 0 against it.
+        force_n: f64,
+        /// `direction`, of length 1. Length 3.
+        direction: [f64; 3],
+        /// `velocity`: its largest, m/s; more than 0.
+        largest_velocity_m_s: f64,
+        /// On the force, over time.
+        factor: Factor,
+    },
+}
 
 pub(super) static SERVO: Schema = Schema {
     title: "Servo",

@@ -1,8 +1,8 @@
 //! What a wall looks like: `plane`, `box`, `cylinder` or `stl`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::scene::field::Field;
 use crate::scene::listing::Listing;
 use crate::scene::schema::{Key, Kind, Schema};
@@ -10,8 +10,44 @@ use crate::scene::shape::{
     corners, cylinder, list_box, list_cylinder, list_stl, refuse_without_stl, stl,
 };
 use crate::scene::table::Table;
-use crate::scene::wall::WallShape;
 use crate::units::LENGTH;
+
+/// What a wall looks like, before it is turned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WallShape {
+    /// `plane = { point, normal }`, without end.
+    Plane {
+        /// A point of it, m. Length 3.
+        point_m: [f64; 3],
+        /// Of length 1, into the free side. Length 3.
+        normal: [f64; 3],
+    },
+    /// `box = { min, max }`: solid, with particles outside.
+    Box {
+        /// Smallest corner, m. Length 3.
+        min: [f64; 3],
+        /// Largest corner, m: above the smallest along every axis. Length 3.
+        max: [f64; 3],
+    },
+    /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
+    Cylinder {
+        /// Centre of one end, m. Length 3.
+        from_m: [f64; 3],
+        /// Centre of the other end, m, elsewhere. Length 3.
+        to_m: [f64; 3],
+        /// Radius, m.
+        radius_m: f64,
+    },
+    /// `stl`, `unit` and `scale`: triangles.
+    Stl {
+        /// `stl`: the file, resolved against the folder of the scene.
+        path: PathBuf,
+        /// `unit`: size of the file's unit, m.
+        unit_m: f64,
+        /// `scale`: a factor on all lengths, 1 unless given.
+        scale: f64,
+    },
+}
 
 pub(super) static PLANE: Schema = Schema {
     title: "Plane",
