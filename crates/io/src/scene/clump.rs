@@ -26,6 +26,18 @@ pub struct ClumpSettings {
     pub mass: ClumpMass,
 }
 
+/// `scale` unless given.
+const SCALE: f64 = 1.0;
+
+impl Default for ClumpSettings {
+    fn default() -> Self {
+        Self {
+            scale: SCALE,
+            mass: ClumpMass::Spheres,
+        }
+    }
+}
+
 /// Of what mass, centre and inertia of a clump are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClumpMass {
@@ -56,7 +68,7 @@ pub(super) static CLUMP: Schema = Schema {
         )
         .within(Included(1.0), Included(1.5))
         .remedy("it is a factor on the radii: 1 leaves them as they are")
-        .or(1.0),
+        .or(SCALE),
         Key::word::<ClumpMass>(
             "mass",
             "spheres",

@@ -1,6 +1,6 @@
 //! The listing of a scene: keys and values in order.
 
-use super::schema::Schema;
+use super::schema::{Key, Schema};
 use super::table::Read;
 
 /// Most items of a list that are written out.
@@ -33,6 +33,11 @@ impl Listing {
             self.is_usual &= text == key.usual();
             self.text(name, text);
         }
+    }
+
+    /// What holds where the key `name` is left out, in words.
+    pub(super) fn usual(&self, name: &str) -> String {
+        self.schema.key(name).map_or_else(String::new, Key::usual)
     }
 
     /// A line in words.

@@ -50,7 +50,8 @@ pub(super) static OUTPUT: Schema = Schema {
         .positive()
         .otherwise("a thousandth of the run"),
         Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
-        Key::table("view", &VIEW, "Where pictures are taken from."),
+        Key::table("view", &VIEW, "Where pictures are taken from.")
+            .otherwise("front, right and above"),
         Key::quantity(
             "checkpoint",
             &TIME,
@@ -93,14 +94,14 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
 pub(super) fn list(output: &Output, listing: &mut Listing) {
     match &output.folder {
         Some(folder) => listing.text("folder", folder.display().to_string()),
-        None => listing.value("folder", &None::<f64>),
+        None => listing.text("folder", listing.usual("folder")),
     }
     listing.value("frames", &output.frames_s);
     listing.value("series", &output.series_s);
     listing.value("pictures", &output.pictures_s);
     match &output.view_from {
         Some(from) => listing.table("view", &VIEW, |listing| listing.value("from", from)),
-        None => listing.text("view.from", "front, right and above"),
+        None => listing.text("view.from", listing.usual("view")),
     }
     listing.value("checkpoint", &output.checkpoint_s);
 }

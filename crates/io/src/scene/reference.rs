@@ -21,3 +21,47 @@ pub fn files() -> [(&'static str, String); 4] {
         ),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::{SCENE, STUDY, markdown};
+    use crate::scene::schema::{Kind, Schema, Unless};
+
+    fn tables() -> Vec<&'static Schema> {
+        [&SCENE, &STUDY].map(markdown::tables).concat()
+    }
+
+    #[test]
+    fn defaults_are_of_the_kind_and_within_the_limits_of_their_keys() {
+        for table in tables() {
+            for key in table.keys {
+                let fits = match (key.unless_given, &key.kind) {
+                    (Unless::Number(usual), Kind::Quantity(_)) => key.allows(usual),
+                    (Unless::Number(usual), Kind::Whole { least, .. }) => {
+                        usual.fract() == 0.0 && usual >= *least as f64
+                    }
+                    (Unless::Number(usual), Kind::Vector(_) | Kind::Table(_)) => usual == 0.0,
+                    (Unless::Word(usual), Kind::Word(words)) => words().contains(&usual),
+                    (Unless::Word(usual), Kind::Auto(_)) => usual == "auto",
+                    (Unless::Boolean(_), kind) => matches!(kind, Kind::Boolean),
+                    (Unless::Number(_), _) => false,
+                    _ => true,
+                };
+                assert!(fits, "{} {}", table.title, key.name);
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_sentences_whole() {
+        for table in tables() {
+            let names: BTreeSet<&str> = table.names().collect();
+            assert_eq!(names.len(), table.keys.len(), "{}", table.title);
+            for key in table.keys {
+                assert!(key.doc.ends_with('.'), "{} {}", table.title, key.name);
+            }
+        }
+    }
+}

@@ -56,7 +56,7 @@ fn the_documentation() {
 
 #[test]
 fn the_documentation_lists_every_unit() {
-    let text = include_str!("../../../../doc/scenes.md");
+    let text = include_str!("../../../../doc/scene-keys.md");
     for dimension in DIMENSIONS {
         let units: Vec<String> = dimension
             .units

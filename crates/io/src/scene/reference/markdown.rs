@@ -39,7 +39,7 @@ pub(super) fn page(what: &str, root: &'static Schema) -> String {
 }
 
 /// A table and all tables within it, each once, in the order of their keys.
-fn tables(root: &'static Schema) -> Vec<&'static Schema> {
+pub(super) fn tables(root: &'static Schema) -> Vec<&'static Schema> {
     let mut found = vec![root];
     let mut next = 0;
     while next < found.len() {
