@@ -19,9 +19,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
+use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a_of_parts;
 use crate::safe_write::write_file;
-use crate::{Diagnostic, Result};
 
 /// Version of the layout and of the state in it: raised when either changes. Other versions are refused.
 pub const FORMAT_VERSION: u32 = 6;

@@ -3,7 +3,7 @@
 use clap::Command;
 pub use clap_complete::Shell;
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::safe_write::write_standard_output;
 
 /// Lets a file that grows beyond a limit of the shell (`ulimit -f`) be an error of the write, as a

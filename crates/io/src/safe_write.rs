@@ -13,8 +13,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
+use crate::diagnostic::{Diagnostic, Result};
 use crate::text::{visible_json, visible_lines};
-use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
 

@@ -5,8 +5,11 @@
 //! read by our own code: stl_io stops after the first `solid` block and names no line.
 
 mod ascii;
+mod facets;
 
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
+pub use facets::Facets;
+use facets::{REMEDY_AGAIN, is_blank};
 use std::io::{Cursor, Read, Seek, SeekFrom};
 
 /// Bytes of the header and the count of a binary file.
@@ -18,18 +21,6 @@ const MOST_FACETS: usize = 1_000_000_000;
 
 /// What is wrong with a file that is not cut off but is something else.
 const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
-/// What to do with a file that lost bytes.
-const REMEDY_AGAIN: &str = "export or copy the file again";
-
-/// The facets of an STL file, as they stand there.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Facets {
-    /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the corners says it better.
-    pub corners: Vec<[[f64; 3]; 3]>,
-    /// One sentence for each thing that is odd about the file but harmless.
-    pub warnings: Vec<String>,
-}
-
 /// Reads an ASCII or binary STL.
 ///
 /// # Errors
@@ -91,11 +82,6 @@ fn is_text(bytes: &[u8]) -> bool {
         .iter()
         .any(|b| b.is_ascii_control() && !is_blank(*b) && *b != 0x1a);
     !has_control && (beginning.is_ascii() || starts_with_word(bytes, b"solid"))
-}
-
-/// White space, with the vertical tab.
-fn is_blank(byte: u8) -> bool {
-    byte.is_ascii_whitespace() || byte == 0x0b
 }
 
 /// Whether the first word is `word`, in upper or lower case.

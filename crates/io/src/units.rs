@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Units of length and their size in metres.
 pub const LENGTH_UNITS: [(&str, f64); 7] = [

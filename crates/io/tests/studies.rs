@@ -1,7 +1,5 @@
 //! Studies: what they may say, what is refused, and scenes written with their values.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use std::path::Path;
 
 use dem_io::study::{
@@ -56,6 +54,21 @@ fn refused(text: &str) -> String {
 fn labels(study: &Study, axis: usize) -> Vec<&str> {
     let values = study.axes[axis].values.iter();
     values.map(|value| value.label.as_str()).collect()
+}
+
+#[test]
+fn every_key_is_read() {
+    let text = include_str!("studies/every-key.toml");
+    let study = study_from_text(text, "every-key.toml").unwrap();
+    assert_eq!((study.repeats, study.threads), (2, 2));
+    assert!(study.force_step);
+    assert_eq!(study.combine, Combine::Paired);
+    assert_eq!(study.axes[1].sizes(), Some(vec![1e-7, 1e-6, 1e-5]));
+    assert_eq!(labels(&study, 2), ["T", "P", "E"]);
+    assert_eq!(study.axes[2].sizes(), Some(vec![3.0, 2.0, 1.0]));
+    let value = Reference::Value("2 mm".to_owned());
+    assert_eq!(study.measures[0].reference, value);
+    assert_eq!(study.series, Some(2));
 }
 
 #[test]

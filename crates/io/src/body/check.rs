@@ -1,7 +1,7 @@
 //! The rules that every body keeps, checked whenever one is read or written.
 
-use super::Body;
-use crate::{Diagnostic, Result};
+use super::parts::Body;
+use crate::diagnostic::{Diagnostic, Result};
 
 impl Body {
     /// Whether this is a body: particles with finite centres and positive radii, bonds with positive radii and lengths

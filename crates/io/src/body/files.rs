@@ -5,9 +5,10 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
-use super::{Body, csv, lammps, txt, vtp};
+use super::parts::Body;
+use super::{csv, lammps, txt, vtp};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
-use crate::{Diagnostic, Result};
 
 const BUFFER_BYTES: usize = 1 << 16;
 

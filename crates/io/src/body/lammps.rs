@@ -9,9 +9,9 @@
 
 use std::io::{self, BufRead, Write};
 
+use super::parts::{Body, Parts};
 use super::table::{Lines, float, on_line, particle};
-use super::{Body, Parts};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Density that is written if none is known, kg/m3. LAMMPS cannot do without.
 pub const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::inertia::{MassProperties, of_spheres};
-use super::{About, Body};
+use super::parts::{About, Body};
 use crate::units::{show_length, significant};
 
 /// Coordinates of a centre below this part of the radius of gyration are rounding.

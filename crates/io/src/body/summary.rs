@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::mass::{centre_text, moments_text, of_body, percent_text};
-use super::{About, Body};
+use super::parts::{About, Body};
 use crate::text::visible;
 use crate::units::{show_length, significant};
 

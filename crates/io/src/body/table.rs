@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read};
 
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Bytes of the longest line that is read; no table has one nearly as long.
 const LONGEST_LINE: u64 = 1 << 20;

@@ -9,9 +9,9 @@
 use std::io::{self, BufRead, Write};
 
 use super::check::check_particle;
+use super::parts::{Body, Parts};
 use super::table::{Lines, float, in_table, on_line, particle};
-use super::{Body, Parts};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Writes the file of the particles.
 ///

@@ -8,36 +8,22 @@ mod contents;
 mod decode;
 mod guard;
 mod header;
+mod names;
 mod read;
 
+pub use names::FORMAT_VERSION;
 pub use read::read;
 pub(crate) use read::read_frame;
 
 use std::io::{self, Write};
 
-use super::{About, Body};
+use names::{
+    BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY,
+    PROGRAM, RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+};
+
+use super::parts::{About, Body};
 use crate::vtk::{NamedArray, PolyData, Values, exact, write_number, write_text, write_texts};
-
-/// Version of this layout. Files of a later one are refused.
-pub const FORMAT_VERSION: u64 = 1;
-
-const RADIUS: &str = "radius";
-const BOND_RADIUS: &str = "bond_radius";
-const BOND_LENGTH: &str = "bond_initial_length";
-const VERSION: &str = "body_format_version";
-const LENGTH_UNIT: &str = "length_unit";
-const METRE: &str = "m";
-
-/// Names of the field data, in the order of [`About`].
-const PROGRAM: &str = "program";
-const SOURCE: &str = "source";
-const SOURCE_HASH: &str = "source_hash";
-const SHAPE_VOLUME: &str = "shape_volume_m3";
-const PARTICLE_DENSITY: &str = "particle_density_kg_m3";
-const OVERLAP: &str = "overlap";
-const BONDING_RADIUS: &str = "bonding_radius";
-const SEED: &str = "seed";
-const WARNINGS: &str = "warnings";
 
 /// Writes a body as .vtp. It must keep the rules of [`Body::check`].
 ///

@@ -6,7 +6,7 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 use super::growing::{GrowingTable, field};
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// The first line of the file.
 pub const COLUMNS: &str =

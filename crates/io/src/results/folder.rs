@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plots;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{
     PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
 };
-use crate::{Diagnostic, Result};
 
 const FRAMES: &str = "frames";
 const PLOTS: &str = "plots";

@@ -8,7 +8,7 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 use super::growing::GrowingTable;
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::safe_write::write_file;
 use crate::vtk::exact;
 

@@ -6,10 +6,10 @@
 use std::io::{self, Write};
 
 use super::folder::{ResultsFolder, frame_name};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::write_file;
 pub use crate::vtk::{NamedArray, Values};
 use crate::vtk::{PolyData, exact, write_number};
-use crate::{Diagnostic, Result};
 
 /// What is to be seen at one time. Particles and bonds are known by their indices, from 0 on.
 #[derive(Clone, Copy)]

@@ -4,8 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{explain, write_file};
-use crate::{Diagnostic, Result};
 
 const PUT_BACK: &str =
     "put back the file that belongs to the checkpoint, or start the run again without --resume";

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::folder::ResultsFolder;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::write_file;
-use crate::{Diagnostic, Result};
 
 /// The pictures of a run so far.
 #[derive(Debug)]

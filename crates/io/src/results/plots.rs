@@ -2,6 +2,7 @@
 //!
 //! 640 x 400 on white. Values that are not finite are gaps, and so are those of no logarithm on an axis that has one.
 
+mod contents;
 mod legend;
 mod scale;
 mod text;
@@ -13,14 +14,11 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::text::for_page;
+use contents::Area;
+pub use contents::{Axis, HEIGHT, Line, Plot, WIDTH};
 use legend::{Entry, Legend};
 use scale::Scale;
 use text::{shortened, width};
-
-/// Width of a plot, px.
-pub const WIDTH: f64 = 640.0;
-/// Height of a plot, px.
-pub const HEIGHT: f64 = 400.0;
 
 /// How every picture of a run begins: by this it is known as one that may be replaced.
 pub const BEGIN: &str = "<!-- dem-run plot -->";
@@ -36,62 +34,6 @@ pub const MOST_LINES: usize = 7;
 const COLOURS: [&str; MOST_LINES] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555",
 ];
-
-/// A plot of lines over one pair of axes.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Plot {
-    /// What it shows.
-    pub title: String,
-    /// The horizontal axis.
-    pub x: Axis,
-    /// The vertical axis.
-    pub y: Axis,
-    /// What is drawn, the first below the others.
-    pub lines: Vec<Line>,
-    /// A value on the vertical axis to compare with, and its name.
-    pub reference: Option<(f64, String)>,
-}
-
-/// An axis.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Axis {
-    /// Quantity and SI unit: `time (s)`. The unit gets a prefix that suits the values: `time (ms)`.
-    pub label: String,
-    /// Logarithmic, in decades. Values that are not positive are left out.
-    pub log: bool,
-    /// Of counts: there are no numbers between whole ones. Not for an axis with logarithms.
-    pub whole: bool,
-}
-
-impl Axis {
-    /// A linear axis of a quantity and its SI unit: `time (s)`.
-    pub fn of(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            ..Self::default()
-        }
-    }
-}
-
-/// A line through points in their order.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Line {
-    /// Its name in the legend.
-    pub name: String,
-    /// Points `[x, y]` in the units of the axes.
-    pub points: Vec<[f64; 2]>,
-    /// Broken, such as for a reference solution.
-    pub dashed: bool,
-}
-
-/// The part of the picture where lines are drawn, px.
-#[derive(Debug, Clone, Copy)]
-struct Area {
-    left: f64,
-    top: f64,
-    right: f64,
-    bottom: f64,
-}
 
 /// The plot as an SVG file.
 pub fn svg(plot: &Plot) -> String {
@@ -175,16 +117,6 @@ struct Layout {
     reference: Option<f64>,
     entries: Vec<Entry>,
     legend: Option<Legend>,
-}
-
-impl Area {
-    /// Where a point stands, given its shares of the width and the height.
-    fn place(&self, share: [f64; 2]) -> [f64; 2] {
-        [
-            self.left + share[0] * (self.right - self.left),
-            self.bottom - share[1] * (self.bottom - self.top),
-        ]
-    }
 }
 
 fn segments_of(plot: &Plot, [x, y]: [&Scale; 2], area: Area) -> Vec<Vec<Vec<[f64; 2]>>> {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::growing::{GrowingTable, field, fields};
 use crate::body::table::{Lines, float, on_line};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// The file of the time series.
 #[derive(Debug)]

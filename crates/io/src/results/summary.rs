@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::safe_write::write_file;
 
 /// Writes `value` to the file `path` as indented JSON, whole or not at all. Numbers that are not finite become `null`.

@@ -1,32 +1,128 @@
 //! `[bodies.NAME]`
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::direction::rotation;
+use super::bond::BondKind;
+use super::clump;
+use super::clump::StartAs;
+use super::direction::ROTATION;
 use super::field::Field;
+use super::listing::Listing;
+use super::material::Material;
 use super::names::meaning;
-use super::read::named_path;
+use super::paths::named_path;
+use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use super::{BodyEntry, BodySource, BondKind, Material, StartAs, WholeMass, clump};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 
-const KEYS: [&str; 13] = [
-    "file",
-    "particles",
-    "bond_list",
-    "material",
-    "body_density",
-    "mass",
-    "bonds",
-    "position",
-    "rotation",
-    "velocity",
-    "angular_velocity",
-    "start_as",
-    "clump",
-];
+/// Where a body comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodySource {
+    /// `file`, resolved against the folder of the scene; "-" is standard input.
+    File(PathBuf),
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its particles, times `radius_factor`, and as long as they are apart.
+    Inline {
+        /// `particles = [[x, y, z, radius], ...]`, m.
+        particles: Vec<[f64; 4]>,
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here, in any order in the file.
+        bonds: Vec<[u32; 2]>,
+    },
+}
+
+/// A body and how it stands and moves at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// Where its particles and bonds come from.
+    pub source: BodySource,
+    /// `material`: a name of `[materials]`.
+    pub material: String,
+    /// `bonds`: a name of `[bonds]`. None only for bodies without bonds.
+    pub bond_kind: Option<String>,
+    /// `position`: moved by this, m. Length 3. After `rotation`.
+    pub position_m: [f64; 3],
+    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation vector, rad. Length 3.
+    pub rotation_rad: [f64; 3],
+    /// `velocity` of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// `angular_velocity` about the centre of mass, as a rigid body, rad/s. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// `start_as`, "bonded" unless given, and `clump`.
+    pub start_as: StartAs,
+    /// `body_density` or `mass`. None: its spheres have the density of the material.
+    pub whole_mass: Option<WholeMass>,
+}
+
+/// What a body weighs as a whole: the density of its spheres follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeMass {
+    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    Density(f64),
+    /// `mass`, kg.
+    Mass(f64),
+}
+
+const PARTICLE: Kind = Kind::Row(&[
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+]);
+const INDEX: Kind = Kind::Whole {
+    least: 0,
+    most: None,
+    of: "",
+};
+
+pub(super) static BODY: Schema = Schema {
+    title: "[bodies.NAME]",
+    doc: "A body, and how it stands and moves at the start. It has a `file` or `particles`.",
+    keys: &[
+        Key::text(
+            "file",
+            "a file",
+            "From the folder of the scene; `-` is standard input. `--body` counts from where you stand.",
+        ),
+        Key::new(
+            "particles",
+            Kind::List(&PARTICLE),
+            "Instead of a file: `[[x, y, z, radius], ...]`.",
+        ),
+        Key::new(
+            "bond_list",
+            Kind::List(&Kind::Row(&[INDEX, INDEX])),
+            "Bonds between `particles` by their numbers, from 0: `[[0, 1], ...]`.",
+        ),
+        Key::text("material", "a name in [materials]", "Its material.")
+            .required("\"NAME\", a name in [materials]"),
+        Key::quantity(
+            "body_density",
+            &DENSITY,
+            "Mass of the body over the volume of its shape, which its file names.",
+        )
+        .positive(),
+        Key::quantity(
+            "mass",
+            &MASS,
+            "What the body weighs. Without either its spheres have the density of the material, or else of the file.",
+        )
+        .positive()
+        .otherwise("that of its particles"),
+        Key::text("bonds", "a name in [bonds]", "The kind of its bonds; a body without bonds needs none.")
+            .sometimes_required("\"NAME\", a name in [bonds]"),
+        Key::vector("position", &LENGTH, "It is moved by this, after `rotation`."),
+        Key::table("rotation", &ROTATION, "It is turned about the origin of its file.").or(0.0),
+        Key::vector("velocity", &VELOCITY, "Of the centre of mass."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "About the centre of mass, as a rigid body.",
+        ),
+        clump::START_AS,
+        Key::table("clump", &clump::CLUMP, "Only with `start_as = \"clump\"`."),
+    ],
+};
 
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -68,9 +164,9 @@ fn read(
     bonds: &BTreeMap<String, BondKind>,
     folder: &Path,
 ) -> Result<BodyEntry> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &BODY)?;
     let source = source(&table, folder)?;
-    let material_field = table.need("material", "\"NAME\", a name in [materials]")?;
+    let material_field = table.need("material")?;
     let material = material_field.reference(materials.keys(), "materials")?;
     if materials.get(&material).is_some_and(|found| found.rigid) {
         let problem = format!(
@@ -80,13 +176,13 @@ fn read(
         let remedy = "name another material, or give this one a density and a young_modulus";
         return Err(material_field.refuse(problem, remedy));
     }
-    let bond_kind = table.read("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
+    let bond_kind = table.read_by("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
     let start_as = clump::read(&table)?;
     let whole_mass = whole_mass(&table, &source)?;
     if let BodySource::Inline { bonds, .. } = &source {
         // Of a clump: who replaces it needs them.
         if !bonds.is_empty() && bond_kind.is_none() && start_as == StartAs::Bonded {
-            table.need("bonds", "\"NAME\", a name in [bonds]")?;
+            table.need("bonds")?;
         }
         let density = materials
             .get(&material)
@@ -104,30 +200,21 @@ fn read(
         source,
         material,
         bond_kind,
-        position_m: table
-            .read("position", |field| field.vector(&LENGTH))?
-            .unwrap_or_default(),
-        rotation_rad: table
-            .read("rotation", |field| rotation(&field))?
-            .unwrap_or_default(),
-        velocity_m_s: table
-            .read("velocity", |field| field.vector(&VELOCITY))?
-            .unwrap_or_default(),
-        angular_velocity_rad_s: table
-            .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
-            .unwrap_or_default(),
+        position_m: table.read("position")?,
+        rotation_rad: table.read("rotation")?,
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
         start_as,
         whole_mass,
     })
 }
 
 fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass>> {
-    let mass = table.get("mass");
     let Some(field) = table.get("body_density") else {
-        let mass = mass.map(|field| field.positive(&MASS)).transpose()?;
+        let mass: Option<f64> = table.read("mass")?;
         return Ok(mass.map(WholeMass::Mass));
     };
-    if mass.is_some() {
+    if table.get("mass").is_some() {
         let problem = format!("{} stands beside mass", field.path);
         return Err(field.refuse(
             problem,
@@ -141,7 +228,7 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
         );
         return Err(field.refuse(problem, "give the body a mass, such as mass = \"0.4 kg\""));
     }
-    Ok(Some(WholeMass::Density(field.positive(&DENSITY)?)))
+    Ok(Some(WholeMass::Density(table.read("body_density")?)))
 }
 
 fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
@@ -212,4 +299,26 @@ fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>
         bonds.push(pair);
     }
     Ok(bonds)
+}
+
+pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
+    match &body.source {
+        BodySource::File(file) => listing.text("file", file.display().to_string()),
+        BodySource::Inline { particles, bonds } => {
+            listing.text("particles", format!("{} in the scene", particles.len()));
+            listing.text("bond_list", format!("{} in the scene", bonds.len()));
+        }
+    }
+    listing.text("material", &body.material);
+    match body.whole_mass {
+        Some(WholeMass::Density(density)) => listing.value("body_density", &density),
+        Some(WholeMass::Mass(mass)) => listing.value("mass", &mass),
+        None => listing.value("mass", &None::<f64>),
+    }
+    listing.text("bonds", body.bond_kind.as_deref().unwrap_or("none"));
+    listing.value("position", &body.position_m);
+    listing.value("rotation", &body.rotation_rad);
+    listing.value("velocity", &body.velocity_m_s);
+    listing.value("angular_velocity", &body.angular_velocity_rad_s);
+    clump::list_start(body.start_as, listing);
 }

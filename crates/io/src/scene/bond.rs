@@ -1,79 +1,272 @@
 //! `[bonds.NAME]`
 
 use super::field::Field;
+use super::listing::{Listing, one_field_a_key};
+use super::material::poisson_ratio;
+use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
-use super::{BondDamping, BondFailure, BondKind, BondModel, Formulation, RateOf};
-use crate::Result;
-use crate::units::{NUMBER, RATE, STRESS, VISCOUS_DAMPING};
 
-const KEYS: [&str; 9] = [
-    "model",
-    "kappa",
-    "shear_coefficient",
-    "formulation",
-    "young_modulus",
-    "poisson_ratio",
-    "radius_factor",
-    "damping",
-    "failure",
-];
+use crate::diagnostic::Result;
+use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
 
-/// `shear_coefficient` unless given.
-const SHEAR_COEFFICIENT: f64 = 0.9;
+/// Which beam a bond is taken for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BondModel {
+    /// "parallel": `kappa` is normal over shear stiffness, 2 (1 + nu) unless given.
+    Parallel {
+        /// Normal over shear stiffness.
+        kappa: Option<f64>,
+    },
+    /// "euler-bernoulli"
+    EulerBernoulli,
+    /// "timoshenko"
+    Timoshenko,
+    /// "elastic-solid"
+    ElasticSolid,
+    /// "shear-coefficient": `shear_coefficient`, 0.9 unless given.
+    ShearCoefficient {
+        /// Shear coefficient of the section.
+        alpha: f64,
+    },
+}
+
+/// How forces follow from motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Formulation {
+    /// "total": the gradient of an energy of positions and orientations.
+    Total,
+    /// "incremental": summed step by step.
+    Incremental,
+}
+
+/// What bonds are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondKind {
+    /// `model`, "timoshenko" unless given.
+    pub model: BondModel,
+    /// `formulation`, "total" unless given.
+    pub formulation: Formulation,
+    /// `young_modulus`, Pa.
+    pub young_modulus_pa: f64,
+    /// `poisson_ratio`, in (-1, 0.5].
+    pub poisson_ratio: f64,
+    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
+    pub radius_factor: Option<f64>,
+    /// `damping = { ... }`
+    pub damping: BondDamping,
+    /// `failure = { ... }`
+    pub failure: BondFailure,
+}
+
+/// Viscous damping at the bond. Both may act together.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondDamping {
+    /// `viscous`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
+    pub viscous: f64,
+    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional one.
+    pub each_mode: bool,
+    /// `force`: d of Platzer 2022, eq. 7, N s/m. 0: none.
+    pub force_n_s_m: f64,
+    /// `torque`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
+    pub torque: f64,
+}
+
+/// What the rate is of that strengthens bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RateOf {
+    /// "elongation": relative velocity along the bond over its initial length.
+    #[default]
+    Elongation,
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    RelativeVelocity,
+}
+
+/// What breaks a bond; whichever comes first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondFailure {
+    /// `tension`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
+    /// the sign of the force).
+    pub tension_pa: Option<f64>,
+    /// `compression`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
+    /// breaks there.
+    pub compression_pa: Option<f64>,
+    /// `shear`: largest shear stress, Pa (MUSEN's tau_max).
+    pub shear_pa: Option<f64>,
+    /// `von_mises`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
+    pub von_mises_pa: Option<f64>,
+    /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
+    /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
+    pub rate_strengthening_from_1_s: Option<f64>,
+    /// `rate_of`: what that rate is of. The elongation unless given.
+    pub rate_of: RateOf,
+    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale is the strength given. None: all alike.
+    pub weibull_modulus: Option<f64>,
+}
 
 /// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20, 21] begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
 
-/// What a rate can be of.
-pub(super) const RATES: [(&str, RateOf); 2] = [
-    ("elongation", RateOf::Elongation),
-    ("relative-velocity", RateOf::RelativeVelocity),
-];
+pub(super) static BOND: Schema = Schema {
+    title: "[bonds.NAME]",
+    doc: "What bonds are made of.",
+    keys: &[
+        Key::new(
+            "model",
+            Kind::Word(|| words_of(&models(None, 0.0))),
+            "Which beam a bond is taken for.",
+        )
+        .or_word("timoshenko"),
+        Key::number(
+            "kappa",
+            "Of the model `parallel`: normal over shear stiffness.",
+        )
+        .positive()
+        .otherwise("2 (1 + nu)"),
+        Key::number(
+            "shear_coefficient",
+            "Of the model `shear-coefficient`: that of the section.",
+        )
+        .positive()
+        .or(0.9),
+        Key::word::<Formulation>(
+            "formulation",
+            "total",
+            "Forces are the gradient of an energy of positions and orientations; or `incremental`, for comparison: \
+             summed step by step.",
+        ),
+        Key::quantity("young_modulus", &STRESS, "Young's modulus of the beam.")
+            .positive()
+            .required("\"15 MPa\""),
+        poisson_ratio("Poisson's ratio of the beam.").required("0.3"),
+        Key::number(
+            "radius_factor",
+            "Radius of the bond over the smaller of the two particles'.",
+        )
+        .positive()
+        .otherwise("radii of the body"),
+        Key::table("damping", &DAMPING, "Viscous damping at the bond."),
+        Key::table(
+            "failure",
+            &FAILURE,
+            "What breaks a bond; nothing, unless given.",
+        ),
+    ],
+};
+
+pub(super) static DAMPING: Schema = Schema {
+    title: "Damping",
+    doc: "Viscous damping at the bond. Both kinds may act together.",
+    keys: &[
+        Key::number(
+            "viscous",
+            "eta of Chen et al. 2022, eqs. 9 and 10; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+        Key::flag(
+            "each_mode",
+            false,
+            "eta acts with the stiffness of each mode instead of the normal and the torsional one.",
+        ),
+        Key::quantity(
+            "force",
+            &VISCOUS_DAMPING,
+            "d of Platzer 2022, eq. 7; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+        Key::number(
+            "torque",
+            "Factor of the damping torque of Platzer 2022, eq. 9, which is 1 there; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+    ],
+};
+
+pub(super) static FAILURE: Schema = Schema {
+    title: "Failure",
+    doc: "What breaks a bond, whichever comes first. At least one strength is given.",
+    keys: &[
+        Key::quantity("tension", &STRESS, "Largest stress at the pulled edge.").not_negative(),
+        Key::quantity(
+            "compression",
+            &STRESS,
+            "Largest stress at the pressed edge; without it nothing breaks there.",
+        )
+        .not_negative(),
+        Key::quantity("shear", &STRESS, "Largest shear stress.").not_negative(),
+        Key::quantity(
+            "von_mises",
+            &STRESS,
+            "Largest equivalent stress (Platzer 2022, eqs. 11 to 13).",
+        )
+        .not_negative(),
+        Key::new(
+            "rate_strengthening",
+            Kind::Either(&[Kind::Boolean, Kind::Quantity(&RATE)]),
+            "Strain rate from which all strengths but that in compression rise with the rate (Platzer 2022, eqs. 20 \
+             and 21); `true` stands for 4.64e-6 1/s.",
+        )
+        .positive()
+        .remedy("write true, or a strain rate such as \"4.64e-6 1/s\""),
+        Key::number(
+            "weibull_modulus",
+            "Strengths scatter by a Weibull distribution of this modulus whose scale is the strength given.",
+        )
+        .positive(),
+        Key::word::<RateOf>(
+            "rate_of",
+            "elongation",
+            "What that rate is of: the relative velocity along the bond over its length, or, as printed in Platzer \
+             2022, eq. 21, the whole of it.",
+        ),
+    ],
+};
+
+impl Word for Formulation {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("total", Self::Total), ("incremental", Self::Incremental)];
+}
+
+impl Word for RateOf {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("elongation", Self::Elongation),
+        ("relative-velocity", Self::RelativeVelocity),
+    ];
+}
 
 pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &BOND)?;
     Ok(BondKind {
         model: model(&table)?,
-        formulation: table
-            .read("formulation", |field| {
-                field.choice(&[
-                    ("total", Formulation::Total),
-                    ("incremental", Formulation::Incremental),
-                ])
-            })?
-            .unwrap_or(Formulation::Total),
-        young_modulus_pa: table
-            .need("young_modulus", "\"15 MPa\"")?
-            .positive(&STRESS)?,
-        poisson_ratio: table.need("poisson_ratio", "0.3")?.poisson_ratio()?,
-        radius_factor: table.read("radius_factor", |field| field.positive(&NUMBER))?,
-        damping: table
-            .read("damping", |field| damping(&field))?
-            .unwrap_or_default(),
+        formulation: table.read("formulation")?,
+        young_modulus_pa: table.read("young_modulus")?,
+        poisson_ratio: table.read("poisson_ratio")?,
+        radius_factor: table.read("radius_factor")?,
+        damping: damping(&table.table("damping", &DAMPING)?)?,
         failure: table
-            .read("failure", |field| failure(&field))?
+            .read_by("failure", |field| failure(&field))?
             .unwrap_or_default(),
     })
 }
 
-fn model(table: &Table<'_>) -> Result<BondModel> {
-    let kappa = table.read("kappa", |field| field.positive(&NUMBER))?;
-    let alpha = table.read("shear_coefficient", |field| field.positive(&NUMBER))?;
-    let known = [
+/// The models and their words.
+fn models(kappa: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
+    [
         ("parallel", BondModel::Parallel { kappa }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
-        (
-            "shear-coefficient",
-            BondModel::ShearCoefficient {
-                alpha: alpha.unwrap_or(SHEAR_COEFFICIENT),
-            },
-        ),
-    ];
+        ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
+    ]
+}
+
+fn model(table: &Table<'_>) -> Result<BondModel> {
+    let known = models(table.read("kappa")?, table.read("shear_coefficient")?);
     let model = table
-        .read("model", |field| field.choice(&known))?
+        .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);
     for (key, of, belongs) in [
         (
@@ -100,24 +293,22 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
     Ok(model)
 }
 
-fn damping(field: &Field<'_>) -> Result<BondDamping> {
-    let table = field.table(&["viscous", "each_mode", "force", "torque"])?;
-    let viscous = table.read("viscous", |field| field.not_negative(&NUMBER))?;
-    let each_mode = table.read("each_mode", |field| field.boolean())?;
-    if let (Some(field), None) = (table.get("each_mode"), viscous) {
+one_field_a_key! {
+    BondDamping {
+        viscous: "viscous",
+        each_mode: "each_mode",
+        force_n_s_m: "force",
+        torque: "torque",
+    }
+}
+
+fn damping(table: &Table<'_>) -> Result<BondDamping> {
+    let damping = fields(table)?;
+    if let (Some(field), None) = (table.get("each_mode"), table.get("viscous")) {
         let problem = format!("{} stands without viscous, on which it acts", field.path);
         return Err(field.refuse(problem, "add viscous = 0.1, or remove each_mode"));
     }
-    Ok(BondDamping {
-        viscous: viscous.unwrap_or_default(),
-        each_mode: each_mode.unwrap_or_default(),
-        force_n_s_m: table
-            .read("force", |field| field.not_negative(&VISCOUS_DAMPING))?
-            .unwrap_or_default(),
-        torque: table
-            .read("torque", |field| field.not_negative(&NUMBER))?
-            .unwrap_or_default(),
-    })
+    Ok(damping)
 }
 
 impl Default for BondFailure {
@@ -136,34 +327,20 @@ impl Default for BondFailure {
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
-    if let Some(old) = field.any_table()?.get("compressive") {
+    if let Some(old) = Table::any(field)?.get("compressive") {
         let problem = format!("{} is no more: tension breaks pulled edges only", old.path);
         let remedy = "write compression = \"15 MPa\" for a strength of its own under pressure, or leave it out";
         return Err(old.refuse(problem, remedy));
     }
-    let table = field.table(&[
-        "tension",
-        "compression",
-        "shear",
-        "von_mises",
-        "rate_strengthening",
-        "rate_of",
-        "weibull_modulus",
-    ])?;
-    let strength = |key| table.read(key, |field: Field<'_>| field.not_negative(&STRESS));
+    let table = Table::of(field, &FAILURE)?;
     let failure = BondFailure {
-        tension_pa: strength("tension")?,
-        compression_pa: strength("compression")?,
-        shear_pa: strength("shear")?,
-        von_mises_pa: strength("von_mises")?,
-        rate_strengthening_from_1_s: match table.get("rate_strengthening") {
-            Some(field) => rate_strengthening(&field)?,
-            None => None,
-        },
-        rate_of: table
-            .read("rate_of", |field| field.choice(&RATES))?
-            .unwrap_or_default(),
-        weibull_modulus: table.read("weibull_modulus", |field| field.positive(&NUMBER))?,
+        tension_pa: table.read("tension")?,
+        compression_pa: table.read("compression")?,
+        shear_pa: table.read("shear")?,
+        von_mises_pa: table.read("von_mises")?,
+        rate_strengthening_from_1_s: rate_strengthening(&table)?,
+        rate_of: table.read("rate_of")?,
+        weibull_modulus: table.read("weibull_modulus")?,
     };
     let by_rate = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
     let has_none = by_rate.iter().all(Option::is_none);
@@ -197,15 +374,47 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
 }
 
 /// The strain rate from which strengths rise, 1/s. None for `false`.
-fn rate_strengthening(field: &Field<'_>) -> Result<Option<f64>> {
+fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
+    let Some(field) = table.get("rate_strengthening") else {
+        return Ok(None);
+    };
     if let Value::Boolean(on) = field.node.value {
         return Ok(on.then_some(RATE_STRENGTHENING_FROM));
     }
-    let remedy = "write true, or a strain rate such as \"4.64e-6 1/s\"";
     if field.is_word() {
+        let remedy = "write true, or a strain rate such as \"4.64e-6 1/s\"";
         return Err(field.wrong("true, false or a rate", remedy));
     }
-    field
-        .limited(&RATE, |rate| rate > 0.0, "more than 0 1/s", remedy)
-        .map(Some)
+    table.read("rate_strengthening")
+}
+
+pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
+    let known = models(None, 0.0);
+    let same =
+        |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
+    let name = known.iter().find(|(_, other)| same(other));
+    listing.text("model", name.map_or("", |(name, _)| *name));
+    match kind.model {
+        BondModel::Parallel { kappa } => {
+            let kappa = kappa.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
+            listing.value("kappa", &kappa);
+        }
+        BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
+        BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
+    }
+    listing.value("formulation", &kind.formulation);
+    listing.value("young_modulus", &kind.young_modulus_pa);
+    listing.value("poisson_ratio", &kind.poisson_ratio);
+    listing.value("radius_factor", &kind.radius_factor);
+    listing.table("damping", &DAMPING, |listing| list(&kind.damping, listing));
+    let failure = &kind.failure;
+    listing.table("failure", &FAILURE, |listing| {
+        listing.value("tension", &failure.tension_pa);
+        listing.value("compression", &failure.compression_pa);
+        listing.value("shear", &failure.shear_pa);
+        listing.value("von_mises", &failure.von_mises_pa);
+        listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);
+        listing.value("weibull_modulus", &failure.weibull_modulus);
+        listing.value("rate_of", &failure.rate_of);
+    });
 }

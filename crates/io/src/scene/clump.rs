@@ -1,8 +1,11 @@
 //! `start_as` and `clump` of `[bodies.NAME]`
 
+use std::ops::Bound::Included;
+
+use super::listing::{Listing, one_field_a_key};
+use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
-use crate::Result;
-use crate::units::NUMBER;
+use crate::diagnostic::Result;
 
 /// What a body is at first: when the run starts, or when an inlet feeds it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -23,10 +26,13 @@ pub struct ClumpSettings {
     pub mass: ClumpMass,
 }
 
+/// `scale` unless given.
+const SCALE: f64 = 1.0;
+
 impl Default for ClumpSettings {
     fn default() -> Self {
         Self {
-            scale: 1.0,
+            scale: SCALE,
             mass: ClumpMass::Spheres,
         }
     }
@@ -44,46 +50,69 @@ pub enum ClumpMass {
 /// What a body may start as: whether as a clump.
 const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
 
-/// Of what the mass may be.
-pub(super) const MASSES: [(&str, ClumpMass); 2] =
-    [("spheres", ClumpMass::Spheres), ("union", ClumpMass::Union)];
+/// The key `start_as`.
+pub(super) const START_AS: Key = Key::new(
+    "start_as",
+    Kind::Word(|| words_of(&STARTS)),
+    "Particles and bonds between them, or a rigid clump, until `[replacement]` replaces it.",
+)
+.or_word("bonded");
 
-/// Largest `scale`.
-const LARGEST_SCALE: f64 = 1.5;
+pub(super) static CLUMP: Schema = Schema {
+    title: "Clump",
+    doc: "How a rigid clump is made of a body. Its spheres are the body's particles.",
+    keys: &[
+        Key::number(
+            "scale",
+            "Radii with which its spheres touch others, over those of the particles, about their own centres.",
+        )
+        .within(Included(1.0), Included(1.5))
+        .remedy("it is a factor on the radii: 1 leaves them as they are")
+        .or(SCALE),
+        Key::word::<ClumpMass>(
+            "mass",
+            "spheres",
+            "Mass, centre and inertia are sums over the particles, as of the bonded cluster; or `union`: of what they \
+             fill together, overlaps once.",
+        ),
+    ],
+};
+
+impl Word for ClumpMass {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("spheres", Self::Spheres), ("union", Self::Union)];
+}
+
+one_field_a_key! {
+    ClumpSettings {
+        scale: "scale",
+        mass: "mass",
+    }
+}
 
 pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
     let is_clump = body
-        .read("start_as", |field| field.choice(&STARTS))?
+        .read_by("start_as", |field| field.choice(&STARTS))?
         .unwrap_or(false);
-    let Some(field) = body.get("clump") else {
-        return Ok(if is_clump {
-            StartAs::Clump(ClumpSettings::default())
-        } else {
-            StartAs::Bonded
-        });
-    };
-    if !is_clump {
+    if is_clump {
+        return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
+    }
+    if let Some(field) = body.get("clump") {
         let problem = format!(
             "{} stands without start_as = \"clump\", on which it acts",
             field.path
         );
         return Err(field.refuse(problem, "add start_as = \"clump\", or remove it"));
     }
-    let table = field.table(&["scale", "mass"])?;
-    let usual = ClumpSettings::default();
-    Ok(StartAs::Clump(ClumpSettings {
-        scale: table
-            .read("scale", |field| {
-                field.limited(
-                    &NUMBER,
-                    |scale| (1.0..=LARGEST_SCALE).contains(&scale),
-                    &format!("at least 1 and at most {LARGEST_SCALE}"),
-                    "it is a factor on the radii: 1 leaves them as they are",
-                )
-            })?
-            .unwrap_or(usual.scale),
-        mass: table
-            .read("mass", |field| field.choice(&MASSES))?
-            .unwrap_or(usual.mass),
-    }))
+    Ok(StartAs::Bonded)
+}
+
+pub(super) fn list_start(start_as: StartAs, listing: &mut Listing) {
+    match start_as {
+        StartAs::Bonded => listing.text("start_as", "bonded"),
+        StartAs::Clump(clump) => {
+            listing.text("start_as", "clump");
+            listing.table("clump", &CLUMP, |listing| list(&clump, listing));
+        }
+    }
 }

@@ -1,43 +1,65 @@
 //! `[clusters]`
 
-use super::field::Field;
-use crate::Result;
+use super::listing::one_field_a_key;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use crate::diagnostic::Result;
 
 /// When damaged bodies are searched for their pieces (Platzer 2022, 4.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Clusters {
-    /// `interval`: steps between two looks at what has broken, 50 unless given. At least 1.
+    /// `interval`: steps between two looks at what has broken. At least 1.
     pub interval: u64,
-    /// `min_broken`: bonds that must have broken since the last search for another, 1 unless given. At least 1.
+    /// `min_broken`: bonds that must have broken since the last search for another. At least 1.
     pub min_broken: u64,
-    /// `force_every`: so many intervals after the last search there is another in any case. 0, unless given: never.
+    /// `force_every`: so many intervals after the last search there is another in any case. 0: never.
     pub force_every: u64,
 }
 
-impl Default for Clusters {
-    fn default() -> Self {
-        Self {
-            interval: 50,
-            min_broken: 1,
-            force_every: 0,
-        }
+pub(super) static CLUSTERS: Schema = Schema {
+    title: "[clusters]",
+    doc: "When bodies that broke are searched for their pieces.",
+    keys: &[
+        Key::new(
+            "interval",
+            Kind::Whole {
+                least: 1,
+                most: None,
+                of: "steps",
+            },
+            "Steps between two looks at what has broken.",
+        )
+        .remedy("a usual value is 50")
+        .or(50.0),
+        Key::whole(
+            "min_broken",
+            1,
+            "Bonds that must have broken since the last search for another.",
+        )
+        .remedy("1 stands for any bond")
+        .or(1.0),
+        Key::new(
+            "force_every",
+            Kind::Whole {
+                least: 0,
+                most: Some(u64::MAX),
+                of: "intervals",
+            },
+            "After so many intervals there is a search in any case; 0: never.",
+        )
+        .remedy("write 0 for never")
+        .otherwise("never"),
+    ],
+};
+
+one_field_a_key! {
+    Clusters {
+        interval: "interval",
+        min_broken: "min_broken",
+        force_every: "force_every",
     }
 }
 
-pub(super) fn read(field: &Field<'_>) -> Result<Clusters> {
-    let table = field.table(&["interval", "min_broken", "force_every"])?;
-    let usual = Clusters::default();
-    Ok(Clusters {
-        interval: table
-            .read("interval", |field| field.count("a usual value is 50"))?
-            .unwrap_or(usual.interval),
-        min_broken: table
-            .read("min_broken", |field| field.count("1 stands for any bond"))?
-            .unwrap_or(usual.min_broken),
-        force_every: table
-            .read("force_every", |field| {
-                field.whole(u64::MAX, "write 0 for never")
-            })?
-            .unwrap_or(usual.force_every),
-    })
+pub(super) fn read(root: &Table<'_>) -> Result<Clusters> {
+    fields(&root.table("clusters", &CLUSTERS)?)
 }

@@ -3,33 +3,81 @@
 mod pair;
 
 use std::collections::BTreeMap;
+use std::ops::Bound::{Excluded, Included};
 
 use self::pair::named_pair;
-use super::Material;
 use super::field::Field;
+use super::listing::Listing;
+use super::material::Material;
+use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use crate::Result;
-use crate::units::{NUMBER, STIFFNESS};
+use crate::diagnostic::Result;
+use crate::units::STIFFNESS;
 
 /// Least coefficient of restitution: dampers that leave less need steps without end.
 const LEAST_RESTITUTION: f64 = 1e-3;
 
-const KEYS: [&str; 8] = [
-    "law",
-    "normal_stiffness",
-    "tangential_ratio",
-    "restitution",
-    "friction",
-    "rolling",
-    "rolling_friction",
-    "rolling_damping",
-];
+/// Laws of contact: whether linear.
+const LAWS: [(&str, bool); 2] = [("hertz-mindlin", false), ("linear", true)];
 
-/// `tangential_ratio` unless given.
-const TANGENTIAL_RATIO: f64 = 2.0 / 7.0;
+/// Laws of rolling: whether with a spring.
+const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
 
-/// `rolling_damping` unless given.
-const ROLLING_DAMPING: f64 = 0.3;
+pub(super) static CONTACT: Schema = Schema {
+    title: "[contacts.NAME-NAME]",
+    doc: "How two materials touch, in either order of their names, which may have a - in them.",
+    keys: &[
+        Key::new(
+            "law",
+            Kind::Word(|| words_of(&LAWS)),
+            "Elastic spheres, or a spring and a dashpot.",
+        )
+        .or_word("hertz-mindlin"),
+        Key::quantity(
+            "normal_stiffness",
+            &STIFFNESS,
+            "Of the law `linear`, which needs it.",
+        )
+        .positive()
+        .sometimes_required("\"100 kN/m\""),
+        Key::number(
+            "tangential_ratio",
+            "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
+        )
+        .within(Excluded(0.0), Included(1.0))
+        .remedy("leave it out for 2/7")
+        .or(2.0 / 7.0),
+        Key::number(
+            "restitution",
+            "Speed after a head-on collision over that before it.",
+        )
+        .within(Included(LEAST_RESTITUTION), Included(1.0))
+        .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
+        .required("0.5"),
+        Key::number("friction", "Largest tangential force over the normal one.")
+            .not_negative()
+            .or(0.0),
+        Key::new(
+            "rolling",
+            Kind::Word(|| words_of(&ROLLINGS)),
+            "What resists rolling; `constant-torque` where `rolling_friction` alone is given.",
+        ),
+        Key::number(
+            "rolling_friction",
+            "Coefficient of rolling friction. Needs a `friction` above 0: what slides freely has no grip to roll with.",
+        )
+        .positive()
+        .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
+        .sometimes_required("0.05"),
+        Key::number(
+            "rolling_damping",
+            "Of `spring-dashpot`: share of the critical damping.",
+        )
+        .within(Included(0.0), Included(1.0))
+        .remedy("it is a share of the critical damping: a usual value is 0.3")
+        .or(0.3),
+    ],
+};
 
 /// How two materials touch.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +136,7 @@ pub(super) fn read_all(
     let Some(field) = root.get("contacts") else {
         return Ok(Vec::new());
     };
-    let table = field.any_table()?;
+    let table = Table::any(&field)?;
     let mut contacts = BTreeMap::new();
     let mut paths: BTreeMap<[String; 2], String> = BTreeMap::new();
     for (key, node) in table.entries {
@@ -108,7 +156,7 @@ fn read(
     pair: [String; 2],
     materials: &BTreeMap<String, Material>,
 ) -> Result<Contact> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &CONTACT)?;
     let is_rigid = |name: &String| materials.get(name).is_some_and(|material| material.rigid);
     if pair.iter().all(is_rigid) {
         let problem = format!("{} is a pair of rigid materials", field.path);
@@ -121,15 +169,8 @@ fn read(
     if law == ContactLaw::HertzMindlin {
         need_moduli(&table, &pair, materials)?;
     }
-    let restitution = table.need("restitution", "0.5")?.limited(
-        &NUMBER,
-        |e| (LEAST_RESTITUTION..=1.0).contains(&e),
-        "at least 0.001 and at most 1",
-        "1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step",
-    )?;
-    let friction = table
-        .read("friction", |field| field.not_negative(&NUMBER))?
-        .unwrap_or_default();
+    let restitution = table.read("restitution")?;
+    let friction = table.read("friction")?;
     Ok(Contact {
         materials: pair,
         law,
@@ -140,8 +181,7 @@ fn read(
 }
 
 fn law(table: &Table<'_>) -> Result<ContactLaw> {
-    let laws = [("hertz-mindlin", false), ("linear", true)];
-    let is_linear = table.read("law", |field| field.choice(&laws))?;
+    let is_linear = table.read_by("law", |field| field.choice(&LAWS))?;
     if is_linear != Some(true) {
         let mut of_linear = table.given(&["normal_stiffness", "tangential_ratio"]);
         if let Some((_, field)) = of_linear.next() {
@@ -154,19 +194,8 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
         return Ok(ContactLaw::HertzMindlin);
     }
     Ok(ContactLaw::Linear {
-        normal_n_m: table
-            .need("normal_stiffness", "\"100 kN/m\"")?
-            .positive(&STIFFNESS)?,
-        tangential_ratio: table
-            .read("tangential_ratio", |field| {
-                field.limited(
-                    &NUMBER,
-                    |ratio| ratio > 0.0 && ratio <= 1.0,
-                    "more than 0 and at most 1",
-                    "leave it out for 2/7",
-                )
-            })?
-            .unwrap_or(TANGENTIAL_RATIO),
+        normal_n_m: table.read("normal_stiffness")?,
+        tangential_ratio: table.read("tangential_ratio")?,
     })
 }
 
@@ -194,16 +223,8 @@ fn need_moduli(
 }
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
-    let laws = [("constant-torque", false), ("spring-dashpot", true)];
-    let is_sprung = table.read("rolling", |field| field.choice(&laws))?;
-    let damping = table.read("rolling_damping", |field| {
-        field.limited(
-            &NUMBER,
-            |share| (0.0..=1.0).contains(&share),
-            "at least 0 and at most 1",
-            "it is a share of the critical damping: a usual value is 0.3",
-        )
-    })?;
+    let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
+    let damping = table.read("rolling_damping")?;
     if let (Some(field), false) = (table.get("rolling_damping"), is_sprung == Some(true)) {
         let problem = format!(
             "{} stands without rolling = \"spring-dashpot\", on which it acts",
@@ -214,12 +235,7 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     if is_sprung.is_none() && table.get("rolling_friction").is_none() {
         return Ok(Rolling::None);
     }
-    let friction = table.need("rolling_friction", "0.05")?.limited(
-        &NUMBER,
-        |friction| friction > 0.0,
-        "more than 0",
-        "a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists",
-    )?;
+    let friction = table.read("rolling_friction")?;
     if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
         let problem = format!(
             "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
@@ -238,11 +254,36 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
         ));
     }
     Ok(if is_sprung == Some(true) {
-        Rolling::SpringDashpot {
-            friction,
-            damping: damping.unwrap_or(ROLLING_DAMPING),
-        }
+        Rolling::SpringDashpot { friction, damping }
     } else {
         Rolling::ConstantTorque { friction }
     })
+}
+
+pub(super) fn list(contact: &Contact, listing: &mut Listing) {
+    match contact.law {
+        ContactLaw::HertzMindlin => listing.text("law", "hertz-mindlin"),
+        ContactLaw::Linear {
+            normal_n_m,
+            tangential_ratio,
+        } => {
+            listing.text("law", "linear");
+            listing.value("normal_stiffness", &normal_n_m);
+            listing.value("tangential_ratio", &tangential_ratio);
+        }
+    }
+    listing.value("restitution", &contact.restitution);
+    listing.value("friction", &contact.friction);
+    match contact.rolling {
+        Rolling::None => listing.text("rolling", "none"),
+        Rolling::ConstantTorque { friction } => {
+            listing.text("rolling", "constant-torque");
+            listing.value("rolling_friction", &friction);
+        }
+        Rolling::SpringDashpot { friction, damping } => {
+            listing.text("rolling", "spring-dashpot");
+            listing.value("rolling_friction", &friction);
+            listing.value("rolling_damping", &damping);
+        }
+    }
 }

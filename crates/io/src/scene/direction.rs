@@ -1,8 +1,25 @@
 //! Directions, and rotations about them.
 
 use super::field::Field;
-use crate::Result;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use crate::diagnostic::Result;
 use crate::units::{ANGLE, NUMBER};
+
+pub(super) static ROTATION: Schema = Schema {
+    title: "Rotation",
+    doc: "A rotation.",
+    keys: &[
+        Key::new(
+            "axis",
+            Kind::Direction("an axis"),
+            "Axis of the turn; its length does not matter.",
+        )
+        .required("[0, 0, 1]"),
+        Key::quantity("angle", &ANGLE, "Angle, right-handed about the axis.")
+            .required("\"45 deg\""),
+    ],
+};
 
 /// A vector of length 1 along the three numbers of `field`, which is called `what`: "an axis".
 ///
@@ -23,8 +40,8 @@ pub(super) fn direction(field: &Field<'_>, what: &str) -> Result<[f64; 3]> {
 
 /// `{ axis, angle }` as a rotation vector, rad.
 pub(super) fn rotation(field: &Field<'_>) -> Result<[f64; 3]> {
-    let table = field.table(&["axis", "angle"])?;
-    let axis = direction(&table.need("axis", "[0, 0, 1]")?, "an axis")?;
-    let angle = table.need("angle", "\"45 deg\"")?.quantity(&ANGLE)?;
+    let table = Table::of(field, &ROTATION)?;
+    let axis = direction(&table.need("axis")?, "an axis")?;
+    let angle = table.need("angle")?.quantity(&ANGLE)?;
     Ok(axis.map(|c| c * angle))
 }

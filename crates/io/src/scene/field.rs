@@ -1,10 +1,12 @@
 //! One value of a scene: what it should be, and the message where it is not.
 
+use std::ops::Bound;
+
 use super::names::{suggestion, well_formed};
-use super::table::Table;
+use super::schema::Key;
 use super::tree::{Document, Node, Value, shortened};
-use crate::units::{self, Dimension, NUMBER};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
+use crate::units::{self, Dimension};
 
 /// Longest text of a value that a message repeats in full, in characters.
 const SHOWN_TEXT: usize = 40;
@@ -63,56 +65,29 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A value for which `holds` is true, which `limit` says in words.
+    /// A value in SI, within the limits of `key`.
     ///
     /// # Errors
-    /// Those of [`Field::quantity`], and beyond the limit.
-    pub(super) fn limited(
-        &self,
-        dimension: &Dimension,
-        holds: impl Fn(f64) -> bool,
-        limit: &str,
-        remedy: &str,
-    ) -> Result<f64> {
+    /// Those of [`Field::quantity`], and beyond the limits.
+    pub(super) fn within_limits(&self, key: &Key) -> Result<f64> {
+        let dimension = key.dimension();
         let value = self.quantity(dimension)?;
-        if holds(value) {
-            return Ok(value);
+        if !key.allows(value) {
+            return Err(self.wrong(&key.limits_in_words(), remedy(key)));
         }
-        Err(self.wrong(limit, remedy))
+        // -0 is 0 where nothing is below 0.
+        let from_zero = key.limits.0 == Bound::Included(0.0);
+        Ok(if from_zero { value.abs() } else { value })
     }
 
     /// A value above zero.
     pub(super) fn positive(&self, dimension: &Dimension) -> Result<f64> {
-        let limit = with_unit("more than 0", dimension);
-        self.limited(dimension, |value| value > 0.0, &limit, &example(dimension))
-    }
-
-    /// A value of zero or more.
-    pub(super) fn not_negative(&self, dimension: &Dimension) -> Result<f64> {
-        let limit = with_unit("at least 0", dimension);
-        let value = self.limited(dimension, |value| value >= 0.0, &limit, &example(dimension))?;
-        // -0 is 0.
-        Ok(value.abs())
-    }
-
-    /// A plain number above `low` and below `high`.
-    pub(super) fn between(&self, low: f64, high: f64, remedy: &str) -> Result<f64> {
-        self.limited(
-            &NUMBER,
-            |value| value > low && value < high,
-            &format!("more than {low} and less than {high}"),
-            remedy,
-        )
-    }
-
-    /// Poisson's ratio.
-    pub(super) fn poisson_ratio(&self) -> Result<f64> {
-        self.limited(
-            &NUMBER,
-            |ratio| ratio > -1.0 && ratio <= 0.5,
-            "more than -1 and at most 0.5",
-            "a usual value is 0.3",
-        )
+        let value = self.quantity(dimension)?;
+        if value > 0.0 {
+            return Ok(value);
+        }
+        let limit = format!("more than 0 {}", dimension.si);
+        Err(self.wrong(limit.trim_end(), example(dimension)))
     }
 
     /// Three values in SI.
@@ -179,44 +154,33 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A whole number from 0.
-    pub(super) fn whole(&self, largest: u64, remedy: &str) -> Result<u64> {
-        let limit = format!("a whole number from 0 to {largest}");
-        match &self.node.value {
-            Value::Number(written, _) => written
-                .parse()
-                .ok()
-                .filter(|number| *number <= largest)
-                .ok_or_else(|| self.wrong(&limit, remedy)),
-            _ => Err(self.wrong(&limit, remedy)),
-        }
-    }
-
-    /// A whole number from 1.
-    pub(super) fn count(&self, remedy: &str) -> Result<u64> {
-        match &self.node.value {
-            Value::Number(written, _) => written.parse().ok().filter(|number| *number > 0),
-            _ => None,
-        }
-        .ok_or_else(|| self.wrong("a whole number from 1", remedy))
-    }
-
-    /// A whole number from 1 that 32 bits hold.
-    pub(super) fn small_count(&self, remedy: &str) -> Result<u32> {
-        let limit = format!("a whole number from 1 to {}", u32::MAX);
+    /// A whole number from `least` to `most`; None names no largest one, though only what 64 bits hold is taken.
+    pub(super) fn whole(&self, least: u64, most: Option<u64>, remedy: &str) -> Result<u64> {
         let number = match &self.node.value {
-            Value::Number(written, _) => written.parse().ok().filter(|number| *number > 0),
+            Value::Number(written, _) => written.parse().ok(),
             _ => None,
         };
-        number.ok_or_else(|| self.wrong(&limit, remedy))
+        let allowed = least..=most.unwrap_or(u64::MAX);
+        number
+            .filter(|number| allowed.contains(number))
+            .ok_or_else(|| {
+                let limit = format!("a whole number from {least}");
+                let to = most.map_or_else(String::new, |most| format!(" to {most}"));
+                self.wrong(&(limit + &to), remedy)
+            })
     }
 
     /// Number of one of `count` particles, from 0.
     pub(super) fn particle(&self, count: u32) -> Result<u32> {
         let remedy = "particles are numbered from 0: correct or remove it";
-        let number = self.whole(u64::from(count.saturating_sub(1)), remedy)?;
+        let number = self.whole(0, Some(u64::from(count.saturating_sub(1))), remedy)?;
         // Not above the limit, a u32.
         Ok(number as u32)
+    }
+
+    /// Whether it is this word.
+    pub(super) fn is(&self, word: &str) -> bool {
+        matches!(&self.node.value, Value::Text(text) if text == word)
     }
 
     /// Text that does not begin like a number.
@@ -289,30 +253,6 @@ impl<'a> Field<'a> {
         };
         Err(self.refuse(problem, remedy))
     }
-
-    /// A table that may have these keys.
-    ///
-    /// # Errors
-    /// No table, or an unknown key in it.
-    pub(super) fn table(&self, keys: &[&str]) -> Result<Table<'a>> {
-        let table = self.any_table()?;
-        table.refuse_unknown(keys)?;
-        Ok(table)
-    }
-
-    /// A table with any keys.
-    pub(super) fn any_table(&self) -> Result<Table<'a>> {
-        let Value::Table(entries) = &self.node.value else {
-            let remedy = format!("write it as [{}], or in {{ }}", self.path);
-            return Err(self.wrong("a table", remedy));
-        };
-        Ok(Table {
-            document: self.document,
-            path: self.path.clone(),
-            origin: self.node.origin,
-            entries,
-        })
-    }
 }
 
 fn example(dimension: &Dimension) -> String {
@@ -324,6 +264,11 @@ fn example(dimension: &Dimension) -> String {
     )
 }
 
-fn with_unit(limit: &str, dimension: &Dimension) -> String {
-    format!("{limit} {}", dimension.si).trim_end().to_owned()
+/// What to do about a number beyond the limits of `key`.
+pub(super) fn remedy(key: &Key) -> String {
+    if key.remedy.is_empty() {
+        example(key.dimension())
+    } else {
+        key.remedy.to_owned()
+    }
 }

@@ -1,8 +1,11 @@
 //! `[initial.NAME]`
 
 use super::field::Field;
-use super::targets::Targets;
-use crate::Result;
+use super::listing::Listing;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use super::targets::{OF, Targets};
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 /// How the particles of a set start, on top of how their bodies do. What several of these say of a
@@ -21,9 +24,28 @@ pub struct Initial {
     pub displacement_m: [f64; 3],
 }
 
+pub(super) static INITIAL: Schema = Schema {
+    title: "[initial.NAME]",
+    doc: "How a set starts, on top of what its bodies do.",
+    keys: &[
+        OF,
+        Key::vector("velocity", &VELOCITY, "Of each particle."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "Of the set as one rigid body, about its centre of mass.",
+        ),
+        Key::vector(
+            "displacement",
+            &LENGTH,
+            "Of each particle, from where its bonds are at rest.",
+        ),
+    ],
+};
+
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Initial> {
-    let table = field.table(&["of", "velocity", "angular_velocity", "displacement"])?;
-    let of = targets.name(&table.need("of", "\"NAME\", a set, a body or \"all\"")?)?;
+    let table = Table::of(field, &INITIAL)?;
+    let of = targets.name(&table.need("of")?)?;
     if table.entries.len() == 1 {
         let problem = format!("{} does not say how its particles start", table.path);
         let remedy = "add velocity, angular_velocity or displacement, such as \
@@ -32,14 +54,15 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Initial> 
     }
     Ok(Initial {
         of,
-        velocity_m_s: table
-            .read("velocity", |field| field.vector(&VELOCITY))?
-            .unwrap_or_default(),
-        angular_velocity_rad_s: table
-            .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
-            .unwrap_or_default(),
-        displacement_m: table
-            .read("displacement", |field| field.vector(&LENGTH))?
-            .unwrap_or_default(),
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
+        displacement_m: table.read("displacement")?,
     })
+}
+
+pub(super) fn list(initial: &Initial, listing: &mut Listing) {
+    listing.text("of", &initial.of);
+    listing.value("velocity", &initial.velocity_m_s);
+    listing.value("angular_velocity", &initial.angular_velocity_rad_s);
+    listing.value("displacement", &initial.displacement_m);
 }

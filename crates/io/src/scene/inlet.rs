@@ -2,28 +2,69 @@
 
 use std::collections::BTreeMap;
 
+use super::body::BodyEntry;
 use super::field::Field;
+use super::listing::Listing;
+use super::numbers::number;
+use super::region::Region;
+use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use super::tree::Value;
-use super::{BodyEntry, Region};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
-const KEYS: [&str; 10] = [
-    "bodies",
-    "region",
-    "rate",
-    "mass_rate",
-    "velocity",
-    "angular_velocity",
-    "orientation",
-    "start",
-    "end",
-    "count",
-];
-
 /// How new bodies may be turned: whether at random.
-pub(super) const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
+const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
+
+pub(super) static INLET: Schema = Schema {
+    title: "[inlets.NAME]",
+    doc: "Feeds bodies during the run, at a `rate` or a `mass_rate`. They do not stand in the scene at the start.",
+    keys: &[
+        Key::new(
+            "bodies",
+            Kind::Either(&[
+                Kind::List(&Kind::Text("a name in [bodies]")),
+                Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
+            ]),
+            "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, shares by number, of any sum.",
+        )
+        .required("[\"NAME\"], names in [bodies]"),
+        Key::text(
+            "region",
+            "a name in [regions]",
+            "The centre of a new body is put there at random.",
+        )
+        .required("\"NAME\", a name in [regions]"),
+        Key::quantity("rate", &RATE, "Bodies per second.")
+            .positive()
+            .remedy("write bodies per second, such as \"4 /s\""),
+        Key::quantity("mass_rate", &MASS_RATE, "Instead of `rate`: mass per second.").positive(),
+        Key::vector("velocity", &VELOCITY, "Of new bodies."),
+        Key::vector("angular_velocity", &ANGULAR_VELOCITY, "Of new bodies."),
+        Key::new(
+            "orientation",
+            Kind::Word(|| words_of(&ORIENTATIONS)),
+            "How new bodies are turned: at random, or as their `rotation` says.",
+        )
+        .or_word("as-is"),
+        Key::quantity("start", &TIME, "When it begins.")
+            .not_negative()
+            .or(0.0),
+        Key::quantity("end", &TIME, "When it ends, later than `start`; with the run unless given.")
+            .otherwise("never"),
+        Key::new(
+            "count",
+            Kind::Whole {
+                least: 1,
+                most: Some(u32::MAX as u64),
+                of: "",
+            },
+            "At most so many bodies.",
+        )
+        .remedy("leave it out for no limit")
+        .otherwise("no limit"),
+    ],
+};
 
 /// Feeds bodies during the run. Those that it names do not stand in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,37 +119,26 @@ fn read(
     bodies: &BTreeMap<String, BodyEntry>,
     regions: &BTreeMap<String, Region>,
 ) -> Result<Inlet> {
-    let table = field.table(&KEYS)?;
-    let named = table.need("bodies", "[\"NAME\"], names in [bodies]")?;
-    let start_s = table
-        .read("start", |field| field.not_negative(&TIME))?
-        .unwrap_or_default();
+    let table = Table::of(field, &INLET)?;
+    let named = table.need("bodies")?;
+    let (start_s, end_s) = (table.read("start")?, table.read("end")?);
+    if let (Some(field), true) = (table.get("end"), end_s <= start_s) {
+        let limit = format!("more than start, {start_s} s");
+        let remedy = "write a later time, or leave it out to feed until the run ends";
+        return Err(field.wrong(&limit, remedy));
+    }
     Ok(Inlet {
         bodies: shares(&named, bodies)?,
-        region: table
-            .need("region", "\"NAME\", a name in [regions]")?
-            .reference(regions.keys(), "regions")?,
+        region: table.need("region")?.reference(regions.keys(), "regions")?,
         rate: rate(&table)?,
-        velocity_m_s: table
-            .read("velocity", |field| field.vector(&VELOCITY))?
-            .unwrap_or_default(),
-        angular_velocity_rad_s: table
-            .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
-            .unwrap_or_default(),
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
         random_orientation: table
-            .read("orientation", |field| field.choice(&ORIENTATIONS))?
+            .read_by("orientation", |field| field.choice(&ORIENTATIONS))?
             .unwrap_or(false),
         start_s,
-        end_s: table
-            .read("end", |field| {
-                let limit = format!("more than start, {start_s} s");
-                let remedy = "write a later time, or leave it out to feed until the run ends";
-                field.limited(&TIME, |end_s| end_s > start_s, &limit, remedy)
-            })?
-            .unwrap_or(f64::INFINITY),
-        count: table.read("count", |field| {
-            field.small_count("leave it out for no limit")
-        })?,
+        end_s,
+        count: table.read("count")?,
     })
 }
 
@@ -130,7 +160,7 @@ fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec
     }
     let mut shares: Vec<(String, f64)> = Vec::new();
     if let Value::Table(_) = field.node.value {
-        let table = field.any_table()?;
+        let table = Table::any(field)?;
         for (name, node) in table.entries {
             let field = table.field(name, node);
             field.key_reference(name, bodies.keys(), "bodies")?;
@@ -160,12 +190,8 @@ fn rate(table: &Table<'_>) -> Result<FeedRate> {
             let remedy = "add rate = \"4 /s\", bodies per second, or mass_rate = \"10 kg/s\"";
             Err(table.refuse(problem, remedy))
         }
-        (Some(field), None) => {
-            let remedy = "write bodies per second, such as \"4 /s\"";
-            let rate = field.limited(&RATE, |rate| rate > 0.0, "more than 0 1/s", remedy)?;
-            Ok(FeedRate::Number(rate))
-        }
-        (None, Some(field)) => Ok(FeedRate::Mass(field.positive(&MASS_RATE)?)),
+        (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
+        (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
         (Some(_), Some(field)) => {
             let problem = format!("{} stands beside rate", field.path);
             Err(field.refuse(problem, "an inlet has one rate: remove one"))
@@ -203,4 +229,24 @@ fn refuse_own_start(
         }
     }
     Ok(())
+}
+
+pub(super) fn list(inlet: &Inlet, listing: &mut Listing) {
+    let share = |(body, share): &(String, f64)| format!("{body}: {}", number(*share));
+    let shares: Vec<String> = inlet.bodies.iter().map(share).collect();
+    listing.text("bodies", shares.join(", "));
+    listing.text("region", &inlet.region);
+    match inlet.rate {
+        FeedRate::Number(rate) => listing.value("rate", &rate),
+        FeedRate::Mass(rate) => listing.value("mass_rate", &rate),
+    }
+    listing.value("velocity", &inlet.velocity_m_s);
+    listing.value("angular_velocity", &inlet.angular_velocity_rad_s);
+    let orientation = ORIENTATIONS
+        .iter()
+        .find(|(_, random)| *random == inlet.random_orientation);
+    listing.text("orientation", orientation.map_or("", |(word, _)| *word));
+    listing.value("start", &inlet.start_s);
+    listing.value("end", &inlet.end_s);
+    listing.value("count", &inlet.count);
 }

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::{BodySource, Region, Scene, WallShape};
+use super::body::BodySource;
+use super::region::Region;
+use super::root::Scene;
+use super::wall::WallShape;
 use crate::body::files::body_files;
 
 impl Scene {

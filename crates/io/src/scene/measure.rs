@@ -1,15 +1,110 @@
 //! `[measures.NAME]`
 
 use super::field::Field;
+use super::listing::Listing;
 use super::names::ALL;
+use super::numbers::quantity as shown;
+use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::targets::{Subject, Targets};
-use super::{At, Measure, Quantity};
-use crate::Result;
+
+use crate::diagnostic::Result;
 use crate::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
     TORQUE, VELOCITY,
 };
+
+/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies,
+/// forces and counts are
+/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but
+/// torques, count and masses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
+    Position(u8),
+    /// "displacement_x", ... of the centre of mass since the start, m.
+    Displacement(u8),
+    /// "displacement": its magnitude, m.
+    DisplacementMagnitude,
+    /// "velocity_x", ... of the centre of mass, m/s.
+    Velocity(u8),
+    /// "velocity": its magnitude, m/s.
+    VelocityMagnitude,
+    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
+    Rotation(u8),
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
+    /// rad/s.
+    AngularVelocity(u8),
+    /// "reaction_x", ... force of supports on the set, N.
+    Reaction(u8),
+    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N m.
+    ReactionTorque(u8),
+    /// "kinetic_energy", J.
+    KineticEnergy,
+    /// "elastic_energy" of the bonds, each half to its ends, J.
+    ElasticEnergy,
+    /// "broken_bonds" since the start.
+    BrokenBonds,
+    /// "largest_utilisation": stress over strength of the bond nearest to failure.
+    LargestUtilisation,
+    /// "angle_of_repose": slope of the heap that the particles form, degrees.
+    AngleOfRepose,
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
+    /// on a set, N.
+    Force(u8),
+    /// "force": its magnitude, N.
+    ForceMagnitude,
+    /// "contact_force_x", ... force of contacts with what `with` names on the set, N.
+    ContactForce(u8),
+    /// "contact_force": its magnitude, N.
+    ContactForceMagnitude,
+    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    ContactOverlap,
+    /// "contact_duration": how long the two have touched since the start, s.
+    ContactDuration,
+    /// "torque_x", ... torque of particles on the wall about its pivot, N m.
+    Torque(u8),
+    /// "count" of fragments.
+    Count,
+    /// "mass_fraction_of_largest": mass of the heaviest fragment over that of all.
+    MassFractionOfLargest,
+    /// "mass_of_largest": mass of the heaviest fragment, kg.
+    MassOfLargest,
+}
+
+/// Which value of a measure's history is its result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum At {
+    /// "end"
+    End,
+    /// "largest"
+    Largest,
+    /// "smallest"
+    Smallest,
+    /// "mean" over time
+    Mean,
+}
+
+/// A named quantity, with what it should be where that is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// `of`: a set, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
+    pub of: String,
+    /// `quantity`
+    pub quantity: Quantity,
+    /// `with`: the body, set or wall that `of` touches. Only of contacts, which need it.
+    pub with: Option<String>,
+    /// `at`, "end" unless given.
+    pub at: At,
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
+    /// `tolerance`.
+    pub reference: Option<f64>,
+    /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
+    pub tolerance: Option<f64>,
+    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's
+    /// unit.
+    pub tolerance_absolute: Option<f64>,
+}
 
 /// Every quantity and its name in a scene.
 pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
@@ -59,13 +154,14 @@ pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
     ("mass_of_largest", Quantity::MassOfLargest),
 ];
 
-/// Every choice of a value from a history.
-pub(super) const TIMES: [(&str, At); 4] = [
-    ("end", At::End),
-    ("largest", At::Largest),
-    ("smallest", At::Smallest),
-    ("mean", At::Mean),
-];
+impl Word for At {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("end", Self::End),
+        ("largest", Self::Largest),
+        ("smallest", Self::Smallest),
+        ("mean", Self::Mean),
+    ];
+}
 
 impl Quantity {
     /// Its name in a scene, such as "displacement_x".
@@ -127,21 +223,48 @@ impl Quantity {
     }
 }
 
-/// The keys of a measure.
-const KEYS: [&str; 7] = [
-    "of",
-    "quantity",
-    "with",
-    "at",
-    "reference",
-    "tolerance",
-    "tolerance_absolute",
-];
+pub(super) static MEASURE: Schema = Schema {
+    title: "[measures.NAME]",
+    doc: "What is measured, with what it should be where that is known.",
+    keys: &[
+        Key::text("of", "a set, a body, a wall, `all` or `fragments`", "What it is of.")
+            .or_word(ALL),
+        Key::new(
+            "quantity",
+            Kind::Word(|| words_of(&QUANTITIES)),
+            "Of a wall: `force`, `torque` about its pivot, `position` of its pivot; of `fragments`: `count`, \
+             `mass_of_largest`, `mass_fraction_of_largest`; of sets all others and `position`, `force`.",
+        )
+        .required("\"displacement_x\""),
+        Key::text(
+            "with",
+            "a set, a body or a wall",
+            "Of a contact's quantities, which need it: what `of` touches.",
+        ),
+        Key::word::<At>(
+            "at",
+            "end",
+            "Which value of its history is the result; `mean` is over time.",
+        ),
+        Key::new("reference", Kind::Measured, "What the result should be; its error is reported."),
+        Key::number(
+            "tolerance",
+            "A larger relative error spoils the verdict. Needs a `reference` other than 0.",
+        )
+        .positive(),
+        Key::new(
+            "tolerance_absolute",
+            Kind::Measured,
+            "A larger difference from `reference`, which it needs, spoils the verdict.",
+        )
+        .positive(),
+    ],
+};
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &MEASURE)?;
     let (of, subject) = table
-        .read("of", |field| targets.measured(&field))?
+        .read_by("of", |field| targets.measured(&field))?
         .unwrap_or_else(|| (ALL.to_owned(), Subject::Particles));
     let quantity = quantity(&table, &of, subject)?;
     if let (Quantity::Displacement(_) | Quantity::DisplacementMagnitude, Some(field)) =
@@ -151,9 +274,10 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
     }
     let with = counterpart(&table, &of, quantity, targets)?;
     let dimension = quantity.dimension();
-    let reference = table.read("reference", |field| field.quantity(dimension))?;
-    let tolerance = table.read("tolerance", |field| field.positive(&NUMBER))?;
-    let tolerance_absolute = table.read("tolerance_absolute", |field| field.positive(dimension))?;
+    let reference = table.read_by("reference", |field| field.quantity(dimension))?;
+    let tolerance = table.read("tolerance")?;
+    let tolerance_absolute =
+        table.read_by("tolerance_absolute", |field| field.positive(dimension))?;
     if let Some(field) = table.get("tolerance") {
         let problem = match reference {
             None => "stands without reference, to which it is relative",
@@ -179,9 +303,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         of,
         quantity,
         with,
-        at: table
-            .read("at", |field| field.choice(&TIMES))?
-            .unwrap_or(At::End),
+        at: table.read("at")?,
         reference,
         tolerance,
         tolerance_absolute,
@@ -241,7 +363,7 @@ fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
         Subject::Wall => "\"force_x\"",
         Subject::Fragments => "\"count\"",
     };
-    let field = table.need("quantity", example)?;
+    let field = table.need_such("quantity", example)?;
     let name = field.text()?;
     let Some((_, elsewhere)) = QUANTITIES
         .iter()
@@ -275,4 +397,20 @@ fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
         format!("{remedy}, or ask for {}", has.join(", "))
     };
     Err(field.refuse(problem, remedy))
+}
+
+pub(super) fn list(measure: &Measure, listing: &mut Listing) {
+    let in_unit = |value: Option<f64>| {
+        let unit = measure.quantity.dimension().si;
+        value.map_or_else(|| "none".to_owned(), |value| shown(value, unit))
+    };
+    listing.text("of", &measure.of);
+    listing.text("quantity", measure.quantity.name());
+    if let Some(with) = &measure.with {
+        listing.text("with", with);
+    }
+    listing.value("at", &measure.at);
+    listing.text("reference", in_unit(measure.reference));
+    listing.value("tolerance", &measure.tolerance);
+    listing.text("tolerance_absolute", in_unit(measure.tolerance_absolute));
 }

@@ -3,10 +3,27 @@
 use std::collections::BTreeMap;
 
 use super::field::Field;
-use super::{Inlet, Region};
-use crate::Result;
+use super::inlet::Inlet;
+use super::listing::Listing;
+use super::region::Region;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use crate::diagnostic::Result;
 
-const KEYS: [&str; 2] = ["inside", "outside"];
+const SIDES: [&str; 2] = ["inside", "outside"];
+
+pub(super) static OUTLET: Schema = Schema {
+    title: "[outlets.NAME]",
+    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts them.",
+    keys: &[
+        Key::text(
+            "inside",
+            "a name in [regions]",
+            "What is in it; not the region of an inlet.",
+        ),
+        Key::text("outside", "a name in [regions]", "What is not in it."),
+    ],
+};
 
 /// Removes bodies and fragments whose centre is there, and counts them.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +39,8 @@ pub(super) fn read(
     regions: &BTreeMap<String, Region>,
     inlets: &BTreeMap<String, Inlet>,
 ) -> Result<Outlet> {
-    let table = field.table(&KEYS)?;
-    let mut given = table.given(&KEYS);
+    let table = Table::of(field, &OUTLET)?;
+    let mut given = table.given(&SIDES);
     let Some((key, field)) = given.next() else {
         let problem = format!("{} has no region", table.path);
         let remedy = "add inside = \"NAME\" or outside = \"NAME\", a name in [regions]";
@@ -49,4 +66,9 @@ pub(super) fn read(
         region,
         removes_outside,
     })
+}
+
+pub(super) fn list(outlet: &Outlet, listing: &mut Listing) {
+    let side = SIDES[usize::from(outlet.removes_outside)];
+    listing.text(side, &outlet.region);
 }

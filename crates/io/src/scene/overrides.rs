@@ -1,7 +1,7 @@
 //! `--set KEY=VALUE`: values given on the command line, laid over those of the file.
 
 use super::tree::{Document, Node, Origin, Value, parse_value};
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 impl Document {
     /// Lays a `--set` text over the file: `run.end_time="0.5 s"`. A value that is no TOML is text, without quotes.

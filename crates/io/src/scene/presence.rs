@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::body::BodyEntry;
+use super::clump::StartAs;
 use super::field::Field;
+use super::inlet::Inlet;
 use super::names::ALL;
 use super::table::Table;
-use super::{BodyEntry, Inlet, StartAs};
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the particles of a rigid clump cannot be
 /// held or moved one by one.
@@ -63,7 +65,7 @@ impl Presence<'_> {
     /// Refuses the set `field` of the body `body`, or of all bodies, where it could pick particles of a clump, or where the body is fed.
     pub(super) fn refuse_set(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
-            let table = field.any_table()?;
+            let table = Table::any(field)?;
             return match table.get("body") {
                 Some(field) => self.refuse_body(&field, name),
                 None => self.refuse_only(&table, name),

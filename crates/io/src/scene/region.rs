@@ -3,11 +3,32 @@
 use std::path::{Path, PathBuf};
 
 use super::field::Field;
-use super::shape::{corners, cylinder, refuse_without_stl, sphere, stl};
-use crate::Result;
+use super::listing::Listing;
+use super::schema::{Key, Schema};
+use super::shape::{
+    BOX, CYLINDER, SPHERE, UNIT, corners, cylinder, list_box, list_cylinder, list_sphere, list_stl,
+    refuse_without_stl, sphere, stl,
+};
+use super::table::Table;
+use crate::diagnostic::Result;
 
 const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
-const KEYS: [&str; 5] = ["box", "sphere", "cylinder", "stl", "unit"];
+
+pub(super) static REGION: Schema = Schema {
+    title: "[regions.NAME]",
+    doc: "A part of space, which nothing bounces off, by one of its shapes.",
+    keys: &[
+        Key::table("box", &BOX, "A box."),
+        Key::table("sphere", &SPHERE, "A sphere."),
+        Key::table("cylinder", &CYLINDER, "A cylinder."),
+        Key::text(
+            "stl",
+            "a file",
+            "A closed surface, from the folder of the scene, with `unit`.",
+        ),
+        UNIT,
+    ],
+};
 
 /// A part of space, which nothing bounces off.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +66,7 @@ pub enum Region {
 }
 
 pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &REGION)?;
     let mut given = table.given(&SHAPES);
     let Some((key, field)) = given.next() else {
         let problem = format!("{} has no shape", table.path);
@@ -80,4 +101,17 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
             Region::Stl { file, unit_m }
         }
     })
+}
+
+pub(super) fn list(region: &Region, listing: &mut Listing) {
+    match region {
+        Region::Box { min_m, max_m } => list_box(*min_m, *max_m, listing),
+        Region::Sphere { centre_m, radius_m } => list_sphere(*centre_m, *radius_m, listing),
+        Region::Cylinder {
+            from_m,
+            to_m,
+            radius_m,
+        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        Region::Stl { file, unit_m } => list_stl(file, *unit_m, listing),
+    }
 }

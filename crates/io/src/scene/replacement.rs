@@ -2,21 +2,95 @@
 
 use std::collections::BTreeMap;
 
+use super::body::{BodyEntry, BodySource};
+use super::clump::{ClumpMass, StartAs};
 use super::field::Field;
+use super::listing::Listing;
+use super::region::Region;
+use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
-use super::{BodyEntry, BodySource, ClumpMass, Region, StartAs};
-use crate::Result;
+use crate::diagnostic::Result;
 use crate::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
 
 /// Whether all of `when` must hold, or any.
-pub(super) const NEEDS: [(&str, bool); 2] = [("any", false), ("all", true)];
+const NEEDS: [(&str, bool); 2] = [("any", false), ("all", true)];
 
-/// `min_particles` unless given.
-const MIN_PARTICLES: u32 = 10;
-/// `strain_energy` unless given, J/kg.
-const STRAIN_ENERGY_J_KG: f64 = 0.01;
-/// `inner_speed` unless given, m/s.
-const INNER_SPEED_M_S: f64 = 5e-3;
+pub(super) static REPLACEMENT: Schema = Schema {
+    title: "[replacement.NAME]",
+    doc: "When the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
+    keys: &[
+        Key::table("when", &WHEN, "What must hold; at least one of its keys.")
+            .required("{ enters = \"NAME\" }, a name in [regions]"),
+        Key::new(
+            "need",
+            Kind::Word(|| words_of(&NEEDS)),
+            "Any of what `when` names, or all.",
+        )
+        .or_word("any"),
+        Key::table(
+            "back",
+            &BACK,
+            "When a fragment becomes rigid again; all of it must hold.",
+        )
+        .otherwise("never"),
+    ],
+};
+
+pub(super) static WHEN: Schema = Schema {
+    title: "When",
+    doc: "What makes a clump its bonded cluster.",
+    keys: &[
+        Key::text("enters", "a name in [regions]", "Its centre of mass is in this region.")
+            .otherwise("not asked"),
+        Key::quantity("force", &FORCE, "Contacts push it with this together.")
+            .positive()
+            .otherwise("not asked"),
+        Key::quantity(
+            "impact_energy",
+            &ENERGY,
+            "Contacts have taken this from its motion, over all times at which they slowed it down.",
+        )
+        .positive()
+        .otherwise("not asked"),
+        Key::quantity("time", &TIME, "So late it is.")
+            .not_negative()
+            .otherwise("not asked"),
+    ],
+};
+
+pub(super) static BACK: Schema = Schema {
+    title: "Back",
+    doc: "What makes a fragment rigid again.",
+    keys: &[
+        Key::text("leaves", "a name in [regions]", "Its centre is outside this region.")
+            .required("\"NAME\", a name in [regions]"),
+        Key::new(
+            "min_particles",
+            Kind::Whole {
+                least: 1,
+                most: Some(u32::MAX as u64),
+                of: "",
+            },
+            "It has at least so many particles.",
+        )
+        .remedy("a usual value is 10")
+        .or(10.0),
+        Key::quantity(
+            "strain_energy",
+            &ENERGY_PER_MASS,
+            "Elastic energy of its bonds over its mass is at most this.",
+        )
+        .positive()
+        .or(0.01),
+        Key::quantity(
+            "inner_speed",
+            &VELOCITY,
+            "Root mean square speed of its particles beside its motion as a rigid body is at most this.",
+        )
+        .positive()
+        .or(5e-3),
+    ],
+};
 
 /// When a rigid clump becomes the bonded cluster that it stands for, and when that becomes rigid again.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,43 +184,53 @@ fn check_body(
 }
 
 fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
-    let table = field.table(&["when", "need", "back"])?;
-    let when = table
-        .need("when", "{ enters = \"NAME\" }, a name in [regions]")?
-        .table(&["enters", "force", "impact_energy", "time"])?;
+    let table = Table::of(field, &REPLACEMENT)?;
+    let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
         let problem = format!("{} is an empty table", when.path);
         let remedy = "add enters = \"NAME\", force = \"100 N\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
         return Err(when.refuse(problem, remedy));
     }
     Ok(Replacement {
-        enters: when.read("enters", |field| field.reference(regions.keys(), "regions"))?,
-        force_n: when.read("force", |field| field.positive(&FORCE))?,
-        impact_energy_j: when.read("impact_energy", |field| field.positive(&ENERGY))?,
-        time_s: when.read("time", |field| field.not_negative(&TIME))?,
+        enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,
+        force_n: when.read("force")?,
+        impact_energy_j: when.read("impact_energy")?,
+        time_s: when.read("time")?,
         needs_all: table
-            .read("need", |field| field.choice(&NEEDS))?
+            .read_by("need", |field| field.choice(&NEEDS))?
             .unwrap_or(false),
-        back: table.read("back", |field| back(&field, regions))?,
+        back: table.read_by("back", |field| back(&field, regions))?,
     })
 }
 
 fn back(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Back> {
-    let table = field.table(&["leaves", "min_particles", "strain_energy", "inner_speed"])?;
+    let table = Table::of(field, &BACK)?;
     Ok(Back {
-        leaves: table
-            .need("leaves", "\"NAME\", a name in [regions]")?
-            .reference(regions.keys(), "regions")?,
-        min_particles: table
-            .read("min_particles", |field| {
-                field.small_count("a usual value is 10")
-            })?
-            .unwrap_or(MIN_PARTICLES),
-        strain_energy_j_kg: table
-            .read("strain_energy", |field| field.positive(&ENERGY_PER_MASS))?
-            .unwrap_or(STRAIN_ENERGY_J_KG),
-        inner_speed_m_s: table
-            .read("inner_speed", |field| field.positive(&VELOCITY))?
-            .unwrap_or(INNER_SPEED_M_S),
+        leaves: table.need("leaves")?.reference(regions.keys(), "regions")?,
+        min_particles: table.read("min_particles")?,
+        strain_energy_j_kg: table.read("strain_energy")?,
+        inner_speed_m_s: table.read("inner_speed")?,
     })
+}
+
+pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
+    listing.table("when", &WHEN, |listing| {
+        listing.text(
+            "enters",
+            replacement.enters.as_deref().unwrap_or("not asked"),
+        );
+        listing.value("force", &replacement.force_n);
+        listing.value("impact_energy", &replacement.impact_energy_j);
+        listing.value("time", &replacement.time_s);
+    });
+    listing.text("need", if replacement.needs_all { "all" } else { "any" });
+    let Some(back) = &replacement.back else {
+        return listing.text("back", "never");
+    };
+    listing.table("back", &BACK, |listing| {
+        listing.text("leaves", &back.leaves);
+        listing.value("min_particles", &back.min_particles);
+        listing.value("strain_energy", &back.strain_energy_j_kg);
+        listing.value("inner_speed", &back.inner_speed_m_s);
+    });
 }

@@ -1,117 +1,175 @@
 //! `[run]`
 
-use super::field::Field;
+use std::ops::Bound::{Excluded, Included};
+
+use super::listing::one_field_a_key;
+use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
-use super::tree::Value;
-use super::{Integrator, Run, StartOverlap};
-use crate::Result;
-use crate::units::{ACCELERATION, NUMBER, TIME};
 
-const KEYS: [&str; 10] = [
-    "end_time",
-    "integrator",
-    "rest",
-    "time_step",
-    "safety",
-    "adaptive",
-    "gravity",
-    "particle_damping",
-    "seed",
-    "start_overlap",
-];
+use crate::diagnostic::Result;
+use crate::units::{ACCELERATION, TIME};
 
-/// How a run may come to its end.
-pub(super) const INTEGRATORS: [(&str, Integrator); 2] = [
-    ("leapfrog", Integrator::Leapfrog),
-    ("static", Integrator::Static),
-];
+/// When the run ends, how it steps, what acts everywhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
+    pub end_time_s: f64,
+    /// `integrator`, "leapfrog" unless given.
+    pub integrator: Integrator,
+    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
+    pub rest: Option<f64>,
+    /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
+    pub time_step_s: Option<f64>,
+    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and more are for trials only.
+    pub safety: f64,
+    /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
+    pub adaptive: bool,
+    /// `gravity`, m/s2; none unless given. Length 3.
+    pub gravity_m_s2: [f64; 3],
+    /// `particle_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
+    pub particle_damping: f64,
+    /// `seed` of everything random (scatter of strengths); 0 unless given.
+    pub seed: u64,
+    /// `start_overlap`, "refuse" unless given.
+    pub start_overlap: StartOverlap,
+}
 
-/// What may happen to overlaps at the start.
-pub(super) const START_OVERLAPS: [(&str, StartOverlap); 3] = [
-    ("refuse", StartOverlap::Refuse),
-    ("relax", StartOverlap::Relax),
-    ("keep", StartOverlap::Keep),
-];
+/// How a run comes to its end.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// "leapfrog": step by step.
+    #[default]
+    Leapfrog,
+    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded bodies on supports only: nothing touches, breaks, comes or goes.
+    Static,
+}
+
+/// What happens where bodies or walls overlap at the start, although no bond joins them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartOverlap {
+    /// "refuse": the scene is refused.
+    Refuse,
+    /// "relax": the overlap is the origin of their contact law.
+    Relax,
+    /// "keep": contacts like all others, which press with the force of their overlap.
+    Keep,
+}
 
 /// `run.safety` unless given.
 pub const SAFETY: f64 = 0.9;
 
+pub(super) static RUN: Schema = Schema {
+    title: "[run]",
+    doc: "When the run ends, how it steps, what acts everywhere.",
+    keys: &[
+        Key::quantity("end_time", &TIME, "Simulated time at the end. Needed where no `[test]` says when it ends.")
+            .positive()
+            .otherwise("that of the test"),
+        Key::word::<Integrator>(
+            "integrator",
+            "leapfrog",
+            "Step by step, or `static`: at once into the equilibrium under what acts at `end_time`.",
+        ),
+        Key::number(
+            "rest",
+            "The run ends sooner, once the kinetic energy has been below this share of the elastic one during the \
+             last fifth of the run and no load or support changes any more.",
+        )
+        .within(Excluded(0.0), Excluded(1.0))
+        .remedy("a small share such as 1e-6 means at rest")
+        .otherwise("never"),
+        Key::new(
+            "time_step",
+            Kind::Auto(&TIME),
+            "The step; `auto` is `safety` times the exact limit.",
+        )
+        .positive()
+        .remedy("write \"auto\" or a time such as \"1 us\"")
+        .or_word("auto"),
+        Key::number(
+            "safety",
+            "The automatic step over the largest stable one; the step that impacts allow is more or less by \
+             safety/0.9. 1 and more are for trials only.",
+        )
+        .within(Excluded(0.0), Excluded(2.0))
+        .remedy("a usual value is 0.9")
+        .or(SAFETY),
+        Key::flag(
+            "adaptive",
+            false,
+            "The automatic step follows the limit up as well as down.",
+        ),
+        Key::vector("gravity", &ACCELERATION, "Acceleration that acts on everything."),
+        Key::number("particle_damping", "Damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
+            .within(Included(0.0), Excluded(1.0))
+            .remedy("write 0 for none")
+            .or(0.0),
+        Key::new(
+            "seed",
+            Kind::Whole { least: 0, most: Some(u64::MAX), of: "" },
+            "Of all that is random: scattered strengths, inlets.",
+        )
+        .remedy("write any such number")
+        .or(0.0),
+        Key::word::<StartOverlap>(
+            "start_overlap",
+            "refuse",
+            "Bodies or walls that overlap at the start are refused; or `relax`: the overlap is the origin of their \
+             contact law; or `keep`: they press with all of it.",
+        ),
+    ],
+};
+
+impl Word for Integrator {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("leapfrog", Self::Leapfrog), ("static", Self::Static)];
+}
+
+impl Word for StartOverlap {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("refuse", Self::Refuse),
+        ("relax", Self::Relax),
+        ("keep", Self::Keep),
+    ];
+}
+
+one_field_a_key! {
+    Run {
+        end_time_s: "end_time",
+        integrator: "integrator",
+        rest: "rest",
+        time_step_s: "time_step",
+        safety: "safety",
+        adaptive: "adaptive",
+        gravity_m_s2: "gravity",
+        particle_damping: "particle_damping",
+        seed: "seed",
+        start_overlap: "start_overlap",
+    }
+}
+
 pub(super) fn read(root: &Table<'_>) -> Result<Run> {
-    let is_test = root.get("test").is_some();
     let Some(field) = root.get("run") else {
         let remedy = "add [run] with end_time = \"1 s\"";
         return Err(root.refuse("the table [run] is missing", remedy));
     };
-    let table = field.table(&KEYS)?;
-    let end_time_s = match table.get("end_time") {
-        None if is_test => f64::INFINITY,
-        _ => table.need("end_time", "\"1 s\"")?.positive(&TIME)?,
+    let table = Table::of(&field, &RUN)?;
+    if root.get("test").is_none() {
+        table.need_such("end_time", "\"1 s\"")?;
+    }
+    let run = fields(&table)?;
+    let Some(step_s) = run.time_step_s else {
+        return Ok(run);
     };
-    let time_step_s = match table.get("time_step") {
-        Some(field) => time_step(&field, end_time_s)?,
-        None => None,
-    };
-    let adaptive = table
-        .read("adaptive", |field| field.boolean())?
-        .unwrap_or_default();
-    if let (true, Some(_), Some(field)) = (adaptive, time_step_s, table.get("adaptive")) {
+    if let (true, Some(field)) = (step_s > run.end_time_s, table.get("time_step")) {
+        let limit = format!("at most run.end_time, {} s", run.end_time_s);
+        return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));
+    }
+    if let (true, Some(field)) = (run.adaptive, table.get("adaptive")) {
         return Err(field.refuse(
             "a step that is given stays as it is",
             "write time_step = \"auto\", or leave adaptive out",
         ));
     }
-    Ok(Run {
-        end_time_s,
-        integrator: table
-            .read("integrator", |field| field.choice(&INTEGRATORS))?
-            .unwrap_or_default(),
-        rest: table.read("rest", |field| {
-            field.between(0.0, 1.0, "a small share such as 1e-6 means at rest")
-        })?,
-        time_step_s,
-        safety: table
-            .read("safety", |field| {
-                field.between(0.0, 2.0, "a usual value is 0.9")
-            })?
-            .unwrap_or(SAFETY),
-        adaptive,
-        gravity_m_s2: table
-            .read("gravity", |field| field.vector(&ACCELERATION))?
-            .unwrap_or_default(),
-        particle_damping: table
-            .read("particle_damping", |field| {
-                field.limited(
-                    &NUMBER,
-                    |gamma| (0.0..1.0).contains(&gamma),
-                    "at least 0 and less than 1",
-                    "write 0 for none",
-                )
-            })?
-            .unwrap_or_default(),
-        seed: table
-            .read("seed", |field| {
-                field.whole(u64::MAX, "write any such number")
-            })?
-            .unwrap_or_default(),
-        start_overlap: table
-            .read("start_overlap", |field| field.choice(&START_OVERLAPS))?
-            .unwrap_or(StartOverlap::Refuse),
-    })
-}
-
-/// None for "auto".
-fn time_step(field: &Field<'_>, end_time_s: f64) -> Result<Option<f64>> {
-    if matches!(&field.node.value, Value::Text(text) if text == "auto") {
-        return Ok(None);
-    }
-    let remedy = "write \"auto\" or a time such as \"1 us\"";
-    if field.is_word() {
-        return Err(field.wrong("\"auto\" or a time", remedy));
-    }
-    let step_s = field.limited(&TIME, |step| step > 0.0, "more than 0 s", remedy)?;
-    if step_s > end_time_s {
-        let limit = format!("at most run.end_time, {end_time_s} s");
-        return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));
-    }
-    Ok(Some(step_s))
+    Ok(run)
 }

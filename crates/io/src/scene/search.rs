@@ -1,25 +1,33 @@
 //! `[search]`
 
-use super::field::Field;
-use crate::Result;
-use crate::units::NUMBER;
+use std::ops::Bound::{Excluded, Included};
+
+use super::listing::one_field_a_key;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use crate::diagnostic::Result;
 
 /// How particles that may touch are found.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
     /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0, 2]. None: chosen by the program.
     pub skin: Option<f64>,
 }
 
-pub(super) fn read(field: &Field<'_>) -> Result<Search> {
-    let table = field.table(&["skin"])?;
-    let skin = table.read("skin", |field| {
-        field.limited(
-            &NUMBER,
-            |skin| skin > 0.0 && skin <= 2.0,
-            "more than 0 and at most 2",
-            "it is a share of the largest radius: leave it out, and the program chooses",
-        )
-    })?;
-    Ok(Search { skin })
+pub(super) static SEARCH: Schema = Schema {
+    title: "[search]",
+    doc: "How particles that may touch are found.",
+    keys: &[Key::number(
+        "skin",
+        "How far beyond touching pairs are listed, as a share of the largest radius.",
+    )
+    .within(Excluded(0.0), Included(2.0))
+    .remedy("it is a share of the largest radius: leave it out, and the program chooses")
+    .otherwise("chosen by the program")],
+};
+
+one_field_a_key! { Search { skin: "skin" } }
+
+pub(super) fn read(root: &Table<'_>) -> Result<Search> {
+    fields(&root.table("search", &SEARCH)?)
 }

@@ -2,16 +2,70 @@
 
 use std::collections::{BTreeMap, HashSet};
 
+use super::body::{BodyEntry, BodySource};
 use super::field::Field;
+use super::listing::{LISTED, Listing};
 use super::names::{FRAGMENTS, meaning};
 use super::presence::Presence;
-use super::shape::{corners, sphere};
+use super::schema::{Key, Kind, Schema};
+use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
 use super::table::Table;
-use super::{BodyEntry, BodySource, ParticleSet, Pick};
-use crate::Result;
+use crate::diagnostic::Result;
+
+/// Which particles are meant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParticleSet {
+    /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
+    pub body: Option<String>,
+    /// How they are picked, at the start of the run.
+    pub pick: Pick,
+}
+
+/// How particles are picked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pick {
+    /// `all = true`
+    All,
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there is one body.
+    Particles(Vec<u32>),
+    /// `box = { min, max }`: centres in it, m.
+    Box {
+        /// Smallest corner, m.
+        min: [f64; 3],
+        /// Largest corner, m.
+        max: [f64; 3],
+    },
+    /// `sphere = { centre, radius }`: centres in it, m.
+    Sphere {
+        /// Centre, m.
+        centre: [f64; 3],
+        /// Radius, m.
+        radius: f64,
+    },
+}
 
 /// The ways to pick.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
+
+pub(super) static SET: Schema = Schema {
+    title: "[sets.NAME]",
+    doc: "Particles, picked in one way at the start of the run. The name of a body and `all` are sets as well.",
+    keys: &[
+        Key::text("body", "a name in [bodies]", "Of this body only.").otherwise("all"),
+        Key::new("all", Kind::True, "All of them."),
+        Key::new(
+            "particles",
+            Kind::List(&Kind::Whole {
+                least: 0,
+                most: None,
+                of: "",
+            }),
+            "By their numbers in the body's file, from 0. Needs a `body`, or a scene with one body.",
+        ),
+        Key::table("box", &BOX, "Those whose centres are in it."),
+        Key::table("sphere", &SPHERE, "Those whose centres are in it."),
+    ],
+};
 
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -39,8 +93,8 @@ pub(super) fn read_all(
 }
 
 fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleSet> {
-    let table = field.table(&["body", "all", "particles", "box", "sphere"])?;
-    let body = table.read("body", |field| field.reference(bodies.keys(), "bodies"))?;
+    let table = Table::of(field, &SET)?;
+    let body = table.read_by("body", |field| field.reference(bodies.keys(), "bodies"))?;
     let mut given = table.given(&PICKS);
     let Some((key, first)) = given.next() else {
         let problem = format!("{} picks nothing", table.path);
@@ -118,4 +172,17 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
 fn region(field: &Field<'_>) -> Result<Pick> {
     let [min, max] = corners(field, "at most", |low, high| low <= high)?;
     Ok(Pick::Box { min, max })
+}
+
+pub(super) fn list(set: &ParticleSet, listing: &mut Listing) {
+    listing.text("body", set.body.as_deref().unwrap_or("all"));
+    match &set.pick {
+        Pick::All => listing.text("all", "true"),
+        Pick::Particles(picked) => {
+            let shown: Vec<String> = picked.iter().take(LISTED).map(u32::to_string).collect();
+            listing.some("particles", &shown, picked.len());
+        }
+        Pick::Box { min, max } => list_box(*min, *max, listing),
+        Pick::Sphere { centre, radius } => list_sphere(*centre, *radius, listing),
+    }
 }

@@ -2,8 +2,7 @@
 
 use super::field::Field;
 use super::table::Table;
-use super::tree::Value;
-use crate::Result;
+use crate::diagnostic::Result;
 
 /// Tables of what touches, moves by itself, comes or goes, and of how it starts.
 const TABLES: [&str; 8] = [
@@ -29,7 +28,7 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     }
     for table in ["supports", "loads"] {
         for (_, one) in root.named(table)? {
-            if let Some(field) = one.any_table()?.get("end") {
+            if let Some(field) = Table::any(&one)?.get("end") {
                 let problem = format!(
                     "{} stands in a scene with run.integrator = \"static\", where nothing ends",
                     field.path
@@ -65,10 +64,8 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
 /// The first `[table.NAME]` with this word for this key: the word.
 fn written<'a>(root: &Table<'a>, table: &str, key: &str, word: &str) -> Result<Option<Field<'a>>> {
     for (_, one) in root.named(table)? {
-        let field = one.any_table()?.get(key);
-        let is_it =
-            |field: &Field<'_>| matches!(&field.node.value, Value::Text(text) if text == word);
-        if let Some(field) = field.filter(is_it) {
+        let field = Table::any(&one)?.get(key);
+        if let Some(field) = field.filter(|field| field.is(word)) {
             return Ok(Some(field));
         }
     }

@@ -1,44 +1,112 @@
 //! `[supports.NAME]`
 
+use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time, until};
 use super::field::Field;
-use super::load::{end, factor, factor_from_zero, over_time};
+use super::listing::Listing;
 use super::names::suggestion;
-use super::targets::Targets;
+use super::numbers::quantity;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use super::targets::{OF, Targets};
 use super::tree::Value;
-use super::{Hold, Support};
-use crate::Result;
-use crate::units::{ANGLE, ANGULAR_VELOCITY, Dimension, LENGTH, VELOCITY};
 
-const KEYS: [&str; 7] = [
-    "of",
-    "fixed",
-    "velocity",
-    "displacement",
-    "ramp",
-    "table",
-    "end",
-];
+use crate::diagnostic::Result;
+use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
+
+/// What holds one degree of freedom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hold {
+    /// Does not move.
+    Fixed,
+    /// Moves at this velocity times the factor, m/s or rad/s.
+    Velocity(f64),
+    /// Is displaced by this times the factor, m or rad.
+    Displacement(f64),
+}
+
+/// A support: holds degrees of freedom of a set of particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// `of`: a set, a body or `all`.
+    pub of: String,
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all are free. Length 6.
+    pub holds: [Option<Hold>; 6],
+    /// `ramp` or `table`, for velocities and displacements.
+    pub factor: Factor,
+    /// `end`: from this time on the freedoms are free, s. Not before the factor's last change.
+    /// None: never.
+    pub end_s: Option<f64>,
+}
+
+pub(super) static SUPPORT: Schema = Schema {
+    title: "[supports.NAME]",
+    doc: "Holds or moves each particle of a set along x, y, z and about them: rx, ry, rz.",
+    keys: &[
+        OF,
+        Key::new(
+            "fixed",
+            Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]),
+            "Freedoms that do not move: all, or a list such as `[\"x\", \"rz\"]`.",
+        ),
+        Key::table(
+            "velocity",
+            &VELOCITIES,
+            "Freedoms that move, times the factor.",
+        ),
+        Key::table(
+            "displacement",
+            &DISPLACEMENTS,
+            "Freedoms that are displaced, times the factor; needs a `ramp` or `table` that begins at 0.",
+        ),
+        RAMP,
+        TABLE,
+        until(
+            "From then on the freedoms are free; not before the last change of `ramp` or `table`.",
+        ),
+    ],
+};
+
+pub(super) static VELOCITIES: Schema = Schema {
+    title: "Velocities of freedoms",
+    doc: "Velocities of freedoms.",
+    keys: &[
+        Key::quantity("x", &VELOCITY, "Along x.").otherwise("free"),
+        Key::quantity("y", &VELOCITY, "Along y.").otherwise("free"),
+        Key::quantity("z", &VELOCITY, "Along z.").otherwise("free"),
+        Key::quantity("rx", &ANGULAR_VELOCITY, "About x.").otherwise("free"),
+        Key::quantity("ry", &ANGULAR_VELOCITY, "About y.").otherwise("free"),
+        Key::quantity("rz", &ANGULAR_VELOCITY, "About z.").otherwise("free"),
+    ],
+};
+
+pub(super) static DISPLACEMENTS: Schema = Schema {
+    title: "Displacements of freedoms",
+    doc: "Displacements of freedoms.",
+    keys: &[
+        Key::quantity("x", &LENGTH, "Along x.").otherwise("free"),
+        Key::quantity("y", &LENGTH, "Along y.").otherwise("free"),
+        Key::quantity("z", &LENGTH, "Along z.").otherwise("free"),
+        Key::quantity("rx", &ANGLE, "About x.").otherwise("free"),
+        Key::quantity("ry", &ANGLE, "About y.").otherwise("free"),
+        Key::quantity("rz", &ANGLE, "About z.").otherwise("free"),
+    ],
+};
 
 /// The degrees of freedom of a particle: along x, y, z, then about x, y, z.
 pub(super) const FREEDOMS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> {
-    let table = field.table(&KEYS)?;
-    let of = targets.name(&table.need("of", "\"NAME\", a set, a body or \"all\"")?)?;
+    let table = Table::of(field, &SUPPORT)?;
+    let of = targets.name(&table.need("of")?)?;
     let mut holds = [None; 6];
     if let Some(field) = table.get("fixed") {
         fix(&field, &mut holds)?;
     }
     if let Some(field) = table.get("velocity") {
-        move_by(
-            &field,
-            [&VELOCITY, &ANGULAR_VELOCITY],
-            Hold::Velocity,
-            &mut holds,
-        )?;
+        move_by(&field, &VELOCITIES, Hold::Velocity, &mut holds)?;
     }
     if let Some(field) = table.get("displacement") {
-        move_by(&field, [&LENGTH, &ANGLE], Hold::Displacement, &mut holds)?;
+        move_by(&field, &DISPLACEMENTS, Hold::Displacement, &mut holds)?;
     }
     if holds.iter().all(Option::is_none) {
         let problem = format!("{} holds nothing", table.path);
@@ -85,14 +153,14 @@ fn fix(field: &Field<'_>, holds: &mut [Option<Hold>; 6]) -> Result<()> {
     Ok(())
 }
 
-/// `{ x = ..., rz = ... }`, in the dimensions of moves and of turns.
+/// `{ x = ..., rz = ... }`
 fn move_by(
     field: &Field<'_>,
-    [along, about]: [&Dimension; 2],
+    freedoms: &'static Schema,
     kind: impl Fn(f64) -> Hold,
     holds: &mut [Option<Hold>; 6],
 ) -> Result<()> {
-    let table = field.any_table()?;
+    let table = Table::any(field)?;
     if table.entries.is_empty() {
         let problem = format!("{} is an empty table", field.path);
         return Err(field.refuse(
@@ -109,10 +177,10 @@ fn move_by(
         let place = table.get(key).unwrap_or(field.clone());
         return Err(place.refuse(problem, suggestion(key, FREEDOMS.into_iter())));
     }
+    let table = Table::of(field, freedoms)?;
     for (at, freedom) in FREEDOMS.iter().enumerate() {
         if let Some(field) = table.get(freedom) {
-            let value = field.quantity(if at < 3 { along } else { about })?;
-            hold(&field, freedom, &mut holds[at], kind(value))?;
+            hold(&field, freedom, &mut holds[at], kind(table.read(freedom)?))?;
         }
     }
     Ok(())
@@ -130,4 +198,27 @@ fn hold(field: &Field<'_>, freedom: &str, place: &mut Option<Hold>, new: Hold) -
     }
     *place = Some(new);
     Ok(())
+}
+
+pub(super) fn list(support: &Support, listing: &mut Listing) {
+    listing.text("of", &support.of);
+    for (at, (freedom, hold)) in FREEDOMS.iter().zip(&support.holds).enumerate() {
+        let unit = |units: [&'static str; 2]| if at < 3 { units[0] } else { units[1] };
+        let text = match hold {
+            None => "free".to_owned(),
+            Some(Hold::Fixed) => "fixed".to_owned(),
+            Some(Hold::Velocity(velocity)) => {
+                format!("velocity {}", quantity(*velocity, unit(["m/s", "rad/s"])))
+            }
+            Some(Hold::Displacement(displacement)) => {
+                format!(
+                    "displacement {}",
+                    quantity(*displacement, unit(["m", "rad"]))
+                )
+            }
+        };
+        listing.text(freedom, text);
+    }
+    factor::list(&support.factor, listing);
+    listing.value("end", &support.end_s);
 }

@@ -5,8 +5,18 @@ use std::collections::BTreeMap;
 use super::field::Field;
 use super::names::{ALL, FRAGMENTS, suggestion};
 use super::presence::Presence;
-use super::{ParticleSet, Wall};
-use crate::{Diagnostic, Result};
+use super::schema::Key;
+use super::set::ParticleSet;
+use super::wall::Wall;
+use crate::diagnostic::{Diagnostic, Result};
+
+/// The key `of` of supports, loads and `[initial]`.
+pub(super) const OF: Key = Key::text(
+    "of",
+    "a set, a body or `all`",
+    "The particles that it acts on.",
+)
+.required("\"NAME\", a set, a body or \"all\"");
 
 /// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can only be measured.
 pub(super) struct Targets<'a> {

@@ -1,50 +1,96 @@
 //! `[test]`: a quasi-static laboratory test.
 
 use std::collections::BTreeMap;
+use std::ops::Bound::{Included, Unbounded};
 
-use super::direction::direction;
 use super::field::Field;
+use super::listing::Listing;
+use super::material::poisson_ratio;
 use super::names::suggestion;
 use super::presence::Presence;
+use super::schema::{Key, Kind, Schema, words_of};
+use super::set::ParticleSet;
+use super::support::Support;
 use super::table::Table;
-use super::tree::Value;
-use super::{ParticleSet, Support, Wall, WallMotion};
-use crate::Result;
-use crate::units::{AREA, LENGTH, NUMBER, STRESS, VELOCITY};
+use super::wall::{Wall, WallMotion};
+use crate::diagnostic::Result;
+use crate::units::{AREA, LENGTH, STRESS, VELOCITY};
 
-const KEYS: [&str; 17] = [
-    "kind",
-    "body",
-    "moves",
-    "direction",
-    "stroke",
-    "rate",
-    "periods",
-    "rate_check",
-    "young_modulus",
-    "poisson_ratio",
-    "strength",
-    "span",
-    "load_distance",
-    "width",
-    "height",
-    "length",
-    "area",
-];
+pub(super) static TEST: Schema = Schema {
+    title: "[test]",
+    doc: "A laboratory test. `run.end_time` may be left out then.",
+    keys: &[
+        Key::new("kind", Kind::Word(|| words_of(&KINDS)), "Which test.").required("\"four-point-bending\""),
+        Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
+        Key::new(
+            "moves",
+            Kind::List(&Kind::Text("a name in [walls], for tension in [sets]")),
+            "Walls that load, which do not move otherwise; for tension sets that are gripped and pulled.",
+        )
+        .required("[\"NAME\"], walls that load the body"),
+        Key::new(
+            "direction",
+            Kind::Direction("a direction"),
+            "In which they move; for tension along x, y or z. Its length does not matter.",
+        )
+        .required("[0, 0, -1], in which they move"),
+        Key::quantity(
+            "stroke",
+            &LENGTH,
+            "How far they move at most; the run ends sooner when the body has broken.",
+        )
+        .positive()
+        .required("\"4 mm\""),
+        Key::new(
+            "rate",
+            Kind::Auto(&VELOCITY),
+            "Their velocity; `auto`: such that the stroke takes `periods`.",
+        )
+        .positive()
+        .remedy("write \"auto\" or a velocity such as \"0.2 mm/s\"")
+        .or_word("auto"),
+        Key::number("periods", "Periods of the body's lowest frequency.")
+            .within(Included(1.0), Unbounded)
+            .remedy("a usual value is 20: more are slower, and nearer to rest")
+            .or(20.0),
+        Key::flag("rate_check", true, "The test is done at twice the rate as well."),
+        Key::quantity(
+            "young_modulus",
+            &STRESS,
+            "That of the body as a whole, to compare with.",
+        )
+        .positive(),
+        poisson_ratio("That of the body as a whole, for its shear in bending.").or(0.3),
+        Key::quantity("strength", &STRESS, "That of the body as a whole, to compare with.")
+            .positive(),
+        size("span", "Between the supports of a beam."),
+        size("load_distance", "Between the two loading pins."),
+        size("width", "Of a beam, or thickness of a disc."),
+        size("height", "Of a beam, or diameter of a disc."),
+        size("length", "Of a body that is pressed or pulled."),
+        Key::quantity("area", &AREA, "Of its section.")
+            .positive()
+            .otherwise(MEASURED),
+    ],
+};
+
+const MEASURED: &str = "measured on walls and body";
+
+/// A length of the test.
+const fn size(name: &'static str, doc: &'static str) -> Key {
+    Key::quantity(name, &LENGTH, doc)
+        .positive()
+        .otherwise(MEASURED)
+}
 
 /// Every kind of test and its name in a scene.
-pub(super) const KINDS: [(&str, TestKind); 5] = [
+const KINDS: [(&str, TestKind); 5] = [
     ("four-point-bending", TestKind::FourPointBending),
     ("three-point-bending", TestKind::ThreePointBending),
     ("brazilian-disc", TestKind::BrazilianDisc),
     ("compression", TestKind::Compression),
     ("tension", TestKind::Tension),
 ];
-
-/// `periods` unless given.
-const PERIODS: f64 = 20.0;
-/// `poisson_ratio` unless given.
-const POISSON_RATIO: f64 = 0.3;
 
 /// Which laboratory test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,10 +173,8 @@ pub(super) struct Known<'a> {
 }
 
 pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
-    let table = field.table(&KEYS)?;
-    let kind = table
-        .need("kind", "\"four-point-bending\"")?
-        .choice(&KINDS)?;
+    let table = Table::of(field, &TEST)?;
+    let kind = table.need("kind")?.choice(&KINDS)?;
     refuse_dimensions(&table, kind)?;
     let pulls = kind == TestKind::Tension;
     let example = if pulls {
@@ -138,47 +182,59 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     } else {
         "[\"NAME\"], walls that load the body"
     };
-    let moves = table.need("moves", example)?;
+    let moves = table.need_such("moves", example)?;
     let moves = all_moved(&moves, pulls, known)?;
-    let along = table.need("direction", "[0, 0, -1], in which they move")?;
-    let direction = direction(&along, "a direction")?;
+    let direction: [f64; 3] = table.read("direction")?;
     if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
         let remedy = "write [1, 0, 0], [0, 1, 0], [0, 0, 1] or the opposite";
+        let along = table.need("direction")?;
         return Err(along.wrong("along x, y or z, as what a support moves", remedy));
     }
-    let length = |key| table.read(key, |field: Field<'_>| field.positive(&LENGTH));
-    let stress = |key| table.read(key, |field: Field<'_>| field.positive(&STRESS));
     Ok(Test {
         kind,
         body: body(&table, known)?,
         moves,
         direction,
-        stroke_m: table.need("stroke", "\"4 mm\"")?.positive(&LENGTH)?,
-        rate_m_s: match table.get("rate") {
-            Some(field) => rate(&field)?,
-            None => None,
-        },
-        periods: table
-            .read("periods", |field| {
-                let remedy = "a usual value is 20: more are slower, and nearer to rest";
-                field.limited(&NUMBER, |periods| periods >= 1.0, "at least 1", remedy)
-            })?
-            .unwrap_or(PERIODS),
-        rate_check: table
-            .read("rate_check", |field| field.boolean())?
-            .unwrap_or(true),
-        young_modulus_pa: stress("young_modulus")?,
-        poisson_ratio: table
-            .read("poisson_ratio", |field| field.poisson_ratio())?
-            .unwrap_or(POISSON_RATIO),
-        strength_pa: stress("strength")?,
-        span_m: length("span")?,
-        load_distance_m: length("load_distance")?,
-        width_m: length("width")?,
-        height_m: length("height")?,
-        length_m: length("length")?,
-        area_m2: table.read("area", |field| field.positive(&AREA))?,
+        stroke_m: table.read("stroke")?,
+        rate_m_s: table.read("rate")?,
+        periods: table.read("periods")?,
+        rate_check: table.read("rate_check")?,
+        young_modulus_pa: table.read("young_modulus")?,
+        poisson_ratio: table.read("poisson_ratio")?,
+        strength_pa: table.read("strength")?,
+        span_m: table.read("span")?,
+        load_distance_m: table.read("load_distance")?,
+        width_m: table.read("width")?,
+        height_m: table.read("height")?,
+        length_m: table.read("length")?,
+        area_m2: table.read("area")?,
     })
+}
+
+pub(super) fn list(test: &Test, listing: &mut Listing) {
+    listing.text("kind", test.kind.name());
+    listing.text("body", &test.body);
+    listing.text("moves", test.moves.join(", "));
+    listing.value("direction", &test.direction);
+    listing.value("stroke", &test.stroke_m);
+    listing.value("rate", &test.rate_m_s);
+    listing.value("periods", &test.periods);
+    listing.value("rate_check", &test.rate_check);
+    listing.value("young_modulus", &test.young_modulus_pa);
+    listing.value("poisson_ratio", &test.poisson_ratio);
+    listing.value("strength", &test.strength_pa);
+    for (key, given) in [
+        ("span", test.span_m),
+        ("load_distance", test.load_distance_m),
+        ("width", test.width_m),
+        ("height", test.height_m),
+        ("length", test.length_m),
+        ("area", test.area_m2),
+    ] {
+        if test.kind.dimensions().contains(&key) {
+            listing.value(key, &given);
+        }
+    }
 }
 
 /// Refuses dimensions that mean nothing to the kind of test.
@@ -265,17 +321,4 @@ fn moved(item: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<String> {
         return Err(item.refuse(problem, remedy));
     }
     Ok(name.to_owned())
-}
-
-/// None for "auto".
-fn rate(field: &Field<'_>) -> Result<Option<f64>> {
-    let remedy = "write \"auto\" or a velocity such as \"0.2 mm/s\"";
-    if matches!(&field.node.value, Value::Text(text) if text == "auto") {
-        return Ok(None);
-    }
-    if field.is_word() {
-        return Err(field.wrong("\"auto\" or a velocity", remedy));
-    }
-    let rate = field.limited(&VELOCITY, |rate| rate > 0.0, "more than 0 m/s", remedy)?;
-    Ok(Some(rate))
 }

@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use crate::{Diagnostic, Result};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Where a value comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]

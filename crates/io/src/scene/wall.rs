@@ -3,37 +3,93 @@
 mod motion;
 mod shape;
 
+pub use motion::WallMotion;
+pub use shape::WallShape;
+
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::direction::rotation;
+use super::body::BodyEntry;
+use super::direction::ROTATION;
+use super::factor::{RAMP, TABLE};
 use super::field::Field;
+use super::listing::Listing;
+use super::material::Material;
 use super::names::meaning;
+use super::schema::{Key, Schema};
+use super::set::ParticleSet;
+use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
-use super::{BodyEntry, Factor, Material, ParticleSet};
-use crate::Result;
-use crate::units::{ANGLE, LENGTH, VELOCITY};
+use crate::diagnostic::Result;
+use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-const KEYS: [&str; 18] = [
-    "plane",
-    "box",
-    "cylinder",
-    "stl",
-    "unit",
-    "scale",
-    "material",
-    "rotation",
-    "tilt",
-    "pivot",
-    "surface_velocity",
-    "velocity",
-    "angular_velocity",
-    "displacement",
-    "turn",
-    "servo",
-    "ramp",
-    "table",
-];
+pub(super) static WALL: Schema = Schema {
+    title: "[walls.NAME]",
+    doc: "What particles bounce off, of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
+          a servo.",
+    keys: &[
+        Key::table("plane", &shape::PLANE, "A plane without end."),
+        Key::table("box", &BOX, "Solid, with particles outside."),
+        Key::table(
+            "cylinder",
+            &CYLINDER,
+            "A solid pin, with particles outside.",
+        ),
+        Key::text(
+            "stl",
+            "a file",
+            "Triangles, from the folder of the scene, with `unit`.",
+        ),
+        UNIT,
+        Key::number("scale", "Of `stl`: a factor on all its lengths.")
+            .positive()
+            .or(1.0),
+        Key::text("material", "a name in [materials]", "Its material.")
+            .required("\"NAME\", a name in [materials]"),
+        Key::table(
+            "rotation",
+            &ROTATION,
+            "It is turned about the pivot, then tilted.",
+        )
+        .or(0.0),
+        Key::quantity(
+            "tilt",
+            &ANGLE,
+            "It is turned about the y axis through the pivot.",
+        )
+        .or(0.0),
+        Key::vector("pivot", &LENGTH, "What it turns about."),
+        Key::vector(
+            "surface_velocity",
+            &VELOCITY,
+            "Of a belt: its surface moves, its shape stays; in space, not turned with the wall.",
+        ),
+        Key::vector("velocity", &VELOCITY, "Of the pivot."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "About the pivot, which moves along.",
+        ),
+        Key::vector(
+            "displacement",
+            &LENGTH,
+            "Of the pivot. Needs a `ramp` or `table` that begins at 0.",
+        ),
+        Key::table(
+            "turn",
+            &ROTATION,
+            "About the pivot. Needs a `ramp` or `table` that begins at 0.",
+        )
+        .or(0.0),
+        Key::table(
+            "servo",
+            &motion::SERVO,
+            "Moves such that it pushes as wanted.",
+        ),
+        RAMP,
+        TABLE,
+    ],
+};
 
 /// What particles bounce off. It moves as it is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,79 +108,6 @@ pub struct Wall {
     pub motion: WallMotion,
     /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given. Length 3.
     pub surface_velocity_m_s: [f64; 3],
-}
-
-/// What a wall looks like, before it is turned.
-#[derive(Debug, Clone, PartialEq)]
-pub enum WallShape {
-    /// `plane = { point, normal }`, without end.
-    Plane {
-        /// A point of it, m. Length 3.
-        point_m: [f64; 3],
-        /// Of length 1, into the free side. Length 3.
-        normal: [f64; 3],
-    },
-    /// `box = { min, max }`: solid, with particles outside.
-    Box {
-        /// Smallest corner, m. Length 3.
-        min: [f64; 3],
-        /// Largest corner, m: above the smallest along every axis. Length 3.
-        max: [f64; 3],
-    },
-    /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
-    Cylinder {
-        /// Centre of one end, m. Length 3.
-        from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere. Length 3.
-        to_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
-    /// `stl`, `unit` and `scale`: triangles.
-    Stl {
-        /// `stl`: the file, resolved against the folder of the scene.
-        path: PathBuf,
-        /// `unit`: size of the file's unit, m.
-        unit_m: f64,
-        /// `scale`: a factor on all lengths, 1 unless given.
-        scale: f64,
-    },
-}
-
-/// How a wall moves.
-#[derive(Debug, Clone, PartialEq)]
-pub enum WallMotion {
-    /// Not at all.
-    Fixed,
-    /// `velocity` and `angular_velocity`, with `ramp` or `table`.
-    Velocity {
-        /// Of the pivot, m/s. Length 3.
-        velocity_m_s: [f64; 3],
-        /// About the pivot, which moves along, rad/s. Length 3.
-        spin_rad_s: [f64; 3],
-        /// On both, over time.
-        factor: Factor,
-    },
-    /// `displacement` and `turn`, with `ramp` or `table`.
-    Displacement {
-        /// Of the pivot, m. Length 3.
-        displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
-        turn_rad: [f64; 3],
-        /// On both, over time.
-        factor: Factor,
-    },
-    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
-    Servo {
-        /// `force`: what it is to push with along `direction`, N; below 0 against it.
-        force_n: f64,
-        /// `direction`, of length 1. Length 3.
-        direction: [f64; 3],
-        /// `velocity`: its largest, m/s; more than 0.
-        largest_velocity_m_s: f64,
-        /// On the force, over time.
-        factor: Factor,
-    },
 }
 
 pub(super) fn read_all(
@@ -154,24 +137,26 @@ pub(super) fn read_all(
 }
 
 fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path) -> Result<Wall> {
-    let table = field.table(&KEYS)?;
+    let table = Table::of(field, &WALL)?;
     Ok(Wall {
         shape: shape::read(&table, folder)?,
         material: table
-            .need("material", "\"NAME\", a name in [materials]")?
+            .need("material")?
             .reference(materials.keys(), "materials")?,
-        rotation_rad: table
-            .read("rotation", |field| rotation(&field))?
-            .unwrap_or_default(),
-        tilt_rad: table
-            .read("tilt", |field| field.quantity(&ANGLE))?
-            .unwrap_or_default(),
-        pivot_m: table
-            .read("pivot", |field| field.vector(&LENGTH))?
-            .unwrap_or_default(),
+        rotation_rad: table.read("rotation")?,
+        tilt_rad: table.read("tilt")?,
+        pivot_m: table.read("pivot")?,
         motion: motion::read(&table)?,
-        surface_velocity_m_s: table
-            .read("surface_velocity", |field| field.vector(&VELOCITY))?
-            .unwrap_or_default(),
+        surface_velocity_m_s: table.read("surface_velocity")?,
     })
+}
+
+pub(super) fn list(wall: &Wall, listing: &mut Listing) {
+    shape::list(&wall.shape, listing);
+    listing.text("material", &wall.material);
+    listing.value("pivot", &wall.pivot_m);
+    listing.value("rotation", &wall.rotation_rad);
+    listing.value("tilt", &wall.tilt_rad);
+    listing.value("surface_velocity", &wall.surface_velocity_m_s);
+    motion::list(&wall.motion, listing);
 }

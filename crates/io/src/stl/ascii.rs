@@ -1,8 +1,8 @@
 //! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop endfacet)* endsolid NAME`, any number
 //! of times; upper or lower case, any white space. Normals are skipped unread: many programs write them badly or not at all.
 
-use super::{Facets, REMEDY_AGAIN, is_blank};
-use crate::{Diagnostic, Result};
+use super::facets::{Facets, REMEDY_AGAIN, is_blank};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Reads the facets of all `solid` blocks in `text`, which begins with "solid".
 pub(super) fn read(text: &[u8]) -> Result<Facets> {

@@ -8,13 +8,14 @@ use super::nesting::{self, Place};
 use super::rays::Rays;
 use super::refusals::{no_volume, odd_edges, one_sided, open_edges};
 use super::shells::connect;
+use super::solid::{Repairs, Shell, Surface};
 use super::union_volume::{Excess, excess};
 use super::vector::{bounds, distance};
 use super::warnings::{Remarks, sentences};
-use super::{Repairs, Shell, duplicates, holes, t_junctions, weld};
+use super::{duplicates, holes, t_junctions, weld};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a;
 use crate::stl::read_facets;
-use crate::{Diagnostic, Result, Surface};
 use std::ops::Range;
 
 /// How the numbers of an STL file are to be read.

@@ -2,8 +2,8 @@
 
 use super::mesh::Mesh;
 use super::vector::{Point, bounds, subtract};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
-use crate::{Diagnostic, Result};
 
 /// Shapes smaller or larger than this, in units of the file or in metres, are refused: their volume would not be a number.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;

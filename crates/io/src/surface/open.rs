@@ -7,9 +7,9 @@ use super::sets::Sets;
 use super::shells::join;
 use super::vector::{bounds, distance};
 use super::{t_junctions, weld};
+use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a;
 use crate::stl::read_facets;
-use crate::{Diagnostic, Result};
 
 /// A triangle lower than this share of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;

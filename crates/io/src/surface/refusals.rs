@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::holes::{Hole, LONGEST_BOUNDARY};
 use super::mesh::{Edges, Mesh};
 use super::vector::mean;
-use crate::Diagnostic;
+use crate::diagnostic::Diagnostic;
 
 /// Edges with three, five, ... facets.
 pub(super) fn odd_edges(mesh: &Mesh, edges: &Edges, frame: &Frame) -> Option<Diagnostic> {

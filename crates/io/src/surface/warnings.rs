@@ -1,7 +1,7 @@
 //! What was done to a surface, in words.
 
 use super::refusals::counted;
-use super::{Repairs, Shell};
+use super::solid::{Repairs, Shell};
 use crate::units::{show_length, significant};
 
 /// What the repairs alone do not tell.
@@ -27,6 +27,15 @@ pub(super) fn sentences(repairs: &Repairs, shells: &[Shell], remarks: &Remarks) 
             sentences.push(sentence());
         }
     };
+    of_facets(repairs, remarks, &mut say);
+    of_parts(repairs, shells, remarks, &mut say);
+    sentences
+}
+
+/// Takes a sentence and whether it is to be said.
+type Say<'a> = &'a mut dyn FnMut(bool, &dyn Fn() -> String);
+
+fn of_facets(repairs: &Repairs, remarks: &Remarks, say: Say<'_>) {
     say(repairs.welded_vertices > 0, &|| {
         let corners = counted(repairs.welded_vertices, "vertex was", "vertices were");
         format!(
@@ -91,6 +100,9 @@ pub(super) fn sentences(repairs: &Repairs, shells: &[Shell], remarks: &Remarks) 
             )
         }
     });
+}
+
+fn of_parts(repairs: &Repairs, shells: &[Shell], remarks: &Remarks, say: Say<'_>) {
     let cavities = shells.iter().filter(|shell| shell.is_cavity).count();
     let parts = shells.len() - cavities;
     say(parts > 1, &|| {
@@ -126,5 +138,4 @@ pub(super) fn sentences(repairs: &Repairs, shells: &[Shell], remarks: &Remarks) 
             "{what}: the union of what they enclose is filled; its volume is known within about {error} %."
         )
     });
-    sentences
 }

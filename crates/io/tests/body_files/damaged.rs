@@ -4,8 +4,8 @@ use dem_io::Body;
 use dem_io::body::{csv, lammps, txt, vtp};
 use proptest::prelude::*;
 
-use crate::bodies::triangle;
-use crate::every_reader::every_reader;
+use super::bodies::triangle;
+use super::every_reader::every_reader;
 
 fn vtp_bytes() -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dem_io::body::{read_body, write_body};
 
-use crate::bodies::triangle;
+use super::bodies::triangle;
 
 #[test]
 fn an_unknown_ending_lists_the_known_ones() {

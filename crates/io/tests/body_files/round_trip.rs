@@ -6,7 +6,7 @@ use dem_io::Body;
 use dem_io::body::{About, csv, lammps, read_body, txt, vtp, write_body};
 use proptest::prelude::*;
 
-use crate::bodies::{any_body, bits, triangle, usual_body, with_derived_bonds};
+use super::bodies::{any_body, bits, triangle, usual_body, with_derived_bonds};
 
 fn written(write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -5,7 +5,7 @@ use std::fs;
 use dem_io::results::{Existing, Line, Plot, ResultsFolder, write_json};
 use tempfile::tempdir;
 
-use crate::{contents, results_in};
+use super::{contents, results_in};
 
 #[test]
 fn names_in_the_folder() {

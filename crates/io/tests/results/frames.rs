@@ -9,7 +9,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 use tempfile::tempdir;
 
-use crate::{contents, results_in};
+use super::{contents, results_in};
 
 const POSITIONS: [[f64; 3]; 3] = [[0.0; 3], [1e-3, 0.0, 0.0], [-0.0, 1e-3, 1e-4]];
 const VELOCITIES: [[f64; 3]; 3] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]];

@@ -5,7 +5,7 @@ use std::fs;
 use dem_io::results::PictureFiles;
 use tempfile::tempdir;
 
-use crate::{contents, results_in};
+use super::{contents, results_in};
 
 #[test]
 fn pictures_are_numbered_and_go_on() {

@@ -8,11 +8,9 @@ use dem_io::{read_scene, scene_from_text};
 const FEWEST_BAD: usize = 200;
 const FEWEST_GOOD: usize = 11;
 
-fn files(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/scene")
-        .join(folder);
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
+/// The scenes of a folder, sorted.
+pub(crate) fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
@@ -21,9 +19,17 @@ fn files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
+fn own(folder: &str) -> Vec<PathBuf> {
+    files(
+        &Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/scene")
+            .join(folder),
+    )
+}
+
 #[test]
 fn every_good_file_is_read() {
-    let files = files("good");
+    let files = own("good");
     assert!(files.len() >= FEWEST_GOOD, "{} files", files.len());
     for path in files {
         if let Err(error) = read_scene(&path, &[]) {
@@ -34,7 +40,7 @@ fn every_good_file_is_read() {
 
 #[test]
 fn every_bad_file_is_refused_with_the_message_beside_its_line() {
-    let files = files("bad");
+    let files = own("bad");
     assert!(files.len() >= FEWEST_BAD, "{} files", files.len());
     let mut wrong = String::new();
     for path in files {

@@ -5,7 +5,7 @@ use dem_io::scene::{
 };
 use dem_io::{read_scene, scene_from_text};
 
-use crate::good::{assert_near, folder, good};
+use super::good::{assert_near, folder, good};
 
 /// The second example of the documentation goes on from the first, and each way that stands in a comment is one as well.
 #[test]

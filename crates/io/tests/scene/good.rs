@@ -56,7 +56,7 @@ fn the_documentation() {
 
 #[test]
 fn the_documentation_lists_every_unit() {
-    let text = include_str!("../../../../doc/scenes.md");
+    let text = include_str!("../../../../doc/scene-keys.md");
     for dimension in DIMENSIONS {
         let units: Vec<String> = dimension
             .units
@@ -604,6 +604,22 @@ test.height                     measured on walls and body
     assert!(!text.contains("test.span"));
 }
 
+#[test]
+fn what_a_laboratory_test_is_told() {
+    let test = good("four-point-test.toml").test.unwrap();
+    assert_eq!((test.rate_m_s, test.periods), (Some(0.002), 5.0));
+    assert!(!test.rate_check);
+    assert_eq!(
+        (test.young_modulus_pa, test.poisson_ratio),
+        (Some(12e6), 0.25)
+    );
+    assert_eq!(test.strength_pa, Some(2e5));
+    assert_eq!((test.span_m, test.load_distance_m), (Some(2.0), Some(1.0)));
+    assert_eq!((test.width_m, test.height_m), (Some(2.0), Some(2.0)));
+    let test = good("compression-test.toml").test.unwrap();
+    assert_eq!((test.length_m, test.area_m2), (Some(2.0), Some(3.1)));
+}
+
 /// The echo names every key of the file that says them all.
 #[test]
 fn values_in_words() {
@@ -647,6 +663,10 @@ fn values_in_words() {
         "relaxation.enabled false",
         "relaxation.min_overlap 0",
         "search.skin 0.5",
+        "sleep.speed 0.002 m/s",
+        "sleep.after 0.01 s",
+        "supports.swing.rx velocity 0.10471975512 rad/s",
+        "supports.turn.z displacement 1e-6 m",
         "bonds.parallel.kappa 2.5",
         "bonds.parallel.damping.force 3 N s/m",
         "bodies.bar.particles 3 in the scene",

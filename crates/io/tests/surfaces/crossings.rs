@@ -1,7 +1,7 @@
 //! Parts that cross or overlap: the union is meant.
 
-use crate::solids::{ascii, binary, block, turned};
-use crate::{METRES, read};
+use super::solids::{ascii, binary, block, turned};
+use super::{METRES, read};
 
 #[test]
 fn overlapping_parts_form_their_union() {

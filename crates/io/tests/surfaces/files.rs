@@ -1,6 +1,6 @@
 //! The files of tests/shapes: what is right for each stands in the names of the tests.
 
-use crate::{FILL, METRES, assert_same_solid, assert_volume, read, refusal, shape, shape_bytes};
+use super::{FILL, METRES, assert_same_solid, assert_volume, read, refusal, shape, shape_bytes};
 use dem_io::surface::ReadSettings;
 
 /// Volume of a polyhedron of 5120 facets in a sphere of radius 10.

@@ -1,7 +1,7 @@
 //! Surfaces that are not closed: welded, split, filled or refused.
 
-use crate::solids::{self, Facet, ascii, binary, block};
-use crate::{FILL, METRES, assert_same_solid, assert_volume, read, refusal};
+use super::solids::{self, Facet, ascii, binary, block};
+use super::{FILL, METRES, assert_same_solid, assert_volume, read, refusal};
 
 /// A box whose upper face has one more vertex, in the middle of an edge that the side face does not split.
 pub(crate) fn block_with_t_junction() -> Vec<Facet> {

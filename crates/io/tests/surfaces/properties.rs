@@ -1,9 +1,9 @@
 //! What holds for any facets and any bytes.
 
-use crate::body::{self, assert_solid};
-use crate::gaps::block_with_t_junction;
-use crate::solids::{self, Facet, ascii, binary, block, moved, turned};
-use crate::{METRES, assert_same_solid, read, shape_bytes};
+use super::body::{self, assert_solid};
+use super::gaps::block_with_t_junction;
+use super::solids::{self, Facet, ascii, binary, block, moved, turned};
+use super::{METRES, assert_same_solid, read, shape_bytes};
 use dem_io::surface::surface_from_stl;
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Several shells: which are parts, which cavities, and which way round.
 
-use crate::solids::{Facet, ascii, binary, block, mirrored, moved, turned};
-use crate::{METRES, assert_same_solid, assert_volume, read};
+use super::solids::{Facet, ascii, binary, block, mirrored, moved, turned};
+use super::{METRES, assert_same_solid, assert_volume, read};
 
 #[test]
 fn two_solids_in_one_ascii_file_are_both_read() {

@@ -2,13 +2,13 @@
 
 use super::decode::{DAMAGED, Number, Values};
 use super::header::{Array, Counts, Role};
-use super::{
+use super::names::{
     BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
-use crate::body::{Body, Parts};
-use crate::results::stored_frame::{self as frame, StoredFrame};
-use crate::{Diagnostic, Result};
+use crate::body::parts::{Body, Parts};
+use crate::body::stored_frame::{self as frame, StoredFrame};
+use crate::diagnostic::{Diagnostic, Result};
 
 /// What has been read of a body so far.
 #[derive(Default)]

@@ -6,7 +6,7 @@ use std::io::{self, BufRead, Read};
 
 use super::decode::DAMAGED;
 use super::header::not_vtp;
-use crate::Diagnostic;
+use crate::diagnostic::Diagnostic;
 
 /// Bytes in front of the first element: a declaration, comments.
 const BEFORE_FIRST: u64 = 1 << 16;

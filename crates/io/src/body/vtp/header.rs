@@ -3,12 +3,12 @@
 use quick_xml::events::BytesStart;
 
 use super::decode::{DAMAGED, Scalar};
-use super::{
+use super::names::{
     BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM,
     RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
-use crate::results::stored_frame as frame;
-use crate::{Diagnostic, Result};
+use crate::body::stored_frame as frame;
+use crate::diagnostic::{Diagnostic, Result};
 
 /// What a file is read as: it says what its arrays are called.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -11,9 +11,9 @@ use super::decode::{
 };
 use super::guard::Guarded;
 use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged, not_vtp};
-use crate::body::Body;
-use crate::results::stored_frame::StoredFrame;
-use crate::{Diagnostic, Result};
+use crate::body::parts::Body;
+use crate::body::stored_frame::StoredFrame;
+use crate::diagnostic::{Diagnostic, Result};
 
 /// Reads a body from a .vtp file, which ends with the input.
 ///

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use super::contents::{Area, HEIGHT, WIDTH};
 use super::text::{shortened, width};
-use super::{Area, HEIGHT, WIDTH};
 use crate::text::for_page;
 
 const FONT: f64 = 12.0;

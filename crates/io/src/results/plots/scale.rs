@@ -1,6 +1,6 @@
 //! From values to places along an axis, and the ticks of it.
 
-use super::Axis;
+use super::contents::Axis;
 use super::text::width;
 
 /// Values beyond this are gaps: sums of them are not finite.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::Material;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::scene::field::Field;
+use crate::scene::material::Material;
 use crate::scene::names::suggestion;
 use crate::scene::tree::shortened;
-use crate::{Diagnostic, Result};
 
 /// The materials of `key`, sorted: it is split at the "-" that has a name of `materials` on both sides.
 ///

@@ -2,14 +2,18 @@
 
 use std::path::PathBuf;
 
+use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use super::values::in_si;
-use super::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
+use crate::diagnostic::{Diagnostic, Result};
+use crate::scene::body::BodySource;
 use crate::scene::names::suggestion;
+use crate::scene::read::scene_from_text;
+use crate::scene::root::SCENE;
+use crate::scene::root::Scene;
+use crate::scene::schema::{Key, Kind};
 use crate::scene::table::Table;
 use crate::scene::tree::Document;
-use crate::scene::{BodySource, Scene, scene_from_text};
 use crate::units::quantity;
-use crate::{Diagnostic, Result};
 
 /// The scene of `study`, whose file holds `text`, with these values laid over it.
 ///
@@ -22,7 +26,7 @@ pub fn scene_with<'a>(
 ) -> Result<Scene> {
     let name = study.scene.display().to_string();
     let document = Document::parse(&name, text)?;
-    let root = Table::root(&document)?;
+    let root = Table::root(&document, &SCENE)?;
     let (mut overrides, mut places, mut files) = (Vec::new(), Vec::new(), Vec::new());
     for setting in settings {
         match setting.path.strip_prefix(BODY) {
@@ -77,30 +81,17 @@ pub fn override_text(setting: &Setting) -> String {
 
 /// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it for a new one.
 fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
-    const NAMED: [&str; 12] = [
-        "materials",
-        "contacts",
-        "bonds",
-        "bodies",
-        "walls",
-        "sets",
-        "initial",
-        "supports",
-        "loads",
-        "regions",
-        "inlets",
-        "outlets",
-    ];
     let keys: Vec<&str> = setting.path.split('.').collect();
     let [kind, name, _, ..] = keys.as_slice() else {
         return Ok(());
     };
-    if !NAMED.contains(kind) && *kind != "measures" && *kind != "replacement" {
+    let is_named = |key: &Key| matches!(key.kind, Kind::Named(..));
+    if !SCENE.key(kind).is_some_and(is_named) {
         return Ok(());
     }
     let known: Vec<String> = match root.get(kind) {
         Some(field) => {
-            let table = field.any_table()?;
+            let table = Table::any(&field)?;
             table.entries.iter().map(|(name, _)| name.clone()).collect()
         }
         None => Vec::new(),

@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::values::{quoted, toml};
-use super::{BODY, Setting, Study, key, scene_with};
+use super::check::scene_with;
+use super::contents::{BODY, Setting, Study};
+use super::values::{key, quoted, toml};
+use crate::diagnostic::{Diagnostic, Result};
+use crate::scene::body::BodySource;
+use crate::scene::read::scene_from_text;
+use crate::scene::root::Scene;
 use crate::scene::tree::{Value, parse_value};
-use crate::scene::{BodySource, Scene, scene_from_text};
-use crate::{Diagnostic, Result};
 
 /// The text of a scene file `target` that is the scene of `study`, whose file holds `text`, with `settings`. Read back it is the same scene.
 ///

@@ -1,10 +1,13 @@
 //! What varies, and through which values: lists, ranges, several paths together.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-use super::{Axis, AxisValue, BODY, Setting, key, tidy};
-use crate::Result;
+use super::contents::{Axis, AxisValue, BODY, Setting};
+use super::keys::{RANGE, SPACINGS, TOGETHER, VALUES};
+use crate::diagnostic::Result;
 use crate::scene::field::Field;
+use crate::scene::names::well_formed;
+use crate::scene::table::Table;
 use crate::scene::tree::{Node, Value, shortened};
 use crate::units::{DIMENSIONS, quantity};
 
@@ -38,8 +41,8 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
             });
         }
         Value::Table(entries) if entries.iter().any(|(key, _)| key == "values") => {
-            let table = field.table(&["values", "size", "names"])?;
-            let values = table.need("values", "[0.9, 0.5]")?.items()?;
+            let table = Table::of(field, &VALUES)?;
+            let values = table.need("values")?.items()?;
             (values, table.get("size"), table.get("names"))
         }
         Value::Table(_) => {
@@ -70,10 +73,10 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
 
 /// The axis of several paths that change together: lists of the same length, and perhaps `size` and `names`.
 pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<Axis> {
-    let table = field.any_table()?;
+    let table = Table::any(field)?;
     let mut values: Vec<AxisValue> = Vec::new();
     for (path, node) in table.entries {
-        if path == "size" || path == "names" {
+        if TOGETHER.key(path).is_some() {
             continue;
         }
         let list = table.field(path, node);
@@ -113,7 +116,7 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
 
 /// The settings of a table of paths.
 pub(super) fn settings(field: &Field<'_>, folder: &Path) -> Result<Vec<Setting>> {
-    let table = field.any_table()?;
+    let table = Table::any(field)?;
     let settings = table.entries.iter();
     settings
         .map(|(path, node)| {
@@ -193,8 +196,8 @@ fn with_sizes(
 
 /// The values of `{ from, to, count, spacing }`, as TOML and for a person.
 fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
-    let table = field.table(&["from", "to", "count", "spacing"])?;
-    let [from, to] = [table.need("from", "0.1")?, table.need("to", "0.9")?];
+    let table = Table::of(field, &RANGE)?;
+    let [from, to] = [table.need("from")?, table.need("to")?];
     let ends = [&from, &to].map(|end| {
         split(end.node).ok_or_else(|| {
             let remedy = format!("write it as {path} wants it, such as \"1 us\" or 0.5");
@@ -215,16 +218,15 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
         );
         return Err(to.refuse(problem, "write both in the same unit"));
     }
-    let counted = table.need("count", "5")?;
-    let count = counted.count("write how many values there are, both ends among them")?;
+    let counted = table.need("count")?;
+    let remedy = "write how many values there are, both ends among them";
+    let count = counted.whole(1, None, remedy)?;
     if !(2..=MOST_VALUES).contains(&count) {
         let limit = format!("from 2 to {MOST_VALUES}");
         return Err(counted.wrong(&limit, "write how many values there are"));
     }
     let log = table
-        .read("spacing", |field| {
-            field.choice(&[("linear", false), ("log", true)])
-        })?
+        .read_by("spacing", |field| field.choice(&SPACINGS))?
         .unwrap_or(false);
     if log && (first <= 0.0 || last <= 0.0) {
         let problem = format!("{} has no logarithm at 0 and below", field.path);
@@ -361,4 +363,30 @@ pub(super) fn quoted(text: &str) -> String {
     }
     out.push('"');
     out
+}
+
+/// A path without `folder/..`, where that is the same.
+pub(super) fn tidy(path: PathBuf) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leads_down = matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && leads_down {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    match (short.canonicalize(), path.canonicalize()) {
+        (Ok(one), Ok(other)) if one == other => short,
+        _ => path,
+    }
+}
+
+/// A key as TOML wants it.
+pub(super) fn key(name: &str) -> String {
+    if well_formed(name) {
+        name.to_owned()
+    } else {
+        format!("{name:?}")
+    }
 }

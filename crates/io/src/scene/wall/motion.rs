@@ -1,12 +1,70 @@
 //! How a wall moves: at a velocity, by a displacement, or as a servo.
 
-use crate::Result;
-use crate::scene::direction::{direction, rotation};
+use crate::diagnostic::Result;
+use crate::scene::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::scene::field::Field;
-use crate::scene::load::{factor, factor_from_zero, over_time};
+use crate::scene::listing::Listing;
+use crate::scene::schema::{Key, Kind, Schema};
 use crate::scene::table::Table;
-use crate::scene::{Factor, WallMotion};
-use crate::units::{ANGULAR_VELOCITY, FORCE, LENGTH, VELOCITY};
+use crate::units::{FORCE, VELOCITY};
+
+/// How a wall moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WallMotion {
+    /// Not at all.
+    Fixed,
+    /// `velocity` and `angular_velocity`, with `ramp` or `table`.
+    Velocity {
+        /// Of the pivot, m/s. Length 3.
+        velocity_m_s: [f64; 3],
+        /// About the pivot, which moves along, rad/s. Length 3.
+        spin_rad_s: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `displacement` and `turn`, with `ramp` or `table`.
+    Displacement {
+        /// Of the pivot, m. Length 3.
+        displacement_m: [f64; 3],
+        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
+        turn_rad: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
+    Servo {
+        /// `force`: what it is to push with along `direction`, N; below 0 against it.
+        force_n: f64,
+        /// `direction`, of length 1. Length 3.
+        direction: [f64; 3],
+        /// `velocity`: its largest, m/s; more than 0.
+        largest_velocity_m_s: f64,
+        /// On the force, over time.
+        factor: Factor,
+    },
+}
+
+pub(super) static SERVO: Schema = Schema {
+    title: "Servo",
+    doc: "A wall that moves along a direction such that it pushes as wanted.",
+    keys: &[
+        Key::quantity(
+            "force",
+            &FORCE,
+            "What it is to push with along `direction`; below 0 against it.",
+        )
+        .required("\"100 N\""),
+        Key::new(
+            "direction",
+            Kind::Direction("a direction"),
+            "Along which it moves; its length does not matter.",
+        )
+        .required("[0, 0, -1]"),
+        Key::quantity("velocity", &VELOCITY, "It is no faster than this.")
+            .positive()
+            .required("\"10 mm/s\", its largest"),
+    ],
+};
 
 /// The ways to move, each with its keys.
 const WAYS: [&[&str]; 3] = [
@@ -43,35 +101,62 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     match first {
         "servo" => servo(&field, factor(wall)?),
         "displacement" | "turn" => Ok(WallMotion::Displacement {
-            displacement_m: wall
-                .read("displacement", |field| field.vector(&LENGTH))?
-                .unwrap_or_default(),
-            turn_rad: wall
-                .read("turn", |field| rotation(&field))?
-                .unwrap_or_default(),
+            displacement_m: wall.read("displacement")?,
+            turn_rad: wall.read("turn")?,
             factor: factor_from_zero(wall, &field)?,
         }),
         _ => Ok(WallMotion::Velocity {
-            velocity_m_s: wall
-                .read("velocity", |field| field.vector(&VELOCITY))?
-                .unwrap_or_default(),
-            spin_rad_s: wall
-                .read("angular_velocity", |field| field.vector(&ANGULAR_VELOCITY))?
-                .unwrap_or_default(),
+            velocity_m_s: wall.read("velocity")?,
+            spin_rad_s: wall.read("angular_velocity")?,
             factor: factor(wall)?,
         }),
     }
 }
 
 fn servo(field: &Field<'_>, factor: Factor) -> Result<WallMotion> {
-    let table = field.table(&["force", "direction", "velocity"])?;
-    let along = table.need("direction", "[0, 0, -1]")?;
+    let table = Table::of(field, &SERVO)?;
     Ok(WallMotion::Servo {
-        force_n: table.need("force", "\"100 N\"")?.quantity(&FORCE)?,
-        direction: direction(&along, "a direction")?,
-        largest_velocity_m_s: table
-            .need("velocity", "\"10 mm/s\", its largest")?
-            .positive(&VELOCITY)?,
+        direction: table.read("direction")?,
+        force_n: table.read("force")?,
+        largest_velocity_m_s: table.read("velocity")?,
         factor,
     })
+}
+
+pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
+    let factor = match motion {
+        WallMotion::Fixed => return listing.text("motion", "fixed"),
+        WallMotion::Velocity {
+            velocity_m_s,
+            spin_rad_s,
+            factor,
+        } => {
+            listing.value("velocity", velocity_m_s);
+            listing.value("angular_velocity", spin_rad_s);
+            factor
+        }
+        WallMotion::Displacement {
+            displacement_m,
+            turn_rad,
+            factor,
+        } => {
+            listing.value("displacement", displacement_m);
+            listing.value("turn", turn_rad);
+            factor
+        }
+        WallMotion::Servo {
+            force_n,
+            direction,
+            largest_velocity_m_s,
+            factor,
+        } => {
+            listing.table("servo", &SERVO, |listing| {
+                listing.value("force", force_n);
+                listing.value("direction", direction);
+                listing.value("velocity", largest_velocity_m_s);
+            });
+            factor
+        }
+    };
+    factor::list(factor, listing);
 }

@@ -1,14 +1,67 @@
 //! What a wall looks like: `plane`, `box`, `cylinder` or `stl`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::Result;
-use crate::scene::WallShape;
-use crate::scene::direction::direction;
+use crate::diagnostic::Result;
 use crate::scene::field::Field;
-use crate::scene::shape::{corners, cylinder, refuse_without_stl, stl};
+use crate::scene::listing::Listing;
+use crate::scene::schema::{Key, Kind, Schema};
+use crate::scene::shape::{
+    corners, cylinder, list_box, list_cylinder, list_stl, refuse_without_stl, stl,
+};
 use crate::scene::table::Table;
-use crate::units::{LENGTH, NUMBER};
+use crate::units::LENGTH;
+
+/// What a wall looks like, before it is turned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WallShape {
+    /// `plane = { point, normal }`, without end.
+    Plane {
+        /// A point of it, m. Length 3.
+        point_m: [f64; 3],
+        /// Of length 1, into the free side. Length 3.
+        normal: [f64; 3],
+    },
+    /// `box = { min, max }`: solid, with particles outside.
+    Box {
+        /// Smallest corner, m. Length 3.
+        min: [f64; 3],
+        /// Largest corner, m: above the smallest along every axis. Length 3.
+        max: [f64; 3],
+    },
+    /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
+    Cylinder {
+        /// Centre of one end, m. Length 3.
+        from_m: [f64; 3],
+        /// Centre of the other end, m, elsewhere. Length 3.
+        to_m: [f64; 3],
+        /// Radius, m.
+        radius_m: f64,
+    },
+    /// `stl`, `unit` and `scale`: triangles.
+    Stl {
+        /// `stl`: the file, resolved against the folder of the scene.
+        path: PathBuf,
+        /// `unit`: size of the file's unit, m.
+        unit_m: f64,
+        /// `scale`: a factor on all lengths, 1 unless given.
+        scale: f64,
+    },
+}
+
+pub(super) static PLANE: Schema = Schema {
+    title: "Plane",
+    doc: "A plane without end.",
+    keys: &[
+        Key::new("point", Kind::Vector(&LENGTH), "A point of it.").required("[0, 0, 0]"),
+        Key::new(
+            "normal",
+            Kind::Direction("a normal"),
+            "Into the free side; its length does not matter.",
+        )
+        .required("[0, 0, 1], into the free side"),
+    ],
+};
 
 const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
@@ -44,20 +97,39 @@ pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
             Ok(WallShape::Stl {
                 path,
                 unit_m,
-                scale: wall
-                    .read("scale", |field| field.positive(&NUMBER))?
-                    .unwrap_or(1.0),
+                scale: wall.read("scale")?,
             })
         }
     }
 }
 
 fn plane(field: &Field<'_>) -> Result<WallShape> {
-    let table = field.table(&["point", "normal"])?;
-    let point_m = table.need("point", "[0, 0, 0]")?.vector(&LENGTH)?;
-    let normal = table.need("normal", "[0, 0, 1], into the free side")?;
+    let table = Table::of(field, &PLANE)?;
     Ok(WallShape::Plane {
-        point_m,
-        normal: direction(&normal, "a normal")?,
+        point_m: table.read("point")?,
+        normal: table.read("normal")?,
     })
+}
+
+pub(super) fn list(shape: &WallShape, listing: &mut Listing) {
+    match shape {
+        WallShape::Plane { point_m, normal } => listing.table("plane", &PLANE, |listing| {
+            listing.value("point", point_m);
+            listing.value("normal", normal);
+        }),
+        WallShape::Box { min, max } => list_box(*min, *max, listing),
+        WallShape::Cylinder {
+            from_m,
+            to_m,
+            radius_m,
+        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        WallShape::Stl {
+            path,
+            unit_m,
+            scale,
+        } => {
+            list_stl(path, *unit_m, listing);
+            listing.value("scale", scale);
+        }
+    }
 }

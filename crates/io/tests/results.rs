@@ -1,5 +1,4 @@
 //! What a run writes: the folder and its files, whole, readable by others, and the same after an interruption.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod checkpoints;
 mod folder;

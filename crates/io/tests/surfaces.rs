@@ -1,7 +1,6 @@
 //! Every kind of STL file, good or bad: what comes of it.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "../fuzz_bodies/read_stl.rs"]
+#[path = "fuzz_bodies/read_stl.rs"]
 mod body;
 mod crossings;
 mod files;

@@ -1,0 +1,141 @@
+//! A body: its numbers, and what of them a file may leave out.
+
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostic::Result;
+
+/// What is known of how a body came about. Every field is optional: a body may come from anywhere.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct About {
+    /// Program and version that made it.
+    pub program: Option<String>,
+    /// File that the shape came from.
+    pub source: Option<String>,
+    /// Hash of that file's bytes (FNV-1a, 64 bit).
+    pub source_hash: Option<u64>,
+    /// Volume of the shape, m3.
+    pub shape_volume_m3: Option<f64>,
+    /// Density of the particles' material, kg/m3.
+    pub particle_density_kg_m3: Option<f64>,
+    /// Overlap o of the packing: spheres touch at r/(1 + o).
+    pub overlap: Option<f64>,
+    /// Bonds join pairs closer than this times the sum of their radii.
+    pub bonding_radius: Option<f64>,
+    /// Seed of the random numbers.
+    pub seed: Option<u64>,
+    /// What the program that made it warned of, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Spheres joined by bonds. SI units.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Body {
+    /// Centres, m. One per particle.
+    pub positions: Vec<[f64; 3]>,
+    /// Radii, m. One per particle.
+    pub radii: Vec<f64>,
+    /// The two particles of each bond, the smaller index first. One per bond.
+    pub bonds: Vec<[u32; 2]>,
+    /// Bond radii, m. One per bond.
+    pub bond_radii: Vec<f64>,
+    /// Initial bond lengths, m. One per bond.
+    pub bond_lengths: Vec<f64>,
+    /// Where it came from.
+    pub about: About,
+}
+
+/// A body as a file tells it, perhaps not all of it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Parts {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) radii: Vec<f64>,
+    pub(crate) bonds: Vec<[u32; 2]>,
+    pub(crate) bond_radii: Option<Vec<f64>>,
+    pub(crate) bond_lengths: Option<Vec<f64>>,
+    pub(crate) about: About,
+}
+
+impl Body {
+    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and as thick as the smaller of their spheres.
+    ///
+    /// # Errors
+    /// Not a body by [`Body::check`].
+    pub fn from_spheres(spheres: &[[f64; 4]], bonds: &[[u32; 2]]) -> Result<Self> {
+        Self::from_parts(Parts {
+            positions: spheres.iter().map(|&[x, y, z, _]| [x, y, z]).collect(),
+            radii: spheres.iter().map(|sphere| sphere[3]).collect(),
+            bonds: bonds.to_vec(),
+            ..Parts::default()
+        })
+    }
+
+    /// Hash of its numbers (FNV-1a, 64 bit): the same for the same particles and bonds, whatever
+    /// file they come from.
+    pub fn hash(&self) -> u64 {
+        let places = self.positions.iter().flatten().chain(&self.radii);
+        let of_bonds = self.bond_radii.iter().chain(&self.bond_lengths);
+        let mut bytes = Vec::new();
+        for number in places.chain(of_bonds) {
+            bytes.extend(number.to_bits().to_le_bytes());
+        }
+        for end in self.bonds.iter().flatten() {
+            bytes.extend(end.to_le_bytes());
+        }
+        crate::hash::fnv1a(&bytes)
+    }
+
+    /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,
+    /// a bond is as thick as the smaller of its particles and as long as they are apart.
+    ///
+    /// # Errors
+    /// Not a body by [`Body::check`].
+    pub(crate) fn from_parts(parts: Parts) -> Result<Self> {
+        let Parts {
+            positions,
+            radii,
+            mut bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+        } = parts;
+        for bond in &mut bonds {
+            bond.sort_unstable();
+        }
+        // An end that does not exist gives no number here, and is refused by the check below.
+        let bond_radii = bond_radii.unwrap_or_else(|| {
+            let radius = |end: u32| radii.get(end as usize).copied().unwrap_or(f64::NAN);
+            bonds
+                .iter()
+                .map(|&[a, b]| radius(a).min(radius(b)))
+                .collect()
+        });
+        let bond_lengths = bond_lengths.unwrap_or_else(|| {
+            let position = |end: u32| {
+                positions
+                    .get(end as usize)
+                    .copied()
+                    .unwrap_or([f64::NAN; 3])
+            };
+            bonds
+                .iter()
+                .map(|&[a, b]| distance(position(a), position(b)))
+                .collect()
+        });
+        let body = Self {
+            positions,
+            radii,
+            bonds,
+            bond_radii,
+            bond_lengths,
+            about,
+        };
+        body.check()?;
+        Ok(body)
+    }
+}
+
+/// Distance of two points, in their unit.
+fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
+    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    (x * x + y * y + z * z).sqrt()
+}

@@ -1,0 +1,25 @@
+//! Numbers as the listing of a scene shows them.
+
+/// A number with at most 12 digits, which hides the rounding of units.
+pub(super) fn number(number: f64) -> String {
+    let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
+    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// `text` and the unit, if there is one.
+pub(super) fn with_unit(text: &str, unit: &str) -> String {
+    format!("{text} {unit}").trim_end().to_owned()
+}
+
+pub(super) fn quantity(of: f64, unit: &str) -> String {
+    with_unit(&number(of), unit)
+}
+
+pub(super) fn vector(components: [f64; 3], unit: &str) -> String {
+    let listed = components.map(number).join(", ");
+    with_unit(&format!("[{listed}]"), unit)
+}

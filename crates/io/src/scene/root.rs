@@ -1,0 +1,145 @@
+//! A whole scene, and its tables.
+
+use super::schema::{Key, Kind, Schema};
+use std::collections::BTreeMap;
+
+use super::body::BodyEntry;
+use super::bond::BondKind;
+use super::clusters::Clusters;
+use super::contact::Contact;
+use super::initial::Initial;
+use super::inlet::Inlet;
+use super::load::Load;
+use super::material::Material;
+use super::measure::Measure;
+use super::outlet::Outlet;
+use super::output::Output;
+use super::region::Region;
+use super::relaxation::Relaxation;
+use super::replacement::Replacement;
+use super::run::Run;
+use super::search::Search;
+use super::set::ParticleSet;
+use super::sleep::Sleep;
+use super::support::Support;
+use super::test::Test;
+use super::wall::Wall;
+use super::{
+    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
+    relaxation, replacement, run, search, set, sleep, support, test, wall,
+};
+
+/// Version of the scene format.
+pub const SCENE_VERSION: u64 = 1;
+
+/// A whole scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// File that it was read from, as the user named it.
+    pub source: String,
+    /// `[run]`
+    pub run: Run,
+    /// `[materials.NAME]`
+    pub materials: BTreeMap<String, Material>,
+    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls need may be missing.
+    pub contacts: Vec<Contact>,
+    /// `[bonds.NAME]`
+    pub bonds: BTreeMap<String, BondKind>,
+    /// `[bodies.NAME]`. At least one.
+    pub bodies: BTreeMap<String, BodyEntry>,
+    /// `[walls.NAME]`. No body or set has the name of a wall.
+    pub walls: BTreeMap<String, Wall>,
+    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
+    pub sets: BTreeMap<String, ParticleSet>,
+    /// `[initial.NAME]`
+    pub initial: BTreeMap<String, Initial>,
+    /// `[supports.NAME]`
+    pub supports: BTreeMap<String, Support>,
+    /// `[loads.NAME]`
+    pub loads: BTreeMap<String, Load>,
+    /// `[regions.NAME]`, of any names.
+    pub regions: BTreeMap<String, Region>,
+    /// `[replacement.NAME]`, by the name of the body: a clump that has bonds.
+    pub replacement: BTreeMap<String, Replacement>,
+    /// `[inlets.NAME]`. The bodies that they name do not stand in the scene at the start.
+    pub inlets: BTreeMap<String, Inlet>,
+    /// `[outlets.NAME]`
+    pub outlets: BTreeMap<String, Outlet>,
+    /// `[measures.NAME]`
+    pub measures: BTreeMap<String, Measure>,
+    /// `[clusters]`
+    pub clusters: Clusters,
+    /// `[relaxation]`
+    pub relaxation: Relaxation,
+    /// `[search]`
+    pub search: Search,
+    /// `[sleep]`. None: nothing sleeps.
+    pub sleep: Option<Sleep>,
+    /// `[output]`. None: nothing is written to disk unless the command line names a folder.
+    pub output: Option<Output>,
+    /// `[test]`. None: no laboratory test.
+    pub test: Option<Test>,
+}
+
+pub(super) static SCENE: Schema = Schema {
+    title: "",
+    doc: "A scene: what stands where, of what, what is done to it, and what is asked.",
+    keys: &[
+        Key::whole("version", 1, "Version of the format.").required("1"),
+        Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
+        named(
+            "materials",
+            &Kind::Table(&material::MATERIAL),
+            material::MATERIAL.doc,
+        ),
+        Key::new(
+            "contacts",
+            Kind::Named("NAME-NAME", &Kind::Table(&contact::CONTACT)),
+            contact::CONTACT.doc,
+        ),
+        named("bonds", &Kind::Table(&bond::BOND), bond::BOND.doc),
+        named("bodies", &Kind::Table(&body::BODY), body::BODY.doc)
+            .required("{ NAME = { file = \"body.vtp\" } }"),
+        named("walls", &Kind::Table(&wall::WALL), wall::WALL.doc),
+        named("sets", &Kind::Table(&set::SET), set::SET.doc),
+        named(
+            "initial",
+            &Kind::Table(&initial::INITIAL),
+            initial::INITIAL.doc,
+        ),
+        named(
+            "supports",
+            &Kind::Table(&support::SUPPORT),
+            support::SUPPORT.doc,
+        ),
+        named("loads", &Kind::Table(&load::LOAD), load::LOAD.doc),
+        named("regions", &Kind::Table(&region::REGION), region::REGION.doc),
+        named(
+            "replacement",
+            &Kind::Table(&replacement::REPLACEMENT),
+            replacement::REPLACEMENT.doc,
+        ),
+        named("inlets", &Kind::Table(&inlet::INLET), inlet::INLET.doc),
+        named("outlets", &Kind::Table(&outlet::OUTLET), outlet::OUTLET.doc),
+        named(
+            "measures",
+            &Kind::Table(&measure::MEASURE),
+            measure::MEASURE.doc,
+        ),
+        Key::table("clusters", &clusters::CLUSTERS, clusters::CLUSTERS.doc),
+        Key::table(
+            "relaxation",
+            &relaxation::RELAXATION,
+            relaxation::RELAXATION.doc,
+        ),
+        Key::table("search", &search::SEARCH, search::SEARCH.doc),
+        Key::table("sleep", &sleep::SLEEP, sleep::SLEEP.doc),
+        Key::table("output", &output::OUTPUT, output::OUTPUT.doc),
+        Key::table("test", &test::TEST, test::TEST.doc),
+    ],
+};
+
+/// Tables `[name.NAME]`.
+const fn named(name: &'static str, kind: &'static Kind, doc: &'static str) -> Key {
+    Key::new(name, Kind::Named("NAME", kind), doc)
+}

@@ -1,0 +1,18 @@
+//! The facets of a file, and what both of its forms have in common.
+
+/// What to do with a file that lost bytes.
+pub(super) const REMEDY_AGAIN: &str = "export or copy the file again";
+
+/// The facets of an STL file, as they stand there.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Facets {
+    /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the corners says it better.
+    pub corners: Vec<[[f64; 3]; 3]>,
+    /// One sentence for each thing that is odd about the file but harmless.
+    pub warnings: Vec<String>,
+}
+
+/// White space, with the vertical tab.
+pub(super) fn is_blank(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x0b
+}

@@ -1,0 +1,9 @@
+//! All that can be tested of this crate from outside.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod body_files;
+mod interrupted_write;
+mod results;
+mod scene;
+mod studies;
+mod surfaces;
