@@ -1,7 +1,7 @@
 //! Damping of bonds: conserves what it must, dissipates, and leaves the largest step that an
 //! independent implementation found.
 
-use crate::vector;
+use super::vector;
 use dem_run::physics::bond::damping::{
     DampingCoefficients, DampingForces, EndMotion, Reduced, chen, chen_by_mode, damping_forces,
     platzer, reduced,

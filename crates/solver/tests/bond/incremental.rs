@@ -1,7 +1,7 @@
 //! The incremental formulation: does not depend on names, is objective, bends a cantilever as an
 //! independent implementation does, and keeps energy.
 
-use crate::{MODELS, vector};
+use super::{MODELS, vector};
 use dem_run::physics::bond::incremental::{History, Step, advance, bond_forces};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::{self, BondForces, End};

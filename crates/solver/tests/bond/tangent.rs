@@ -1,6 +1,6 @@
 //! The tangent of a bond against differences of its forces, and where it is not symmetric.
 
-use crate::total::{bond, largest};
+use super::total::{bond, largest};
 use dem_run::physics::bond::tangent::{FREEDOMS, bond_tangent};
 use dem_run::physics::bond::total::{End, bond_forces};
 use dem_run::physics::dual::Dual;

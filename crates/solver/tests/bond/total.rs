@@ -1,7 +1,7 @@
 //! The total formulation: its forces are the gradient of its energy, and nothing but deformation
 //! gives a force.
 
-use crate::{MODELS, vector};
+use super::{MODELS, vector};
 use dem_run::physics::bond::stiffness::{BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::{BondForces, End, bond_forces};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -9,8 +9,8 @@ use dem_run::state::bodies::PlacedBody;
 use dem_run::state::clumps::Clump;
 use dem_run::state::partitions::divide;
 
-use crate::books::feed;
-use crate::{go, planned};
+use super::books::feed;
+use super::{go, planned};
 
 /// Lumps that come quickly, wait for each other, break, and go.
 fn busy(threads: usize) -> Plan {

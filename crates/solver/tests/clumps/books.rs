@@ -6,7 +6,7 @@ use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
 use dem_run::step::{advance, interact};
 
-use crate::{HEAD, lump, planned};
+use super::{HEAD, lump, planned};
 
 /// Lumps that come through an inlet, fall, become clusters on the way, bounce on a plate, roll off
 /// it and go.
@@ -208,7 +208,7 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     state.triggers = dem_run::state::clusters::Triggers::every_step();
     let mut broken = 0;
     while state.time_s < 0.25 {
-        crate::go(&mut state, &mut bodies);
+        super::go(&mut state, &mut bodies);
         broken += state.events.broken.len() as u64;
     }
     assert_eq!(state.broken_count, broken);

@@ -4,7 +4,7 @@ use dem_run::plan::Plan;
 use dem_run::state::State;
 use nalgebra::Vector3;
 
-use crate::{HEAD, block, go, planned};
+use super::{HEAD, block, go, planned};
 
 /// Slope on which bodies stick: friction is 0.8, and a step is steep enough to be felt.
 const SLOPE_RAD: f64 = 0.3;

@@ -6,7 +6,7 @@ use dem_run::state::clumps::Clump;
 use dem_run::state::events::PopulationEvent;
 use nalgebra::Vector3;
 
-use crate::{HEAD, MEETS, block, go, happens, lump, planned};
+use super::{HEAD, MEETS, block, go, happens, lump, planned};
 
 const BALL: &str = "[bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-3]]\n";
 /// Wide enough that nobody waits.

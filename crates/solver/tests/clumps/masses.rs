@@ -6,7 +6,7 @@ use dem_io::Body;
 use dem_run::plan::{Plan, plan};
 use dem_run::state::events::PopulationEvent;
 
-use crate::{HEAD, MEETS, Whole, happens, scene};
+use super::{HEAD, MEETS, Whole, happens, scene};
 
 /// Volume of the shape that the body is said to fill, m3.
 const VOLUME_M3: f64 = 3e-8;

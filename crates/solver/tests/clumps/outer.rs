@@ -8,7 +8,7 @@ use dem_run::state::clumps::{Clump, Template};
 use dem_run::state::events::TopologyChange;
 use dem_run::step::step;
 
-use crate::{HEAD, MEETS, block, planned};
+use super::{HEAD, MEETS, block, planned};
 
 /// Two bodies: one falls onto the other, and both onto a plane.
 fn falling(body: impl Fn(&str, &str) -> String) -> State {
@@ -138,7 +138,7 @@ fn clumps_share_what_they_are_made_of() {
     );
     let mut plan = planned(&text);
     for _ in 0..20 {
-        crate::go(&mut plan.state, &mut plan.bodies);
+        super::go(&mut plan.state, &mut plan.bodies);
     }
     let state = &plan.state;
     let [template] = &state.clumps.templates[..] else {

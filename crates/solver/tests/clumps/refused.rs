@@ -1,7 +1,7 @@
 //! Scenes with clumps that cannot be are refused, with the place, the value and what to do.
 
-use crate::regions::box_stl;
-use crate::{HEAD, MEETS, block, lump, scene, try_plan};
+use super::regions::box_stl;
+use super::{HEAD, MEETS, block, lump, scene, try_plan};
 use dem_io::{Body, Diagnostic};
 use dem_run::plan::plan;
 

@@ -4,7 +4,7 @@ use dem_run::geometry::Bounds;
 use dem_run::state::regions::Region;
 use nalgebra::Vector3;
 
-use crate::{HEAD, Random, planned};
+use super::{HEAD, Random, planned};
 
 /// The regions of a scene, by name.
 fn regions(text: &str) -> Vec<Region> {

@@ -7,7 +7,7 @@ use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 
-use crate::{HEAD, planned};
+use super::{HEAD, planned};
 
 const RADIUS_M: f64 = 4e-3;
 const GRAVITY_M_S2: f64 = 9.81;

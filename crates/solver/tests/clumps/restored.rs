@@ -10,8 +10,8 @@ use dem_run::state::events::TopologyChange;
 use dem_run::step::{exchange, interact, step};
 use nalgebra::Vector3;
 
-use crate::books::{booked, feed};
-use crate::{HEAD, Whole, lump, planned};
+use super::books::{booked, feed};
+use super::{HEAD, Whole, lump, planned};
 
 /// A lump that flies and spins, is replaced at once, and may become rigid again wherever it is.
 fn flying() -> State {

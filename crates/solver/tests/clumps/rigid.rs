@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use serde_json::Value;
 use std::sync::Arc;
 
-use crate::{HEAD, MEETS, lump, planned};
+use super::{HEAD, MEETS, lump, planned};
 
 fn flying(particles: &str) -> State {
     let mut plan = planned(&format!(

@@ -4,9 +4,9 @@ use dem_run::check::limit::{limit, safe_step};
 use dem_run::check::linear::at_impact;
 use dem_run::plan::Plan;
 
-use crate::again::same;
-use crate::books::{booked, feed};
-use crate::{HEAD, MEETS, go, planned};
+use super::again::same;
+use super::books::{booked, feed};
+use super::{HEAD, MEETS, go, planned};
 
 /// Lumps that come through an inlet and stay clumps while they fall on a plate.
 fn unbreakable() -> String {

@@ -12,7 +12,7 @@ use dem_run::step::{drift, exchange, interact};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use crate::{HEAD, MEETS, Random, Whole, go, lump, planned};
+use super::{HEAD, MEETS, Random, Whole, go, lump, planned};
 
 /// A lump that becomes a cluster at a time.
 fn one(time_s: f64) -> Plan {
@@ -110,7 +110,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
     let at = |x: f64, more: &str| format!("position = [{x}, 0, 0]\nvelocity = [0, {x}, 1]\n{more}");
     let clump = |x: f64| at(x, "start_as = \"clump\"\nangular_velocity = [10, 20, 30]");
     let pair = |name: &str, more: &str| {
-        crate::block(
+        super::block(
             name,
             [2, 1, 1],
             2e-3,

@@ -6,7 +6,7 @@ use dem_run::state::State;
 use dem_run::state::clumps::Clump;
 use dem_run::state::events::PopulationEvent;
 
-use crate::{HEAD, block, happens, planned};
+use super::{HEAD, block, happens, planned};
 
 const STEP_S: f64 = 1e-6;
 

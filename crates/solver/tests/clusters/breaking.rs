@@ -6,7 +6,7 @@ use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::{Clusters, Split};
 use proptest::prelude::*;
 
-use crate::{between, bonds, chain};
+use super::{between, bonds, chain};
 
 /// The smallest particle that each one is joined to, breadth first.
 fn breadth_first(particles: usize, bonds: &Bonds) -> Vec<u32> {

@@ -7,7 +7,7 @@ use dem_run::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use crate::{bonds, chain};
+use super::{bonds, chain};
 
 type Vector = Vector3<f64>;
 

@@ -6,7 +6,7 @@ use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles, Wrench};
 use dem_run::step::{advance, interact, step};
 
-use crate::bodies::{
+use super::bodies::{
     ALL, LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, YOUNG_PA, area_m2, bonded, on_one_thread, rod,
 };
 

@@ -10,7 +10,7 @@ use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::step::{advance, interact};
 
-use crate::bodies::{
+use super::bodies::{
     LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, area_m2, damp, hold, on_one_thread, rod,
 };
 

@@ -8,7 +8,7 @@ use dem_run::state::State;
 use dem_run::state::loads::factor_at;
 use dem_run::step::{advance, interact};
 
-use crate::bodies::{
+use super::bodies::{
     ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES,
     area_m2, hold, on_one_thread, push, rod,
 };

@@ -4,7 +4,7 @@ use dem_io::scene::RateOf;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{advance, interact};
 
-use crate::bodies::{
+use super::bodies::{
     LENGTH_M, NORMAL, PRESSED, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
 };
 

@@ -12,7 +12,7 @@ use dem_run::state::loads::factor_at;
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, exchange, interact};
 
-use crate::bodies::{
+use super::bodies::{
     LENGTH_M, LOAD_STEP, NORMAL, RADIUS_M, SOFT_STEPS, STRENGTH_PA, YOUNG_PA, area_m2, bonded,
     hold, on_one_thread, push, rod,
 };

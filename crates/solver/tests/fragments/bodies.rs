@@ -9,7 +9,7 @@ use dem_io::scene::BodySource;
 use dem_run::plan::plan;
 use dem_run::step::{interact, step};
 
-use crate::{bodies_of, burst, bursting, planned, run_into};
+use super::{bodies_of, burst, bursting, planned, run_into};
 
 fn fragment(folder: &Path, options: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_dem-run"))

@@ -10,7 +10,7 @@ use dem_run::output::fragments::split_text;
 use dem_run::state::clusters::{Cluster, Split};
 use nalgebra::Vector3;
 
-use crate::{PARTICLES, burst, bursting, planned, run_into, table};
+use super::{PARTICLES, burst, bursting, planned, run_into, table};
 
 /// A row of fragments.csv.
 struct Row {

@@ -5,7 +5,7 @@ use std::fs;
 use dem_run::output::fragments::{counts_over_time, sizes};
 use dem_run::state::clusters::{Cluster, Fragment};
 
-use crate::burst;
+use super::burst;
 
 fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
     let cluster = |&(born_s, ended_s): &(f64, Option<f64>)| Cluster {

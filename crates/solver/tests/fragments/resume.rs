@@ -7,7 +7,7 @@ use dem_io::checkpoint::read_checkpoint;
 use dem_io::results::{Existing, ResultsFolder};
 use dem_run::run::snapshot::Snapshot;
 
-use crate::{burst, bursting, planned, run_into};
+use super::{burst, bursting, planned, run_into};
 
 #[test]
 fn after_an_interruption_the_tables_are_the_same_bytes() {

@@ -8,7 +8,7 @@ use dem_run::laboratory::page::curve;
 use dem_run::plan::test_setup::Specimen;
 use dem_run::plan::test_theory::Beam;
 
-use crate::evaluation::{PLACES, evaluated, record, setup, test};
+use super::evaluation::{PLACES, evaluated, record, setup, test};
 
 const BEAM: Beam = Beam {
     span_m: 0.17,

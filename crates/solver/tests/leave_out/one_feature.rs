@@ -1,7 +1,7 @@
 //! Scenes that need one thing each: that alone is done and stored, besides what every such scene
 //! needs.
 
-use crate::{busy, go, planned, stored};
+use super::{busy, go, planned, stored};
 
 /// Spheres in a row that moves, bonded to their neighbours unless `apart`; with more lines of the
 /// body's own.

@@ -6,7 +6,7 @@ use dem_run::clock::StageClock;
 use dem_run::state::State;
 use dem_run::step::{number_of, step};
 
-use crate::{go, planned, planned_with};
+use super::{go, planned, planned_with};
 
 fn scenes_in(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))

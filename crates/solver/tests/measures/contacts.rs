@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{Measured, assert_near};
+use super::{Measured, assert_near};
 
 const YOUNG_PA: f64 = 1e7;
 const POISSON: f64 = 0.3;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::{Measured, assert_near};
+use super::{Measured, assert_near};
 
 /// A sphere: centre and radius.
 type Sphere = (Vector3<f64>, f64);

@@ -1,6 +1,6 @@
 //! Values outside their tolerances, and values that are missing.
 
-use crate::{Measured, assert_near};
+use super::{Measured, assert_near};
 
 fn falling(more: &str) -> Measured {
     let mut run = Measured::new(&format!(

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::{Measured, assert_near};
+use super::{Measured, assert_near};
 
 const VECTORS: [&str; 5] = [
     "position",

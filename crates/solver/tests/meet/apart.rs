@@ -14,7 +14,7 @@ use dem_run::state::State;
 use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 
-use crate::clouds::scattered;
+use super::clouds::scattered;
 
 const RADIUS_M: f64 = 1e-3;
 

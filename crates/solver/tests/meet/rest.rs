@@ -8,7 +8,7 @@ use dem_run::plan::Plan;
 use dem_run::plan::time_step::impact_step_s;
 use dem_run::step::step;
 
-use crate::apart::planned;
+use super::apart::planned;
 
 const RADIUS_M: f64 = 5e-3;
 const HALF_M: f64 = 0.02;

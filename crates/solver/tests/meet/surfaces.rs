@@ -9,7 +9,7 @@ use dem_io::{Body, Diagnostic};
 use dem_run::plan::{Plan, plan};
 use dem_run::step::step;
 
-use crate::apart::planned;
+use super::apart::planned;
 use crate::closed_box::closed_box;
 
 type Corners = [[f64; 3]; 3];

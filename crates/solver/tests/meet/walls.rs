@@ -9,7 +9,7 @@ use dem_run::state::State;
 use dem_run::state::walls::Wall;
 use dem_run::step::{advance, interact};
 
-use crate::clouds::{cloud, kinds};
+use super::clouds::{cloud, kinds};
 
 fn wall(shape: Shape, motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
     Wall {

@@ -7,7 +7,7 @@ use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
 use dem_run::state::partitions::divide;
 
-use crate::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
+use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
 
 /// A pile that sleeps, a ball that rolls up to it slowly, and one that comes down from above.
 fn pile(threads: usize) -> Plan {

@@ -4,7 +4,7 @@ use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
 use dem_run::step::{advance, interact};
 
-use crate::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
+use super::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
 
 /// Bodies that land, sleep, and are hit by a ball that comes down later.
 fn scene() -> String {

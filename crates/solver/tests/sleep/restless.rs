@@ -1,6 +1,6 @@
 //! Who never sleeps, and who wakes of what is not near.
 
-use crate::{
+use super::{
     CLUMP, GROUND, SLEEP, ball, go, go_until, go_until_asleep, head, planned, slab, sleep,
 };
 
@@ -157,11 +157,11 @@ fn what_lies_on_a_sleeper_that_leaves_falls() {
     let start_s = state.time_s;
     go_until(&mut state, start_s + 5e-3);
     let fallen_m = 3e-3 - state.clumps.all[0].place_m[2];
-    let wanted_m = 0.5 * crate::GRAVITY_M_S2 * 25e-6;
+    let wanted_m = 0.5 * super::GRAVITY_M_S2 * 25e-6;
     assert!(
         (fallen_m / wanted_m - 1.0).abs() < 0.03,
         "{fallen_m:e} {wanted_m:e}"
     );
 }
 
-const RADIUS: f64 = crate::RADIUS_M;
+const RADIUS: f64 = super::RADIUS_M;

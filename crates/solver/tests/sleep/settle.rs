@@ -3,7 +3,7 @@
 use dem_run::stages::clumps::place_all;
 use dem_run::step::interact;
 
-use crate::{
+use super::{
     AFTER_S, CLUMP, GROUND, SLEEP, SPEED_M_S, apart_m, ball, depth_m, go, go_until,
     go_until_asleep, head, planned, slab, slab_kg, sleep, work,
 };
@@ -41,7 +41,7 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
     }
     // Contacts swing with sqrt(3/2 g/d): a body that is as slow as asked is no further than this
     // from where it comes to rest.
-    let swing_rad_s = (1.5 * crate::GRAVITY_M_S2 / depth_m(slab_kg())).sqrt();
+    let swing_rad_s = (1.5 * super::GRAVITY_M_S2 / depth_m(slab_kg())).sqrt();
     let apart_m = apart_m(&state, &awake);
     eprintln!("{apart_m:e} m of {:e}", SPEED_M_S / swing_rad_s);
     assert!(apart_m < SPEED_M_S / swing_rad_s);
@@ -53,7 +53,7 @@ fn the_ground_still_feels_those_who_sleep() {
     go_until_asleep(&mut state, 3);
     interact(&mut state);
     let [force_n, torque_n_m] = state.walls[0].whole_push();
-    let weight_n = 2.25 * slab_kg() * crate::GRAVITY_M_S2;
+    let weight_n = 2.25 * slab_kg() * super::GRAVITY_M_S2;
     assert_eq!(state.walls[0].push.force_n, [0.0; 3]);
     // They still swung a little, by at most `speed` times the frequency over gravity.
     assert!((force_n[2] / weight_n - 1.0).abs() < 1e-2, "{force_n:?}");

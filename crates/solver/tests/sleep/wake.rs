@@ -5,7 +5,7 @@ use dem_run::state::State;
 use dem_run::step::{advance, interact};
 use nalgebra::Vector3;
 
-use crate::{
+use super::{
     CLUMP, GROUND, SLEEP, apart_m, ball, depth_m, force_on_clump, go, go_until, go_until_asleep,
     head, planned, slab, slab_kg, sleep,
 };

@@ -1,6 +1,6 @@
 //! The energy error of a bounce, as doc/contacts.md says it.
 
-use crate::{assert_near, run_of};
+use super::{assert_near, run_of};
 
 const PAGE: &str = include_str!("../../../../doc/contacts.md");
 

@@ -8,7 +8,7 @@ use dem_run::run::snapshot::Snapshot;
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};
 
-use crate::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned, run_of, try_planned};
+use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned, run_of, try_planned};
 
 /// A force F that ends after T leaves a body of mass m with F T/m, whatever the steps.
 #[test]

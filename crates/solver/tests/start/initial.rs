@@ -3,7 +3,7 @@
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};
 
-use crate::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};
+use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};
 
 /// Stretched by u and let go, the pair swings about its length at rest as leapfrog swings: after n
 /// steps it is stretched by u cos(n phi) with cos(phi) = 1 - (w dt)^2/2 and w^2 = 2 k/m.

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact, step};
 
-use crate::{assert_near, place, planned, try_planned};
+use super::{assert_near, place, planned, try_planned};
 
 const RADIUS_M: f64 = 5e-3;
 const GRAVITY_M_S2: f64 = 9.81;

@@ -8,7 +8,7 @@ use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::plan::Plan;
 use dem_run::step::step;
 
-use crate::{PAIR, assert_near, place, planned, try_planned};
+use super::{PAIR, assert_near, place, planned, try_planned};
 
 const RADIUS_M: f64 = 5e-3;
 const SPEED_M_S: f64 = 0.5;

@@ -3,8 +3,8 @@
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 
+use super::{fix, load, rest};
 use crate::bars::{ELASTIC, MODELS, random_body, with_threads};
-use crate::{fix, load, rest};
 
 /// Asserts that each residual is at most as large as the square of the one before: of those that a
 /// tangent of their own is made for.

@@ -3,7 +3,7 @@
 
 use dem_run::physics::bond::stiffness::BondModel;
 
-use crate::{bar, fix, load, rest};
+use super::{bar, fix, load, rest};
 
 /// Where the end of the elastica of length 1 comes to under P/EI = `load`: along and across; by
 /// shooting from the free end, where the moment is 0.

@@ -7,8 +7,8 @@ use dem_run::state::State;
 use dem_run::step::step;
 use nalgebra::Vector3;
 
+use super::{assert_near, bar, fix, load, rest};
 use crate::bars::{ELASTIC, damp_particles, random_body, with_threads};
-use crate::{assert_near, bar, fix, load, rest};
 
 /// Steps a state until nothing moves by more than rounding in a hundred steps.
 fn step_to_rest(state: &mut State, size_m: f64) {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use dem_io::scene::{Factor, Hold};
 use dem_run::state::State;
 
+use super::{assert_near, bar, fix, hold, load, rest};
 use crate::bars::MODELS;
-use crate::{assert_near, bar, fix, hold, load, rest};
 
 const BONDS: u32 = 20;
 

@@ -4,8 +4,8 @@
 use dem_run::physics::rigid::rotation_vector;
 use dem_run::state::State;
 
+use super::{assert_near, bar, fix, load, moved, rest};
 use crate::bars::MODELS;
-use crate::{assert_near, bar, fix, load, moved, rest};
 
 const BONDS: u32 = 10;
 /// Small, so that the lever of a load stays: what is neglected is its square.

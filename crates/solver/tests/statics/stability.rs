@@ -7,7 +7,7 @@ use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::run::statics::{Cause, equilibrium};
 use dem_run::state::State;
 
-use crate::{END_S, assert_near, bar, fix, load, rest};
+use super::{END_S, assert_near, bar, fix, load, rest};
 
 const BONDS: u32 = 40;
 

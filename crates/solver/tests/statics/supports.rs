@@ -5,7 +5,7 @@ use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::physics::rigid::rotation_vector;
 
-use crate::{END_S, assert_near, bar, fix, hold, load, moved, rest};
+use super::{END_S, assert_near, bar, fix, hold, load, moved, rest};
 
 const BONDS: u32 = 10;
 

@@ -4,7 +4,7 @@ use dem_run::geometry::{Shape, Touch};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use crate::{Surface, add_tiles, apart, mesh, touches};
+use super::{Surface, add_tiles, apart, mesh, touches};
 
 type Vector = Vector3<f64>;
 

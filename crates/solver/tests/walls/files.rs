@@ -3,8 +3,8 @@
 use dem_io::surface::read_open_surface;
 use dem_run::geometry::{Mesh, Shape};
 
+use super::{Surface, add_tiles, box_surface, touches};
 use crate::closed_box::closed_box;
-use crate::{Surface, add_tiles, box_surface, touches};
 
 /// An ASCII STL.
 fn stl((vertices, triangles): &Surface) -> String {

@@ -4,7 +4,7 @@ use dem_run::geometry::{Frame, Shape, SolidBox};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-use crate::{apart, touches};
+use super::{apart, touches};
 
 proptest! {
     #[test]

@@ -4,8 +4,8 @@ use dem_run::geometry::{Mesh, Shape, SolidBox};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
+use super::{Surface, assert_same, mesh};
 use crate::closed_box::closed_box;
-use crate::{Surface, assert_same, mesh};
 
 fn turned_over((vertices, triangles): &Surface) -> Surface {
     let triangles = triangles.iter().map(|[a, b, c]| [*b, *a, *c]).collect();

@@ -4,7 +4,7 @@ use dem_run::geometry::{Mesh, Plane, Shape, SolidBox, Touch};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
-use crate::{Surface, add_tiles, assert_same, box_surface, mesh, touches};
+use super::{Surface, add_tiles, assert_same, box_surface, mesh, touches};
 
 /// Squares of 1/8 on z = 0 between -1 and 1; vertices inside are moved within the plane.
 fn tiled_plane(jitter: &[f64]) -> Surface {

@@ -4,7 +4,7 @@ use dem_run::geometry::{Cylinder, Plane, Shape, SolidBox};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use crate::{apart, touches};
+use super::{apart, touches};
 
 /// Whether a point is inside, and its distance from the surface, by the textbook's formula
 /// (negative inside).

@@ -1,12 +1,5 @@
 //! Rigid clumps in the solver: that they move as rigid bodies do, that bonded clusters take their
 //! places and nothing is lost, and that bodies come and go as the scene says.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
 mod again;
 mod books;

@@ -1,10 +1,4 @@
 //! Bond laws against closed forms, reference values and their own energy.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod damping;
 mod failure;

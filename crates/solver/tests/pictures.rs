@@ -1,5 +1,4 @@
 //! Whole pictures.
-#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 mod views;
 

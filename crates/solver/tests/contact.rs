@@ -1,11 +1,5 @@
 //! Laws of contact against an independent implementation, closed forms, and what every law must
 //! keep.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod books;
 mod documented;
@@ -140,7 +134,7 @@ struct Weight {
 }
 
 fn reference() -> Reference {
-    serde_json::from_str(include_str!("data/contact.json")).unwrap()
+    serde_json::from_str(include_str!("contact/data/contact.json")).unwrap()
 }
 
 #[track_caller]

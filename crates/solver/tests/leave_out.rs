@@ -1,11 +1,4 @@
 //! What a scene does not need does nothing and takes no memory: counted, not timed.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
 mod one_feature;
 mod scenes;

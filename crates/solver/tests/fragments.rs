@@ -1,10 +1,4 @@
 //! What a run writes about fragments, and fragments taken out of it as bodies.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod bodies;
 mod files;

@@ -1,11 +1,4 @@
 //! The stress suite: every case does as predicted, and a case that does not is told so.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
 mod mended;
 mod sabotage;

@@ -1,10 +1,4 @@
 //! Clusters against a search from scratch; fragments against the whole.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod breaking;
 mod fragments;

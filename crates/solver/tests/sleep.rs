@@ -1,11 +1,4 @@
 //! Sleep: bodies at rest on a ground at rest are not stepped, and nothing else changes by that.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
 mod again;
 mod books;

@@ -1,11 +1,5 @@
 //! How a scene starts and what ends in it: sets displaced and in motion, supports and loads that
 //! end, overlaps that are kept, a bounce; walls that are rigid and clumps that nothing replaces.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod bounce;
 mod ends;

@@ -1,11 +1,5 @@
 //! Geometry of bodies made of spheres, and free rotation: against published numbers, closed forms
 //! and samples.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::print_stdout,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
 mod fit;
 mod inertia;
@@ -70,5 +64,5 @@ pub(crate) fn turned(q: &UnitQuaternion<f64>, points: &[[f64; 3]]) -> Vec<[f64; 
 }
 
 pub(crate) fn reference() -> serde_json::Value {
-    serde_json::from_str(include_str!("data/clump.json")).unwrap()
+    serde_json::from_str(include_str!("shape/data/clump.json")).unwrap()
 }

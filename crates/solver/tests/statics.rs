@@ -1,16 +1,6 @@
 //! Equilibrium without steps: closed forms, convergence, supports, stability, refusals, and what
 //! runs that step come to.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops where it fails, and says what it measured"
-)]
 
-#[path = "../step/bars.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod bars;
 mod convergence;
 mod elastica;
 mod explicit;

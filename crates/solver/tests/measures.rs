@@ -1,10 +1,4 @@
 //! Measures: of bodies as a whole, be they clumps or clusters; of contacts; of heaps.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod contacts;
 mod heaps;

@@ -1,14 +1,7 @@
 //! Where spheres touch walls: meshes against the shapes that they stand for and against looking at
 //! everything.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops where it fails"
-)]
 
 mod brute;
-mod closed_box;
 mod files;
 mod frames;
 mod inside;

@@ -1,0 +1,31 @@
+//! The tests of the solver as a library, one module a subject.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    clippy::print_stdout,
+    reason = "a test stops where it fails, and says what it measured"
+)]
+
+mod bars;
+mod closed_box;
+
+mod bond;
+mod clumps;
+mod clusters;
+mod contact;
+mod failure;
+mod fragments;
+mod laboratory;
+mod leave_out;
+mod measures;
+mod meet;
+mod pictures;
+mod shape;
+mod sleep;
+mod start;
+mod statics;
+mod step;
+mod stress;
+mod walls;
