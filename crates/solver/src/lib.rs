@@ -1,5 +1,27 @@
-//! Runs scenes with bonded bodies: TOML scene -> [`plan`] -> [`state`] -> [`step`], step, ... ->
+//! Runs scenes with bonded bodies: TOML scene -> [`plan()`] -> [`State`] -> [`step()`], step, ... ->
 //! results.
+//!
+//! ```
+//! use std::collections::BTreeMap;
+//! use dem_run::{plan, step};
+//!
+//! let text = r#"
+//! version = 1
+//! run = { end_time = "1 s", gravity = [0, 0, -9.81] }
+//! materials.stone = { density = 2600 }
+//! bodies.ball = { particles = [[0, 0, 0, 0.01]], material = "stone" }
+//! "#;
+//! let scene = dem_io::scene::scene_from_text(text, "fall.toml", &[])?;
+//! let mut state = plan(&scene, BTreeMap::new(), 1, false)?.state;
+//! while state.time_s < 0.5 {
+//!     step(&mut state);
+//! }
+//! let fallen_m = -state.particles.poses[0].position_m[2];
+//! assert!((fallen_m - 0.5 * 9.81 * state.time_s.powi(2)).abs() < 1e-9);
+//! # Ok::<(), dem_io::Diagnostic>(())
+//! ```
+//!
+//! [`run()`] does what the program does: it steps a plan to its end, watches it and writes results.
 
 pub mod check;
 pub mod cli;
@@ -21,6 +43,12 @@ pub mod state;
 pub mod step;
 pub mod stress;
 pub mod sweep;
+
+pub use plan::{Plan, plan};
+pub use run::{RunSettings, run};
+pub use stages::ledger::{Balance, balance};
+pub use state::State;
+pub use step::step;
 
 /// The code on the page is compiled and run with the tests.
 #[cfg(doctest)]
