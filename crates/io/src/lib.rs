@@ -9,6 +9,7 @@ pub mod checkpoint;
 pub mod diagnostic;
 pub mod disjoint;
 pub mod hash;
+pub mod interpolation;
 pub mod program;
 pub mod results;
 pub mod safe_write;

@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::Command;
 
 use dem_io::study::Pieces;
-use dem_run::sweep::masses::{by_chance, distance, masses_kg};
+use dem_study::masses::{by_chance, distance, masses_kg};
 
 const WAYS: [(&str, &str); 3] = [
     ("chute-bonded", "breakable from the start"),

@@ -28,7 +28,6 @@ pub mod cli;
 pub mod clock;
 mod disjoint;
 pub mod geometry;
-pub mod interpolation;
 pub mod interrupt;
 pub mod laboratory;
 pub mod machine;
@@ -42,7 +41,6 @@ pub mod stages;
 pub mod state;
 pub mod step;
 pub mod stress;
-pub mod sweep;
 
 pub use plan::{Plan, plan};
 pub use run::{RunSettings, run};

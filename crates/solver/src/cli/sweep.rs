@@ -18,19 +18,19 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::interrupt::Interrupt;
-use crate::sweep::collect::outcome;
-use crate::sweep::curves;
-use crate::sweep::expand::{MOST_UNASKED, Run, runs};
-use crate::sweep::folder::{Earlier, SweepFolder};
-use crate::sweep::jobs::{
+use dem_study::collect::outcome;
+use dem_study::curves;
+use dem_study::expand::{MOST_UNASKED, Run, runs};
+use dem_study::folder::{Earlier, SweepFolder};
+use dem_study::jobs::{
     Job, arguments, further_jobs, jobs, refuse_unlistable, scene_arguments, shell_line, work,
 };
-use crate::sweep::outcome::Outcome;
-use crate::sweep::page::page;
-use crate::sweep::plot::svg;
-use crate::sweep::rows::{Row, SweepTable};
-use crate::sweep::text::csv;
-use crate::sweep::want::{Want, fastest};
+use dem_study::outcome::Outcome;
+use dem_study::page::page;
+use dem_study::plot::svg;
+use dem_study::rows::{Row, SweepTable};
+use dem_study::text::csv;
+use dem_study::want::{Want, fastest};
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArguments {

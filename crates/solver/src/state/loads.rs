@@ -2,7 +2,7 @@
 
 use dem_io::scene::Factor;
 
-use crate::interpolation::interpolated;
+use dem_io::interpolation::interpolated;
 
 /// A load on some particles, the same on each.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use std::path::Path;
 use dem_io::results::{Axis, Line, MOST_LINES, Plot};
 
 use super::rows::SweepTable;
-use crate::interpolation::interpolated;
+use dem_io::interpolation::interpolated;
 
 /// The curve of the test whose results stand in this folder: points (displacement in m, load in N),
 /// rising in the first.
