@@ -140,7 +140,7 @@ impl Group<'_> {
         let Some(Extrapolated {
             value,
             uncertainty,
-            doubt,
+            warning,
             ..
         }) = richardson(&points)
         else {
@@ -154,13 +154,13 @@ impl Group<'_> {
             }
             return;
         };
-        if let (Some(doubt), Some(&first)) = (doubt, members.first()) {
+        if let (Some(warning), Some(&first)) = (warning, members.first()) {
             notes.push(format!(
                 "{}: no extrapolation along {} ({}): {}; compared with the finest run, good to {}",
                 of.name,
                 study.axes[along].name,
                 self.named(first),
-                doubt.text(),
+                warning.text(),
                 significant(uncertainty, 2)
             ));
         }

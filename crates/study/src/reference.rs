@@ -11,20 +11,20 @@ pub struct Extrapolated {
     /// Observed order. None: it cannot be told.
     pub order: Option<f64>,
     /// What speaks against it. None: nothing.
-    pub doubt: Option<Doubtful>,
+    pub warning: Option<Warning>,
 }
 
 /// What speaks against an extrapolation. The value is that of the finest size then, and the
 /// uncertainty three times what the finest three differ by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Doubtful {
+pub enum Warning {
     /// The values go up and down.
     NotMonotone,
     /// They do not come nearer to each other.
     DoesNotConverge,
 }
 
-impl Doubtful {
+impl Warning {
     /// In words.
     pub fn text(self) -> &'static str {
         match self {
@@ -61,7 +61,7 @@ pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     let finest = through([*a, *b, *c]);
     let next = points.get(3).map(|d| through([*b, *c, *d]));
     Some(match next {
-        Some(next) if finest.doubt.is_none() && next.doubt.is_none() => {
+        Some(next) if finest.warning.is_none() && next.warning.is_none() => {
             let rounding = ROUNDING * a.1.abs();
             let way = (finest.value - a.1).abs();
             // Both are off by a further power of their finest sizes, of the first order at least.
@@ -82,22 +82,22 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
     let (fine, coarse) = (f2 - f1, f3 - f2);
     let rounding = ROUNDING * f1.abs().max(f2.abs()).max(f3.abs());
     let range = f1.max(f2).max(f3) - f1.min(f2).min(f3);
-    let found = |doubt, uncertainty: f64| Extrapolated {
+    let found = |warning, uncertainty: f64| Extrapolated {
         value: f1,
         uncertainty: uncertainty.max(rounding),
         order: None,
-        doubt,
+        warning,
     };
     if fine.abs() <= rounding {
         return found(None, rounding);
     }
     if fine * coarse <= 0.0 {
-        return found(Some(Doubtful::NotMonotone), 3.0 * range);
+        return found(Some(Warning::NotMonotone), 3.0 * range);
     }
     let ratio = |p: f64| (h3.powf(p) - h2.powf(p)) / (h2.powf(p) - h1.powf(p));
     let wanted = coarse / fine;
     if wanted <= ratio(ORDERS[0]) {
-        return found(Some(Doubtful::DoesNotConverge), 3.0 * range);
+        return found(Some(Warning::DoesNotConverge), 3.0 * range);
     }
     // The ratio rises with the order.
     let [mut low, mut high] = ORDERS;
@@ -115,7 +115,7 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
         value,
         uncertainty: (SAFETY * (value - f1).abs()).max(rounding),
         order: Some(order),
-        doubt: None,
+        warning: None,
     }
 }
 
@@ -154,7 +154,7 @@ mod tests {
                 let found = richardson(&sequence(order, sizes, 0.0)).unwrap();
                 assert!((found.value - TRUTH).abs() < 1e-10, "{order} {found:?}");
                 assert!((found.order.unwrap() - f64::from(order)).abs() < 1e-6);
-                assert_eq!(found.doubt, None);
+                assert_eq!(found.warning, None);
                 assert!(found.uncertainty >= (found.value - TRUTH).abs());
             }
         }
@@ -183,13 +183,13 @@ mod tests {
     #[test]
     fn values_that_go_up_and_down_are_flagged() {
         let found = richardson(&[(0.1, 1.0), (0.2, 1.1), (0.4, 0.9)]).unwrap();
-        assert_eq!(found.doubt, Some(Doubtful::NotMonotone));
+        assert_eq!(found.warning, Some(Warning::NotMonotone));
         assert_eq!((found.value, found.order), (1.0, None));
         assert!((found.uncertainty - 0.6).abs() < 1e-12);
         let found = richardson(&[(0.1, 1.0), (0.2, 1.2), (0.4, 1.3)]).unwrap();
-        assert_eq!(found.doubt, Some(Doubtful::DoesNotConverge));
+        assert_eq!(found.warning, Some(Warning::DoesNotConverge));
         let found = richardson(&[(0.1, 1.0), (0.2, 1.0), (0.4, 1.0)]).unwrap();
-        assert_eq!((found.doubt, found.value), (None, 1.0));
+        assert_eq!((found.warning, found.value), (None, 1.0));
         assert!(richardson(&[(0.1, 1.0), (0.2, 1.0), (0.2, 1.0)]).is_none());
     }
 

@@ -194,8 +194,8 @@ pub(super) fn place_contacts(
 /// Makes of what overlaps contacts that press as if they had been pressed together before.
 fn keep_overlaps(contacts: &mut Contacts, state: &State) {
     let poses = &state.particles.poses;
-    for (&pair, memory) in contacts.pairs.iter().zip(&mut contacts.histories) {
-        *memory = ContactHistory::pressed_by(overlap_m(poses, pair));
+    for (&pair, history) in contacts.pairs.iter().zip(&mut contacts.histories) {
+        *history = ContactHistory::pressed_by(overlap_m(poses, pair));
     }
     contacts.divide(state.particles.len(), contacts.wanted_partitions);
 }

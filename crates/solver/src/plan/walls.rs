@@ -229,7 +229,7 @@ fn refuse_touches(
 /// A touch at the start: its overlap is where the law begins, or presses where it is kept.
 fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallContact {
     let overlap_m = state.particles.poses[particle as usize].radius_m() - touch.distance_m;
-    let memory = if keeps {
+    let history = if keeps {
         ContactHistory::pressed_by(overlap_m)
     } else {
         ContactHistory::parted_at(overlap_m)
@@ -238,6 +238,6 @@ fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallCon
         particle,
         feature: touch.feature,
         normal: touch.normal.map(|x| -x),
-        history: memory,
+        history,
     }
 }

@@ -222,7 +222,7 @@ struct PartitionOutput<'a> {
 
 impl<'a> PartitionOutput<'a> {
     fn split(self, contacts: usize, particles: usize) -> [Self; 2] {
-        let (histories, other_memories) = self.histories.split_at_mut(contacts);
+        let (histories, other_histories) = self.histories.split_at_mut(contacts);
         let (wrenches, other_wrenches) = self.wrenches.split_at_mut(particles);
         let (lost_j, other_lost_j) = self.lost_j.split_at_mut(particles);
         [
@@ -232,7 +232,7 @@ impl<'a> PartitionOutput<'a> {
                 lost_j,
             },
             Self {
-                histories: other_memories,
+                histories: other_histories,
                 wrenches: other_wrenches,
                 lost_j: other_lost_j,
             },

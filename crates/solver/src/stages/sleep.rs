@@ -138,8 +138,8 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
         may[id(touch.particle) as usize] = false;
     }
     let mut names: Vec<u32> = (0..may.len() as u32).collect();
-    for (pair, memory) in contacts.pairs.iter().zip(&contacts.histories) {
-        if memory.overlap_m() > 0.0 {
+    for (pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
+        if history.overlap_m() > 0.0 {
             join(&mut names, id(pair[0]), id(pair[1]));
         }
     }
@@ -396,14 +396,14 @@ pub fn keep_touches(state: &mut State) {
         return;
     }
     let known = sleep.pairs.len() + sleep.touches.len();
-    for (at, (&pair, &memory)) in contacts.pairs.iter().zip(&contacts.histories).enumerate() {
+    for (at, (&pair, &history)) in contacts.pairs.iter().zip(&contacts.histories).enumerate() {
         let both_sleep = pair.iter().all(|&i| p.sleeps(i as usize));
         // Pairs that are listed and do not touch remember nothing.
-        if both_sleep && memory != ContactHistory::default() {
+        if both_sleep && history != ContactHistory::default() {
             let elastic_j = contact_energy_j(contacts, p, at);
             sleep.pairs.push(FrozenContact {
                 pair,
-                history: memory,
+                history,
                 elastic_j,
             });
         }
