@@ -21,6 +21,7 @@ mod laboratory;
 mod leave_out;
 mod measures;
 mod meet;
+mod notation;
 mod pictures;
 mod shape;
 mod sleep;
