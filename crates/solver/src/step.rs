@@ -39,7 +39,7 @@ type Part = (&'static Stage, fn(&mut State) -> usize);
 
 /// First half of a step: what acts on the particles where they are, and how that changes their
 /// velocities.
-const INTERACT: [Part; 27] = [
+const INTERACT: &[Part] = &[
     (&SEARCH, renew_lists),
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
@@ -70,7 +70,7 @@ const INTERACT: [Part; 27] = [
 ];
 
 /// Second half, where velocities stand half a step later: bodies come, go and become others.
-const EXCHANGE: [Part; 4] = [
+const EXCHANGE: &[Part] = &[
     (&LEDGER, count_bond_steps),
     (&FLOW, let_bodies_come_and_go),
     (&REPLACEMENT, restore_clumps),
@@ -78,7 +78,7 @@ const EXCHANGE: [Part; 4] = [
 ];
 
 /// And all move on.
-const DRIFT: [Part; 6] = [
+const DRIFT: &[Part] = &[
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
     (&CLUMPS, drift_clumps),
@@ -101,7 +101,7 @@ pub fn interact(state: &mut State) {
     if !state.ledger.is_open {
         state.ledger = opened(state);
     }
-    run(&INTERACT, &TABLE.interact, state);
+    run(INTERACT, &TABLE.interact, state);
 }
 
 /// Second half of a step. Afterwards poses and time stand at the end of the step.
@@ -113,12 +113,12 @@ pub fn advance(state: &mut State) {
 /// Bodies come, go and become others, where poses stand at `time_s` and velocities half a step
 /// later.
 pub fn exchange(state: &mut State) {
-    run(&EXCHANGE, &TABLE.exchange, state);
+    run(EXCHANGE, &TABLE.exchange, state);
 }
 
 /// All move on to the end of the step.
 pub fn drift(state: &mut State) {
-    run(&DRIFT, &TABLE.drift, state);
+    run(DRIFT, &TABLE.drift, state);
 }
 
 fn run(parts: &[Part], stages: &[usize], state: &mut State) {
