@@ -66,7 +66,6 @@ const INTERACT: &[Part] = &[
     (&LEDGER, book_after_kick),
     (&OUTPUT, watch),
     (&CHECKS, nothing),
-    (&OUTPUT, nothing),
 ];
 
 /// Second half, where velocities stand half a step later: bodies come, go and become others.
@@ -132,7 +131,7 @@ fn run(parts: &[Part], stages: &[usize], state: &mut State) {
     }
 }
 
-/// Checks and files have their place in the table and are done between steps.
+/// Checks have their place in the table and are done between steps.
 fn nothing(_: &mut State) -> usize {
     0
 }
