@@ -56,7 +56,8 @@ pub(crate) struct Parts {
 }
 
 impl Body {
-    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and as thick as the smaller of their spheres.
+    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and as
+    /// thick as the smaller of their spheres.
     ///
     /// # Errors
     /// Not a body by [`Body::check`].
@@ -84,8 +85,8 @@ impl Body {
         crate::hash::fnv1a(&bytes)
     }
 
-    /// A body from what a file tells of it. The smaller end of each bond is put first. Unless given,
-    /// a bond is as thick as the smaller of its particles and as long as they are apart.
+    /// A body from what a file tells of it. The smaller end of each bond is put first. Unless
+    /// given, a bond is as thick as the smaller of its particles and as long as they are apart.
     ///
     /// # Errors
     /// Not a body by [`Body::check`].

@@ -80,10 +80,12 @@ impl StoredFrame {
         fragments
     }
 
-    /// A fragment as a body: its particles where they stand, in the order of the frame, and the bonds between them that hold.
+    /// A fragment as a body: its particles where they stand, in the order of the frame, and the
+    /// bonds between them that hold.
     ///
-    /// Bonds keep the lengths at which they are free of force, so that one that is stretched or pressed stays so. That they were
-    /// bent, twisted or sheared is lost, and so are velocities. The density is that of the particles, unless they differ.
+    /// Bonds keep the lengths at which they are free of force, so that one that is stretched or
+    /// pressed stays so. That they were bent, twisted or sheared is lost, and so are velocities.
+    /// The density is that of the particles, unless they differ.
     ///
     /// # Errors
     /// There is no such fragment; the frame holds no sound body of it.

@@ -22,11 +22,13 @@ use crate::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 pub enum BodySource {
     /// `file`, resolved against the folder of the scene; "-" is standard input.
     File(PathBuf),
-    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its particles, times `radius_factor`, and as long as they are apart.
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its
+    /// particles, times `radius_factor`, and as long as they are apart.
     Inline {
         /// `particles = [[x, y, z, radius], ...]`, m.
         particles: Vec<[f64; 4]>,
-        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here, in any order in the file.
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here,
+        /// in any order in the file.
         bonds: Vec<[u32; 2]>,
     },
 }
@@ -42,7 +44,8 @@ pub struct BodyEntry {
     pub bond_kind: Option<String>,
     /// `position`: moved by this, m. Length 3. After `rotation`.
     pub position_m: [f64; 3],
-    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation vector, rad. Length 3.
+    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation
+    /// vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
     /// `velocity` of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],

@@ -6,7 +6,6 @@ use super::material::poisson_ratio;
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
-
 use crate::diagnostic::Result;
 use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
 
@@ -51,7 +50,8 @@ pub struct BondKind {
     pub young_modulus_pa: f64,
     /// `poisson_ratio`, in (-1, 0.5].
     pub poisson_ratio: f64,
-    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
+    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of
+    /// the body's file.
     pub radius_factor: Option<f64>,
     /// `damping = { ... }`
     pub damping: BondDamping,
@@ -64,7 +64,8 @@ pub struct BondKind {
 pub struct BondDamping {
     /// `viscous`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
     pub viscous: f64,
-    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional one.
+    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
+    /// one.
     pub each_mode: bool,
     /// `force`: d of Platzer 2022, eq. 7, N s/m. 0: none.
     pub force_n_s_m: f64,
@@ -78,7 +79,8 @@ pub enum RateOf {
     /// "elongation": relative velocity along the bond over its initial length.
     #[default]
     Elongation,
-    /// "relative-velocity": the whole relative velocity over the initial length, as printed in Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in
+    /// Platzer 2022, eq. 21. A bond that only turns has a rate, too.
     RelativeVelocity,
 }
 
@@ -100,11 +102,13 @@ pub struct BondFailure {
     pub rate_strengthening_from_1_s: Option<f64>,
     /// `rate_of`: what that rate is of. The elongation unless given.
     pub rate_of: RateOf,
-    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale is the strength given. None: all alike.
+    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
+    /// is the strength given. None: all alike.
     pub weibull_modulus: Option<f64>,
 }
 
-/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20, 21] begins to rise.
+/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20,
+/// 21] begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
 
 pub(super) static BOND: Schema = Schema {

@@ -12,7 +12,8 @@ pub struct Clusters {
     pub interval: u64,
     /// `min_broken`: bonds that must have broken since the last search for another. At least 1.
     pub min_broken: u64,
-    /// `force_every`: so many intervals after the last search there is another in any case. 0: never.
+    /// `force_every`: so many intervals after the last search there is another in any case. 0:
+    /// never.
     pub force_every: u64,
 }
 

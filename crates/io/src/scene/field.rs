@@ -154,7 +154,8 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A whole number from `least` to `most`; None names no largest one, though only what 64 bits hold is taken.
+    /// A whole number from `least` to `most`; None names no largest one, though only what 64 bits
+    /// hold is taken.
     pub(super) fn whole(&self, least: u64, most: Option<u64>, remedy: &str) -> Result<u64> {
         let number = match &self.node.value {
             Value::Number(written, _) => written.parse().ok(),
@@ -222,7 +223,8 @@ impl<'a> Field<'a> {
         Ok(name.to_owned())
     }
 
-    /// Refuses the key `name` of this value where it is no name of `known`: the names in `[table.NAME]`.
+    /// Refuses the key `name` of this value where it is no name of `known`: the names in
+    /// `[table.NAME]`.
     pub(super) fn key_reference<'n>(
         &self,
         name: &str,

@@ -68,7 +68,8 @@ impl Listing {
     }
 }
 
-/// Both ways of a table whose keys stand for one field each: `fields` fills the struct, `list` shows it.
+/// Both ways of a table whose keys stand for one field each: `fields` fills the struct, `list`
+/// shows it.
 macro_rules! one_field_a_key {
     ($of:ident { $($field:ident: $key:literal),+ $(,)? }) => {
         fn fields(table: &$crate::scene::table::Table<'_>) -> $crate::diagnostic::Result<$of> {

@@ -12,9 +12,11 @@ use crate::units::{DENSITY, STRESS};
 /// What particles and walls are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand in the scene has none.
+    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand
+    /// in the scene has none.
     pub density_kg_m3: Option<f64>,
-    /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only contacts and Rayleigh's estimate need it.
+    /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only
+    /// contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
     pub poisson_ratio: f64,

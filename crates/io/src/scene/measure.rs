@@ -7,7 +7,6 @@ use super::numbers::quantity as shown;
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::targets::{Subject, Targets};
-
 use crate::diagnostic::Result;
 use crate::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
@@ -37,7 +36,8 @@ pub enum Quantity {
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the set, N.
     Reaction(u8),
-    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N m.
+    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N
+    /// m.
     ReactionTorque(u8),
     /// "kinetic_energy", J.
     KineticEnergy,

@@ -51,8 +51,8 @@ pub fn text_of(path: &Path, what: &str) -> Result<String> {
     })
 }
 
-/// The file or folder that `field` names. Names in the file are resolved against its folder; names on the command line
-/// are meant from where the program runs. "-" stays.
+/// The file or folder that `field` names. Names in the file are resolved against its folder; names
+/// on the command line are meant from where the program runs. "-" stays.
 ///
 /// # Errors
 /// No text, or empty.

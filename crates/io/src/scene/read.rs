@@ -18,12 +18,13 @@ use super::{
 use crate::diagnostic::Result;
 use crate::scene::field::Field;
 
-/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;
-/// a value that is no TOML is text. File names in the scene are resolved against its folder, those in
-/// `overrides` against the current one; "-" stays.
+/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in
+/// `run.end_time="0.5 s"`; a value that is no TOML is text. File names in the scene are resolved
+/// against its folder, those in `overrides` against the current one; "-" stays.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
+/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the
+/// option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     let text = text_of(path, "a scene")?;
     scene_from_text(&text, &path.display().to_string(), overrides)

@@ -1,4 +1,5 @@
-//! What is written from the schema of scenes and studies: the reference, and the JSON Schema for editors.
+//! What is written from the schema of scenes and studies: the reference, and the JSON Schema for
+//! editors.
 
 mod json;
 mod markdown;

@@ -41,7 +41,8 @@ pub struct Scene {
     pub run: Run,
     /// `[materials.NAME]`
     pub materials: BTreeMap<String, Material>,
-    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls need may be missing.
+    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls
+    /// need may be missing.
     pub contacts: Vec<Contact>,
     /// `[bonds.NAME]`
     pub bonds: BTreeMap<String, BondKind>,
@@ -49,7 +50,8 @@ pub struct Scene {
     pub bodies: BTreeMap<String, BodyEntry>,
     /// `[walls.NAME]`. No body or set has the name of a wall.
     pub walls: BTreeMap<String, Wall>,
-    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
+    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of
+    /// the scene.
     pub sets: BTreeMap<String, ParticleSet>,
     /// `[initial.NAME]`
     pub initial: BTreeMap<String, Initial>,

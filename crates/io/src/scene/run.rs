@@ -5,7 +5,6 @@ use std::ops::Bound::{Excluded, Included};
 use super::listing::one_field_a_key;
 use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
-
 use crate::diagnostic::Result;
 use crate::units::{ACCELERATION, TIME};
 
@@ -16,11 +15,13 @@ pub struct Run {
     pub end_time_s: f64,
     /// `integrator`, "leapfrog" unless given.
     pub integrator: Integrator,
-    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
+    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the
+    /// elastic energy during the last fifth of the run.
     pub rest: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and more are for trials only.
+    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and
+    /// more are for trials only.
     pub safety: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
     pub adaptive: bool,
@@ -40,7 +41,8 @@ pub enum Integrator {
     /// "leapfrog": step by step.
     #[default]
     Leapfrog,
-    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded bodies on supports only: nothing touches, breaks, comes or goes.
+    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded
+    /// bodies on supports only: nothing touches, breaks, comes or goes.
     Static,
 }
 

@@ -1,5 +1,5 @@
-//! The schema of scenes and studies: a table lists its keys once, each with kind, unit, default, limits and one
-//! sentence. Reader, messages, listing, reference and JSON Schema are made from it.
+//! The schema of scenes and studies: a table lists its keys once, each with kind, unit, default,
+//! limits and one sentence. Reader, messages, listing, reference and JSON Schema are made from it.
 
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{Bound, RangeBounds};
@@ -51,7 +51,8 @@ pub(super) enum Kind {
     Vector(&'static Dimension),
     /// Three numbers that point somewhere; how messages call them: "an axis".
     Direction(&'static str),
-    /// A whole number from `least`, of such things ("steps"); `most` is None where no message needs to name it.
+    /// A whole number from `least`, of such things ("steps"); `most` is None where no message needs
+    /// to name it.
     Whole {
         least: u64,
         most: Option<u64>,

@@ -10,7 +10,8 @@ use crate::diagnostic::Result;
 /// How particles that may touch are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0, 2]. None: chosen by the program.
+    /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0,
+    /// 2]. None: chosen by the program.
     pub skin: Option<f64>,
 }
 

@@ -26,7 +26,8 @@ pub struct ParticleSet {
 pub enum Pick {
     /// `all = true`
     All,
-    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there is one body.
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there
+    /// is one body.
     Particles(Vec<u32>),
     /// `box = { min, max }`: centres in it, m.
     Box {

@@ -59,7 +59,8 @@ pub(super) const UNIT: Key = Key::new(
 )
 .sometimes_required("\"mm\", the file's unit of length");
 
-/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each axis; `limit` says in words what min must be to max.
+/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each
+/// axis; `limit` says in words what min must be to max.
 pub(super) fn corners(
     field: &Field<'_>,
     limit: &str,
@@ -106,7 +107,8 @@ pub(super) fn cylinder(field: &Field<'_>) -> Result<([[f64; 3]; 2], f64)> {
     Ok(([from_m, to_m], table.read("radius")?))
 }
 
-/// The file of triangles that `field`, a key of `table`, names, and the size of the file's `unit`, m.
+/// The file of triangles that `field`, a key of `table`, names, and the size of the file's `unit`,
+/// m.
 pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result<(PathBuf, f64)> {
     let path = named_path(field, folder)?;
     if path.as_os_str() == "-" {

@@ -9,7 +9,6 @@ use super::schema::{Key, Kind, Schema};
 use super::table::Table;
 use super::targets::{OF, Targets};
 use super::tree::Value;
-
 use crate::diagnostic::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
@@ -29,7 +28,8 @@ pub enum Hold {
 pub struct Support {
     /// `of`: a set, a body or `all`.
     pub of: String,
-    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all are free. Length 6.
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all
+    /// are free. Length 6.
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,

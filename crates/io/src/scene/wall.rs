@@ -106,7 +106,8 @@ pub struct Wall {
     pub pivot_m: [f64; 3],
     /// How it moves; fixed unless given.
     pub motion: WallMotion,
-    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given. Length 3.
+    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given.
+    /// Length 3.
     pub surface_velocity_m_s: [f64; 3],
 }
 

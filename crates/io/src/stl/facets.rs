@@ -6,7 +6,8 @@ pub(super) const REMEDY_AGAIN: &str = "export or copy the file again";
 /// The facets of an STL file, as they stand there.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facets {
-    /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the corners says it better.
+    /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the
+    /// corners says it better.
     pub corners: Vec<[[f64; 3]; 3]>,
     /// One sentence for each thing that is odd about the file but harmless.
     pub warnings: Vec<String>,

@@ -9,7 +9,8 @@ pub struct Shell {
     pub first_triangle: usize,
     /// How many triangles it has.
     pub triangle_count: usize,
-    /// Enclosed volume in m3, always positive. Where the shell crosses itself, parts enclosed twice count twice.
+    /// Enclosed volume in m3, always positive. Where the shell crosses itself, parts enclosed twice
+    /// count twice.
     pub volume_m3: f64,
     /// An inner shell: what it encloses is void.
     pub is_cavity: bool,
@@ -22,7 +23,8 @@ pub struct Shell {
 pub struct Repairs {
     /// Facets in the file.
     pub facets_read: usize,
-    /// Corners that were moved onto another one within `weld_tolerance_m` (not counting exact matches).
+    /// Corners that were moved onto another one within `weld_tolerance_m` (not counting exact
+    /// matches).
     pub welded_vertices: usize,
     /// Largest distance at which two corners were taken for one, m.
     pub weld_tolerance_m: f64,
@@ -32,7 +34,8 @@ pub struct Repairs {
     pub duplicate_facets: usize,
     /// Facets turned so that the normals of their shell point out of the solid.
     pub flipped_facets: usize,
-    /// Edges split on one side only (T-junctions), closed in space by splitting them on the other side too.
+    /// Edges split on one side only (T-junctions), closed in space by splitting them on the other
+    /// side too.
     pub t_junctions: usize,
     /// Holes closed on request.
     pub filled_holes: usize,
@@ -44,9 +47,9 @@ pub struct Repairs {
 
 /// A closed triangulated surface of one or several shells, every normal pointing out of the solid.
 ///
-/// Coordinates are local, so that neither a large offset nor a small size costs digits:
-/// a point in space is `origin_m + unit_m * local`, the smallest corner of the bounding box is at the local origin
-/// and the largest extent is between 1 and 2 local units.
+/// Coordinates are local, so that neither a large offset nor a small size costs digits: a point in
+/// space is `origin_m + unit_m * local`, the smallest corner of the bounding box is at the local
+/// origin and the largest extent is between 1 and 2 local units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Where it came from, for messages and metadata: file name or "standard input".
@@ -59,22 +62,26 @@ pub struct Surface {
     pub unit_m: f64,
     /// Corners, in local units.
     pub vertices: Vec<[f64; 3]>,
-    /// Three indices into `vertices` each, counter-clockwise seen from outside the solid. Sorted by shell.
+    /// Three indices into `vertices` each, counter-clockwise seen from outside the solid. Sorted by
+    /// shell.
     pub triangles: Vec<[u32; 3]>,
     /// The connected parts.
     pub shells: Vec<Shell>,
-    /// What the volumes of the shells count more than once because shells cross or overlap, m3: zero when none does.
+    /// What the volumes of the shells count more than once because shells cross or overlap, m3:
+    /// zero when none does.
     pub overlap_volume_m3: f64,
     /// Estimated error of `overlap_volume_m3`, m3: it is integrated over columns.
     pub overlap_volume_error_m3: f64,
     /// What was repaired.
     pub repairs: Repairs,
-    /// One sentence for each thing that a user should know (repairs, T-junctions, self-intersections).
+    /// One sentence for each thing that a user should know (repairs, T-junctions,
+    /// self-intersections).
     pub warnings: Vec<String>,
 }
 
 impl Surface {
-    /// Volume of the solid in m3: the outer shells less their cavities and less what is counted more than once.
+    /// Volume of the solid in m3: the outer shells less their cavities and less what is counted
+    /// more than once.
     pub fn volume_m3(&self) -> f64 {
         let sum: f64 = self
             .shells
@@ -95,7 +102,8 @@ impl Surface {
         self.shells.iter().filter(|s| !s.is_cavity).count()
     }
 
-    /// The largest corner of the bounding box, in local units (the smallest is the origin). Length 3.
+    /// The largest corner of the bounding box, in local units (the smallest is the origin). Length
+    /// 3.
     pub fn extent(&self) -> [f64; 3] {
         let mut extent = [0.0_f64; 3];
         for v in &self.vertices {

@@ -1,4 +1,5 @@
-//! The reference and the JSON Schema, which are written from the schema by which scenes and studies are read.
+//! The reference and the JSON Schema, which are written from the schema by which scenes and studies
+//! are read.
 
 mod json;
 
@@ -76,7 +77,8 @@ fn the_files_in_doc_are_those_that_the_program_writes() {
     }
 }
 
-/// Fails where one of the at least `fewest` keys of a schema is in none of the files, or where it refuses one of them.
+/// Fails where one of the at least `fewest` keys of a schema is in none of the files, or where it
+/// refuses one of them.
 #[track_caller]
 fn assert_all_stand_in(files: &[PathBuf], schema: &Value, fewest: usize) {
     let mut missing = BTreeSet::new();

@@ -26,12 +26,14 @@ pub enum WallMotion {
     Displacement {
         /// Of the pivot, m. Length 3.
         displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
+        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad.
+        /// Length 3.
         turn_rad: [f64; 3],
         /// On both, over time.
         factor: Factor,
     },
-    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
+    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction`
+    /// such that it pushes as wanted.
     Servo {
         /// `force`: what it is to push with along `direction`, N; below 0 against it.
         force_n: f64,
