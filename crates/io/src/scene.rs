@@ -1,6 +1,8 @@
-//! A scene: what stands where, of what, what is done to it and what is asked. Plain data in SI units, as read from TOML.
+//! A scene: what stands where, of what, what is done to it and what is asked. Plain data in SI
+//! units, as read from TOML.
 //!
-//! Every table of the file has one struct, here or beside its reader; names are unique within their table. The reader of the file refuses what cannot be simulated.
+//! Every table of the file has one struct, here or beside its reader; names are unique within their
+//! table. The reader of the file refuses what cannot be simulated.
 
 mod body;
 mod bond;
@@ -70,7 +72,8 @@ pub struct Scene {
     pub run: Run,
     /// `[materials.NAME]`
     pub materials: BTreeMap<String, Material>,
-    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls need may be missing.
+    /// `[contacts]`, by pairs of materials: sorted, each pair once. Pairs that bodies and walls
+    /// need may be missing.
     pub contacts: Vec<Contact>,
     /// `[bonds.NAME]`
     pub bonds: BTreeMap<String, BondKind>,
@@ -78,7 +81,8 @@ pub struct Scene {
     pub bodies: BTreeMap<String, BodyEntry>,
     /// `[walls.NAME]`. No body or set has the name of a wall.
     pub walls: BTreeMap<String, Wall>,
-    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of the scene.
+    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of
+    /// the scene.
     pub sets: BTreeMap<String, ParticleSet>,
     /// `[initial.NAME]`
     pub initial: BTreeMap<String, Initial>,
@@ -117,11 +121,13 @@ pub struct Run {
     pub end_time_s: f64,
     /// `integrator`, "leapfrog" unless given.
     pub integrator: Integrator,
-    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the elastic energy during the last fifth of the run.
+    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the
+    /// elastic energy during the last fifth of the run.
     pub rest: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and more are for trials only.
+    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and
+    /// more are for trials only.
     pub safety: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
     pub adaptive: bool,
@@ -141,7 +147,8 @@ pub enum Integrator {
     /// "leapfrog": step by step.
     #[default]
     Leapfrog,
-    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded bodies on supports only: nothing touches, breaks, comes or goes.
+    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded
+    /// bodies on supports only: nothing touches, breaks, comes or goes.
     Static,
 }
 
@@ -159,9 +166,11 @@ pub enum StartOverlap {
 /// What particles and walls are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand in the scene has none.
+    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand
+    /// in the scene has none.
     pub density_kg_m3: Option<f64>,
-    /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only contacts and Rayleigh's estimate need it.
+    /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only
+    /// contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
     pub poisson_ratio: f64,
@@ -210,7 +219,8 @@ pub struct BondKind {
     pub young_modulus_pa: f64,
     /// `poisson_ratio`, in (-1, 0.5].
     pub poisson_ratio: f64,
-    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of the body's file.
+    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of
+    /// the body's file.
     pub radius_factor: Option<f64>,
     /// `damping = { ... }`
     pub damping: BondDamping,
@@ -223,7 +233,8 @@ pub struct BondKind {
 pub struct BondDamping {
     /// `viscous`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
     pub viscous: f64,
-    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional one.
+    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
+    /// one.
     pub each_mode: bool,
     /// `force`: d of Platzer 2022, eq. 7, N s/m. 0: none.
     pub force_n_s_m: f64,
@@ -237,7 +248,8 @@ pub enum RateOf {
     /// "elongation": relative velocity along the bond over its initial length.
     #[default]
     Elongation,
-    /// "relative-velocity": the whole relative velocity over the initial length, as printed in Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in
+    /// Platzer 2022, eq. 21. A bond that only turns has a rate, too.
     RelativeVelocity,
 }
 
@@ -259,7 +271,8 @@ pub struct BondFailure {
     pub rate_strengthening_from_1_s: Option<f64>,
     /// `rate_of`: what that rate is of. The elongation unless given.
     pub rate_of: RateOf,
-    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale is the strength given. None: all alike.
+    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
+    /// is the strength given. None: all alike.
     pub weibull_modulus: Option<f64>,
 }
 
@@ -268,11 +281,13 @@ pub struct BondFailure {
 pub enum BodySource {
     /// `file`, resolved against the folder of the scene; "-" is standard input.
     File(PathBuf),
-    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its particles, times `radius_factor`, and as long as they are apart.
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its
+    /// particles, times `radius_factor`, and as long as they are apart.
     Inline {
         /// `particles = [[x, y, z, radius], ...]`, m.
         particles: Vec<[f64; 4]>,
-        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here, in any order in the file.
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here,
+        /// in any order in the file.
         bonds: Vec<[u32; 2]>,
     },
 }
@@ -288,7 +303,8 @@ pub struct BodyEntry {
     pub bond_kind: Option<String>,
     /// `position`: moved by this, m. Length 3. After `rotation`.
     pub position_m: [f64; 3],
-    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation vector, rad. Length 3.
+    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation
+    /// vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
     /// `velocity` of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],
@@ -323,7 +339,8 @@ pub struct ParticleSet {
 pub enum Pick {
     /// `all = true`
     All,
-    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there is one body.
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there
+    /// is one body.
     Particles(Vec<u32>),
     /// `box = { min, max }`: centres in it, m.
     Box {
@@ -351,7 +368,8 @@ pub enum Factor {
         /// End of the rise, s.
         until_s: f64,
     },
-    /// `table = [[time, factor], ...]`: straight between the points, constant outside them. Times rise.
+    /// `table = [[time, factor], ...]`: straight between the points, constant outside them. Times
+    /// rise.
     Table(Vec<[f64; 2]>),
 }
 
@@ -371,7 +389,8 @@ pub enum Hold {
 pub struct Support {
     /// `of`: a set, a body or `all`.
     pub of: String,
-    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all are free. Length 6.
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all
+    /// are free. Length 6.
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,
@@ -418,7 +437,8 @@ pub enum Quantity {
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the set, N.
     Reaction(u8),
-    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N m.
+    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N
+    /// m.
     ReactionTorque(u8),
     /// "kinetic_energy", J.
     KineticEnergy,
@@ -490,15 +510,18 @@ pub struct Measure {
 /// What is written, and how often. Times are simulated seconds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
-    /// `folder`: results go here, resolved against the folder of the scene. None: the scene's name with `-out`.
+    /// `folder`: results go here, resolved against the folder of the scene. None: the scene's name
+    /// with `-out`.
     pub folder: Option<PathBuf>,
     /// `frames`: time between frames. None: first and last only.
     pub frames_s: Option<f64>,
-    /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at least in large scenes.
+    /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at
+    /// least in large scenes.
     pub series_s: Option<f64>,
     /// `pictures`: time between pictures. None: no pictures.
     pub pictures_s: Option<f64>,
-    /// `view = { from }`: where pictures are taken from, as seen from the bodies; of length 1. None: from the front, the right and above. Length 3.
+    /// `view = { from }`: where pictures are taken from, as seen from the bodies; of length 1.
+    /// None: from the front, the right and above. Length 3.
     pub view_from: Option<[f64; 3]>,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,

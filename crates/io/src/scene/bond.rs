@@ -22,7 +22,8 @@ const KEYS: [&str; 9] = [
 /// `shear_coefficient` unless given.
 const SHEAR_COEFFICIENT: f64 = 0.9;
 
-/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20, 21] begins to rise.
+/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20,
+/// 21] begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
 
 /// What a rate can be of.

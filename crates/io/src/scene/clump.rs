@@ -14,10 +14,12 @@ pub enum StartAs {
     Clump(ClumpSettings),
 }
 
-/// `clump = { scale, mass }`: how a rigid clump is made of a body. Its spheres are the body's particles.
+/// `clump = { scale, mass }`: how a rigid clump is made of a body. Its spheres are the body's
+/// particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClumpSettings {
-    /// `scale`: radii with which its spheres touch others, over those of the particles, about their own centres. 1 unless given; in [1, 1.5].
+    /// `scale`: radii with which its spheres touch others, over those of the particles, about their
+    /// own centres. 1 unless given; in [1, 1.5].
     pub scale: f64,
     /// `mass`, "spheres" unless given.
     pub mass: ClumpMass,

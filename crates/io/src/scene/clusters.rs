@@ -8,9 +8,11 @@ use crate::Result;
 pub struct Clusters {
     /// `interval`: steps between two looks at what has broken, 50 unless given. At least 1.
     pub interval: u64,
-    /// `min_broken`: bonds that must have broken since the last search for another, 1 unless given. At least 1.
+    /// `min_broken`: bonds that must have broken since the last search for another, 1 unless given.
+    /// At least 1.
     pub min_broken: u64,
-    /// `force_every`: so many intervals after the last search there is another in any case. 0, unless given: never.
+    /// `force_every`: so many intervals after the last search there is another in any case. 0,
+    /// unless given: never.
     pub force_every: u64,
 }
 

@@ -258,7 +258,8 @@ impl<'a> Field<'a> {
         Ok(name.to_owned())
     }
 
-    /// Refuses the key `name` of this value where it is no name of `known`: the names in `[table.NAME]`.
+    /// Refuses the key `name` of this value where it is no name of `known`: the names in
+    /// `[table.NAME]`.
     pub(super) fn key_reference<'n>(
         &self,
         name: &str,

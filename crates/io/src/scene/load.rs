@@ -69,7 +69,8 @@ pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
     Ok(Some(end_s))
 }
 
-/// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to begin at 0.
+/// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to
+/// begin at 0.
 pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
     let factor = factor(table)?;
     let first = match &factor {

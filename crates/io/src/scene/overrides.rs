@@ -4,11 +4,13 @@ use super::tree::{Document, Node, Origin, Value, parse_value};
 use crate::{Diagnostic, Result};
 
 impl Document {
-    /// Lays a `--set` text over the file: `run.end_time="0.5 s"`. A value that is no TOML is text, without quotes.
-    /// Tables and keys that the file lacks are added; whether they are known is for those who read them.
+    /// Lays a `--set` text over the file: `run.end_time="0.5 s"`. A value that is no TOML is text,
+    /// without quotes. Tables and keys that the file lacks are added; whether they are known is for
+    /// those who read them.
     ///
     /// # Errors
-    /// No `=`, an empty key, a list or table that is no TOML, or a key within something that is no table.
+    /// No `=`, an empty key, a list or table that is no TOML, or a key within something that is no
+    /// table.
     pub(super) fn set(&mut self, text: &str) -> Result<()> {
         let option = self.options.len();
         self.options.push(text.to_owned());

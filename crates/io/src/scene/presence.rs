@@ -8,8 +8,8 @@ use super::table::Table;
 use super::{BodyEntry, Inlet, StartAs};
 use crate::Result;
 
-/// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the particles of a rigid clump cannot be
-/// held or moved one by one.
+/// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the
+/// particles of a rigid clump cannot be held or moved one by one.
 pub(super) struct Presence<'a> {
     pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
     pub(super) inlets: &'a BTreeMap<String, Inlet>,
@@ -24,7 +24,8 @@ struct Absence {
 }
 
 impl Presence<'_> {
-    /// Refuses the body `name`, which `field` gives, where it has no particles of its own at the start.
+    /// Refuses the body `name`, which `field` gives, where it has no particles of its own at the
+    /// start.
     pub(super) fn refuse_body(&self, field: &Field<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
@@ -35,7 +36,8 @@ impl Presence<'_> {
         }
     }
 
-    /// Refuses `table`, which is about the only body, `name`, where that has no particles of its own at the start.
+    /// Refuses `table`, which is about the only body, `name`, where that has no particles of its
+    /// own at the start.
     pub(super) fn refuse_only(&self, table: &Table<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
@@ -46,7 +48,8 @@ impl Presence<'_> {
         }
     }
 
-    /// Refuses the name `all`, which `field` gives, where a body of all has no particles of its own at the start.
+    /// Refuses the name `all`, which `field` gives, where a body of all has no particles of its own
+    /// at the start.
     pub(super) fn refuse_all(&self, field: &Field<'_>) -> Result<()> {
         for name in self.bodies.keys() {
             if let Some(Absence { why, .. }) = self.absence(name) {
@@ -60,7 +63,8 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the set `field` of the body `body`, or of all bodies, where it could pick particles of a clump, or where the body is fed.
+    /// Refuses the set `field` of the body `body`, or of all bodies, where it could pick particles
+    /// of a clump, or where the body is fed.
     pub(super) fn refuse_set(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
             let table = field.any_table()?;

@@ -43,12 +43,13 @@ const KEYS: [&str; 22] = [
     "test",
 ];
 
-/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in `run.end_time="0.5 s"`;
-/// a value that is no TOML is text. File names in the scene are resolved against its folder, those in
-/// `overrides` against the current one; "-" stays.
+/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in
+/// `run.end_time="0.5 s"`; a value that is no TOML is text. File names in the scene are resolved
+/// against its folder, those in `overrides` against the current one; "-" stays.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the option.
+/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the
+/// option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     let text = text_of(path, "a scene")?;
     scene_from_text(&text, &path.display().to_string(), overrides)
@@ -202,8 +203,8 @@ fn each<'a, T>(
         .collect()
 }
 
-/// The file or folder that `field` names. Names in the file are resolved against its folder; names on the command line
-/// are meant from where the program runs. "-" stays.
+/// The file or folder that `field` names. Names in the file are resolved against its folder; names
+/// on the command line are meant from where the program runs. "-" stays.
 ///
 /// # Errors
 /// No text, or empty.

@@ -35,7 +35,8 @@ pub enum Region {
         /// Radius, m.
         radius_m: f64,
     },
-    /// `stl` and `unit`: what a closed surface encloses. Whether it is closed, the reader of the file checks.
+    /// `stl` and `unit`: what a closed surface encloses. Whether it is closed, the reader of the
+    /// file checks.
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
         file: PathBuf,

@@ -18,10 +18,12 @@ const STRAIN_ENERGY_J_KG: f64 = 0.01;
 /// `inner_speed` unless given, m/s.
 const INNER_SPEED_M_S: f64 = 5e-3;
 
-/// When a rigid clump becomes the bonded cluster that it stands for, and when that becomes rigid again.
+/// When a rigid clump becomes the bonded cluster that it stands for, and when that becomes rigid
+/// again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replacement {
-    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below: not asked; at least one is.
+    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below:
+    /// not asked; at least one is.
     pub enters: Option<String>,
     /// `when.force` on it reaches this, N; more than 0.
     pub force_n: Option<f64>,
@@ -42,9 +44,11 @@ pub struct Back {
     pub leaves: String,
     /// `min_particles`: it has at least so many, 10 unless given. At least 1.
     pub min_particles: u32,
-    /// `strain_energy`: elastic energy of its bonds over its mass is at most this, 0.01 J/kg unless given; more than 0.
+    /// `strain_energy`: elastic energy of its bonds over its mass is at most this, 0.01 J/kg unless
+    /// given; more than 0.
     pub strain_energy_j_kg: f64,
-    /// `inner_speed`: root mean square speed of its particles beside its motion as a rigid body is at most this, 5 mm/s unless given; more than 0.
+    /// `inner_speed`: root mean square speed of its particles beside its motion as a rigid body is
+    /// at most this, 5 mm/s unless given; more than 0.
     pub inner_speed_m_s: f64,
 }
 

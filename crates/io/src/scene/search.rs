@@ -7,7 +7,8 @@ use crate::units::NUMBER;
 /// How particles that may touch are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Search {
-    /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0, 2]. None: chosen by the program.
+    /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0,
+    /// 2]. None: chosen by the program.
     pub skin: Option<f64>,
 }
 

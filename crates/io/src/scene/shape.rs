@@ -8,7 +8,8 @@ use super::table::Table;
 use crate::Result;
 use crate::units::{LENGTH, length_unit_m};
 
-/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each axis; `limit` says in words what min must be to max.
+/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each
+/// axis; `limit` says in words what min must be to max.
 pub(super) fn corners(
     field: &Field<'_>,
     limit: &str,
@@ -59,7 +60,8 @@ pub(super) fn cylinder(field: &Field<'_>) -> Result<([[f64; 3]; 2], f64)> {
     Ok(([from_m, to_m], radius_m))
 }
 
-/// The file of triangles that `field`, a key of `table`, names, and the size of the file's `unit`, m.
+/// The file of triangles that `field`, a key of `table`, names, and the size of the file's `unit`,
+/// m.
 pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result<(PathBuf, f64)> {
     let path = named_path(field, folder)?;
     if path.as_os_str() == "-" {

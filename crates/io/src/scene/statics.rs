@@ -17,7 +17,8 @@ const TABLES: [&str; 8] = [
     "test",
 ];
 
-/// Refuses what is more than bonded bodies, loads and supports in a scene that goes to its equilibrium at once.
+/// Refuses what is more than bonded bodies, loads and supports in a scene that goes to its
+/// equilibrium at once.
 pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     if let Some((_, field)) = root.given(&TABLES).next() {
         let problem = format!(

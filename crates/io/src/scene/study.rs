@@ -1,4 +1,5 @@
-//! A study: a scene, what varies in it, what is measured and against what. Plain data, as read from TOML.
+//! A study: a scene, what varies in it, what is measured and against what. Plain data, as read from
+//! TOML.
 
 mod check;
 mod rewrite;
@@ -46,7 +47,8 @@ pub struct Study {
     pub axes: Vec<Axis>,
     /// `[measures.NAME]`, in the order of the file. At least one.
     pub measures: Vec<StudyMeasure>,
-    /// `series` of `[page]`: the axis whose values have colours; the first without sizes unless given.
+    /// `series` of `[page]`: the axis whose values have colours; the first without sizes unless
+    /// given.
     pub series: Option<usize>,
 }
 
@@ -104,7 +106,8 @@ pub struct AxisValue {
     pub label: String,
     /// What it sets: one path, or all that vary together.
     pub settings: Vec<Setting>,
-    /// How coarse it is, above 0: the value itself where it is a number, unless `size` says something else.
+    /// How coarse it is, above 0: the value itself where it is a number, unless `size` says
+    /// something else.
     pub size: Option<f64>,
 }
 
@@ -128,11 +131,14 @@ pub enum MeasureOf {
     Measure(String),
     /// `figure`: a figure of the scene's laboratory test.
     Figure(String),
-    /// `masses`: how many pieces there are, and how far the distribution of their masses is from that of the finest run.
+    /// `masses`: how many pieces there are, and how far the distribution of their masses is from
+    /// that of the finest run.
     Masses(Pieces),
-    /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is from that of the finest run.
+    /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is
+    /// from that of the finest run.
     Curve,
-    /// `ledger`: "energy", "momentum" or "angular-momentum": its largest relative error, which needs no reference.
+    /// `ledger`: "energy", "momentum" or "angular-momentum": its largest relative error, which
+    /// needs no reference.
     Ledger(&'static str),
 }
 
@@ -148,7 +154,8 @@ pub enum Pieces {
 /// What a measure is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
-    /// "closed-form", unless given: the reference of the scene's measure, or the theory of the test's figure.
+    /// "closed-form", unless given: the reference of the scene's measure, or the theory of the
+    /// test's figure.
     ClosedForm,
     /// `{ value = ... }`: as written, with or without a unit.
     Value(String),

@@ -8,7 +8,8 @@ use super::presence::Presence;
 use super::{ParticleSet, Wall};
 use crate::{Diagnostic, Result};
 
-/// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can only be measured.
+/// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can
+/// only be measured.
 pub(super) struct Targets<'a> {
     pub(super) sets: &'a BTreeMap<String, ParticleSet>,
     pub(super) presence: &'a Presence<'a>,
@@ -27,7 +28,8 @@ pub(super) enum Subject {
 }
 
 impl Targets<'_> {
-    /// The name that `field` gives, if it is that of a set, of a body or `all`, and has particles of its own at the start.
+    /// The name that `field` gives, if it is that of a set, of a body or `all`, and has particles
+    /// of its own at the start.
     pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
         let name = field.text()?;
         match self.subject(name) {

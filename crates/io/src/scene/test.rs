@@ -86,7 +86,8 @@ pub struct Test {
     pub kind: TestKind,
     /// `body` that is tested; the only one unless given.
     pub body: String,
-    /// `moves`: walls that load, which do not move otherwise; for tension sets that are pulled. At least one.
+    /// `moves`: walls that load, which do not move otherwise; for tension sets that are pulled. At
+    /// least one.
     pub moves: Vec<String>,
     /// `direction` in which they move, of length 1; for tension along x, y or z. Length 3.
     pub direction: [f64; 3],
@@ -102,7 +103,8 @@ pub struct Test {
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio` of the body as a whole, for its shear in bending; 0.3 unless given.
     pub poisson_ratio: f64,
-    /// `strength` that the body as a whole should have, by the formula of the test, Pa. None: compared with nothing.
+    /// `strength` that the body as a whole should have, by the formula of the test, Pa. None:
+    /// compared with nothing.
     pub strength_pa: Option<f64>,
     /// `span` between the supports of a beam, m. None: that of the walls.
     pub span_m: Option<f64>,
@@ -114,7 +116,8 @@ pub struct Test {
     pub height_m: Option<f64>,
     /// `length` of a body that is pressed or pulled, m. None: that of the body.
     pub length_m: Option<f64>,
-    /// `area` of its section, m2. None: volume of the body's shape over its length, or, where no file names a volume, the product of its other two sides.
+    /// `area` of its section, m2. None: volume of the body's shape over its length, or, where no
+    /// file names a volume, the product of its other two sides.
     pub area_m2: Option<f64>,
 }
 

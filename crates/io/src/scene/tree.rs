@@ -1,4 +1,5 @@
-//! The text of a scene as a tree of values, each with the place where it stands. Alone knows the TOML parser.
+//! The text of a scene as a tree of values, each with the place where it stands. Alone knows the
+//! TOML parser.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};

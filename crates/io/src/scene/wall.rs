@@ -50,7 +50,8 @@ pub struct Wall {
     pub pivot_m: [f64; 3],
     /// How it moves; fixed unless given.
     pub motion: WallMotion,
-    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given. Length 3.
+    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given.
+    /// Length 3.
     pub surface_velocity_m_s: [f64; 3],
 }
 
@@ -109,12 +110,14 @@ pub enum WallMotion {
     Displacement {
         /// Of the pivot, m. Length 3.
         displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad. Length 3.
+        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad.
+        /// Length 3.
         turn_rad: [f64; 3],
         /// On both, over time.
         factor: Factor,
     },
-    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction` such that it pushes as wanted.
+    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction`
+    /// such that it pushes as wanted.
     Servo {
         /// `force`: what it is to push with along `direction`, N; below 0 against it.
         force_n: f64,

@@ -1,4 +1,5 @@
-//! Files that must be read, and files that must be refused with one message, which stands beside the bad line after `#!`.
+//! Files that must be read, and files that must be refused with one message, which stands beside
+//! the bad line after `#!`.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! The two materials that a key of `[contacts]` names: "cake-steel", where names may themselves contain a "-".
+//! The two materials that a key of `[contacts]` names: "cake-steel", where names may themselves
+//! contain a "-".
 
 use std::collections::BTreeMap;
 
@@ -8,7 +9,8 @@ use crate::scene::names::suggestion;
 use crate::scene::tree::shortened;
 use crate::{Diagnostic, Result};
 
-/// The materials of `key`, sorted: it is split at the "-" that has a name of `materials` on both sides.
+/// The materials of `key`, sorted: it is split at the "-" that has a name of `materials` on both
+/// sides.
 ///
 /// # Errors
 /// No such "-", or several that give different pairs.

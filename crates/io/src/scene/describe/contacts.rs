@@ -34,7 +34,8 @@ impl Lines {
         }
     }
 
-    /// `[clusters]`, `[relaxation]` and `[search]`: where anything can touch, or where they say something; `[sleep]` where it is there.
+    /// `[clusters]`, `[relaxation]` and `[search]`: where anything can touch, or where they say
+    /// something; `[sleep]` where it is there.
     pub(super) fn about_contacts(&mut self, scene: &Scene) {
         let touches = !scene.contacts.is_empty() || !scene.walls.is_empty();
         let clusters = &scene.clusters;

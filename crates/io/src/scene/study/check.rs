@@ -14,7 +14,8 @@ use crate::{Diagnostic, Result};
 /// The scene of `study`, whose file holds `text`, with these values laid over it.
 ///
 /// # Errors
-/// The scene refuses one of them, or it names something that the scene does not have; the place is that of the value in the study.
+/// The scene refuses one of them, or it names something that the scene does not have; the place is
+/// that of the value in the study.
 pub fn scene_with<'a>(
     study: &Study,
     text: &str,
@@ -75,7 +76,8 @@ pub fn override_text(setting: &Setting) -> String {
     format!("{}={}", setting.path, setting.value)
 }
 
-/// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it for a new one.
+/// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it
+/// for a new one.
 fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
     const NAMED: [&str; 12] = [
         "materials",
@@ -116,7 +118,8 @@ fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
     ))
 }
 
-/// What each measure of a study is compared with in one of its scenes, in SI, where that is known without a run.
+/// What each measure of a study is compared with in one of its scenes, in SI, where that is known
+/// without a run.
 ///
 /// # Errors
 /// The scene has no such measure or no test, or a reference is missing or is none of that quantity.

@@ -1,4 +1,5 @@
-//! A scene's text with other values in it; comments and order stay. Beside [`tree`](crate::scene::tree) alone knows the TOML parser.
+//! A scene's text with other values in it; comments and order stay. Beside
+//! [`tree`](crate::scene::tree) alone knows the TOML parser.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,7 +12,8 @@ use crate::scene::tree::{Value, parse_value};
 use crate::scene::{BodySource, Scene, scene_from_text};
 use crate::{Diagnostic, Result};
 
-/// The text of a scene file `target` that is the scene of `study`, whose file holds `text`, with `settings`. Read back it is the same scene.
+/// The text of a scene file `target` that is the scene of `study`, whose file holds `text`, with
+/// `settings`. Read back it is the same scene.
 ///
 /// # Errors
 /// The scene refuses the settings, or it is written in a way in which they cannot be put.
@@ -72,7 +74,8 @@ fn comparable(mut scene: Scene) -> Scene {
     scene
 }
 
-/// From the root. The name may be that of a body in two files, which are called a little differently.
+/// From the root. The name may be that of a body in two files, which are called a little
+/// differently.
 fn absolute(path: &Path) -> PathBuf {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -163,7 +166,8 @@ fn with(text: &str, keys: &[&str], value: &str) -> Option<String> {
     }
 }
 
-/// `text` in which the tables `[keys]` and those within give way to one with the entries of `value`, which is a table as well.
+/// `text` in which the tables `[keys]` and those within give way to one with the entries of
+/// `value`, which is a table as well.
 fn with_section(text: &str, keys: &[&str], value: &str) -> Option<String> {
     let Value::Table(entries) = parse_value(value, 0).ok()?.value else {
         return None;

@@ -68,7 +68,8 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
     })
 }
 
-/// The axis of several paths that change together: lists of the same length, and perhaps `size` and `names`.
+/// The axis of several paths that change together: lists of the same length, and perhaps `size` and
+/// `names`.
 pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<Axis> {
     let table = field.any_table()?;
     let mut values: Vec<AxisValue> = Vec::new();
