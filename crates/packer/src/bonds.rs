@@ -30,7 +30,7 @@ const CHUNK: usize = 4096;
 /// its two balls, which lie in the solid.
 ///
 /// # Errors
-/// A bonding radius outside (0, [`LARGEST_BONDING_RADIUS`]]; more spheres than 2^32.
+/// A bonding radius that is not above 0 and at most 2; more spheres than 2^32.
 pub fn find_bonds(
     spheres: &Spheres,
     bonding_radius: f64,
@@ -62,7 +62,7 @@ pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
 /// as whole bonds allow: half-way between the last pair that is joined and the first that is not.
 ///
 /// # Errors
-/// `wanted` not positive, or not reached with [`LARGEST_BONDING_RADIUS`]; more spheres than 2^32.
+/// `wanted` not positive, or not reached with a bonding radius of 2; more spheres than 2^32.
 pub fn bonding_radius_for(
     spheres: &Spheres,
     wanted: f64,
@@ -104,7 +104,7 @@ pub fn bonding_radius_for(
     }
 }
 
-/// A bonding radius to advise when a packing has too few bonds: gives [`WELL_BONDED`] bonds per
+/// A bonding radius to advise when a packing has too few bonds: gives 5 bonds per
 /// particle, rounded up to two decimals. None where no bonding radius does. Of many spheres, the
 /// neighbours of some are counted.
 pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
