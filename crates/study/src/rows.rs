@@ -95,7 +95,7 @@ pub struct Judged {
     pub uncertainty: Option<f64>,
     /// Whether others are compared with this run.
     pub is_reference: bool,
-    /// Whether it is on the [front].
+    /// Whether it is on the [front](super::front).
     pub is_on_front: bool,
     /// Time of the run that it is compared with over its own.
     pub times_as_fast: Option<f64>,
