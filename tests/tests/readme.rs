@@ -1,17 +1,10 @@
 //! README.md says what is true: its commands run, and the files, options and shapes that it names
 //! exist.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dem_tests::program;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+use super::{DEM_PACK, DEM_RUN, dem_pack, dem_run, root};
 
 fn readme() -> String {
     fs::read_to_string(root().join("README.md")).unwrap()
@@ -59,12 +52,15 @@ fn commands_run_as_pasted() {
             fs::copy(file.path(), copies.join(file.file_name())).unwrap();
         }
     }
-    let programs = ["dem-pack", "dem-run"].map(|name| PathBuf::from(program(name).get_program()));
+    let programs = tempfile::tempdir().unwrap();
+    for (name, program) in [("dem-pack", DEM_PACK), ("dem-run", DEM_RUN)] {
+        std::os::unix::fs::symlink(program, programs.path().join(name)).unwrap();
+    }
+    let inherited = std::env::var_os("PATH").unwrap();
     let path = std::env::join_paths(
-        programs
-            .iter()
-            .map(|program| program.parent().unwrap().to_owned())
-            .chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+        [programs.path().to_owned()]
+            .into_iter()
+            .chain(std::env::split_paths(&inherited)),
     )
     .unwrap();
     let readme = readme();
@@ -144,21 +140,12 @@ fn options_exist() {
         vec!["convert", "--help"],
     ]
     .iter()
-    .map(|arguments| program("dem-pack").args(arguments).output().unwrap())
+    .map(|arguments| dem_pack().args(arguments).output().unwrap())
     .chain([
-        program("dem-run").arg("--help").output().unwrap(),
-        program("dem-run")
-            .args(["check", "--help"])
-            .output()
-            .unwrap(),
-        program("dem-run")
-            .args(["fragment", "--help"])
-            .output()
-            .unwrap(),
-        program("dem-run")
-            .args(["sweep", "--help"])
-            .output()
-            .unwrap(),
+        dem_run().arg("--help").output().unwrap(),
+        dem_run().args(["check", "--help"]).output().unwrap(),
+        dem_run().args(["fragment", "--help"]).output().unwrap(),
+        dem_run().args(["sweep", "--help"]).output().unwrap(),
     ])
     .map(|output| String::from_utf8(output.stdout).unwrap())
     .collect();
@@ -200,7 +187,7 @@ fn options(text: &str) -> Vec<String> {
 #[test]
 fn report_is_explained() {
     let folder = tempfile::tempdir().unwrap();
-    let output = program("dem-pack")
+    let output = dem_pack()
         .arg(root().join("data/shapes/tablet.stl"))
         .args([
             "--diameter",

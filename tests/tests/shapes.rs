@@ -1,6 +1,5 @@
 //! The shapes of `data/shapes`: as the generator writes them, closed, turned outwards, not crossing
 //! themselves, and of the volume that their closed forms have.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 // The generator (`cargo run --example make_shapes`) itself.
 #[path = "../../crates/io/examples/make_shapes/shapes/mod.rs"]
@@ -14,7 +13,7 @@ use std::path::{Path, PathBuf};
 type Point = [f64; 3];
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/shapes")
+    super::root().join("data/shapes")
 }
 
 /// Every file of the folder: its name and the corners of its facets, mm.

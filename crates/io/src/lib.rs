@@ -23,5 +23,5 @@ mod xml;
 
 pub use body::Body;
 pub use diagnostic::{Diagnostic, Result};
-pub use scene::{Scene, read_scene, scene_from_text, study};
+pub use scene::{Scene, read_bodies, read_scene, scene_from_text, study};
 pub use surface::Surface;

@@ -4,6 +4,7 @@
 //! Every table of the file has one struct, beside its keys and its reader; names are unique within
 //! their table. The reader of the file refuses what cannot be simulated.
 
+mod bodies;
 mod body;
 mod bond;
 mod clump;
@@ -49,6 +50,7 @@ mod tree;
 mod values;
 mod wall;
 
+pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, WholeMass};
 pub use bond::{BondDamping, BondFailure, BondKind, BondModel, Formulation, RateOf};
 pub use clump::{ClumpMass, ClumpSettings, StartAs};

@@ -5,5 +5,6 @@
 mod bonds;
 mod helpers;
 mod packing;
+mod program;
 mod quality;
 mod sizes;

@@ -5,9 +5,7 @@
 //! ```
 #![allow(clippy::print_stdout, reason = "it prints what it measures")]
 
-use std::collections::BTreeMap;
-
-use dem_io::scene::scene_from_text;
+use dem_io::{read_bodies, scene_from_text};
 use dem_run::{balance, plan, step};
 
 const SCENE: &str = r#"
@@ -22,7 +20,7 @@ walls.plate = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = "s
 fn main() -> dem_io::Result<()> {
     let scene = scene_from_text(SCENE, "ball.toml", &[])?;
     let threads = 1;
-    let mut state = plan(&scene, BTreeMap::new(), threads, false)?.state;
+    let mut state = plan(&scene, read_bodies(&scene)?, threads, false)?.state;
     let mut highest_m = 0.0_f64;
     let mut has_met = false;
     while state.time_s < scene.run.end_time_s {

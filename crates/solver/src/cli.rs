@@ -11,14 +11,14 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use dem_io::body::{body_summary, files::body_files, read_body};
+use dem_io::body::{body_summary, read_body};
 use dem_io::checkpoint::read_checkpoint;
 use dem_io::diagnostic::Kind;
 use dem_io::program::{Shell, print_completions, print_man_page};
 use dem_io::results::folder::refuse_inputs_among_results;
 use dem_io::results::{Existing, ResultsFolder, write_json};
 use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
-use dem_io::scene::{BodySource, Integrator, Scene};
+use dem_io::scene::{BodySource, Integrator, Scene, read_bodies};
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_scene};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -251,27 +251,9 @@ impl SceneArguments {
             }
         }
         refuse_two_pipes(&scene)?;
-        let mut bodies = BTreeMap::new();
-        for (name, entry) in &scene.bodies {
-            let body = match &entry.source {
-                BodySource::File(path) => read_body(path).map_err(|mut error| {
-                    if !named.contains_key(name) && is_missing(path) {
-                        error.remedy = "make it, or name another file with --body".to_owned();
-                    }
-                    error.within(&format!("{}: [bodies.{name}]", scene.source))
-                })?,
-                BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds)
-                    .map_err(|error| error.within(&format!("{}: [bodies.{name}]", scene.source)))?,
-            };
-            bodies.insert(name.clone(), body);
-        }
+        let bodies = read_bodies(&scene)?;
         Ok((scene, bodies))
     }
-}
-
-/// Whether a file of a body is not there.
-fn is_missing(path: &Path) -> bool {
-    body_files(path).is_ok_and(|files| files.iter().any(|file| !file.exists()))
 }
 
 /// Takes a body's file from an option `[NAME=]FILE`. The body's name.

@@ -2,7 +2,7 @@
 //! results.
 //!
 //! ```
-//! use std::collections::BTreeMap;
+//! use dem_io::{read_bodies, scene_from_text};
 //! use dem_run::{plan, step};
 //!
 //! let text = r#"
@@ -11,8 +11,8 @@
 //! materials.stone = { density = 2600 }
 //! bodies.ball = { particles = [[0, 0, 0, 0.01]], material = "stone" }
 //! "#;
-//! let scene = dem_io::scene::scene_from_text(text, "fall.toml", &[])?;
-//! let mut state = plan(&scene, BTreeMap::new(), 1, false)?.state;
+//! let scene = scene_from_text(text, "fall.toml", &[])?;
+//! let mut state = plan(&scene, read_bodies(&scene)?, 1, false)?.state;
 //! while state.time_s < 0.5 {
 //!     step(&mut state);
 //! }

@@ -16,11 +16,9 @@ mod step_limit;
 mod swap;
 mod triggers;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use dem_io::scene::{BodySource, Scene};
-use dem_io::{Body, Result, scene_from_text};
+use dem_io::Result;
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
 use dem_run::state::bodies::PlacedBody;
@@ -29,7 +27,10 @@ use dem_run::state::events::Events;
 use dem_run::state::events::PopulationEvent;
 use dem_run::state::particles::Particles;
 use dem_run::step::step;
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
+
+use crate::helpers::scene;
+use dem_io::read_bodies;
 
 /// The head of a scene: one material, which meets itself in this way, and bonds.
 pub(crate) const HEAD: &str = "version = 1
@@ -85,24 +86,9 @@ pub(crate) fn lump(name: &str, more: &str) -> String {
     block(name, [3, 2, 2], 2e-3, radius, more)
 }
 
-pub(crate) fn scene(text: &str) -> Scene {
-    scene_from_text(text, "scene.toml", &[]).unwrap()
-}
-
-fn bodies_of(scene: &Scene) -> BTreeMap<String, Body> {
-    let body = |source: &BodySource| match source {
-        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
-        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
-    };
-    let bodies = scene.bodies.iter();
-    bodies
-        .map(|(name, entry)| (name.clone(), body(&entry.source)))
-        .collect()
-}
-
 pub(crate) fn try_plan(text: &str) -> Result<Plan> {
     let scene = scene(text);
-    plan(&scene, bodies_of(&scene), 1, false)
+    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
 }
 
 pub(crate) fn planned(text: &str) -> Plan {
@@ -162,36 +148,6 @@ impl Whole {
             momentum,
             angular_momentum,
             kinetic_j,
-        }
-    }
-}
-
-/// SplitMix64.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    /// Between two bounds.
-    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// In a cube around the origin.
-    pub(crate) fn point(&mut self, half: f64) -> Vector3<f64> {
-        Vector3::from([0; 3].map(|_| self.within(-half, half)))
-    }
-
-    pub(crate) fn rotation(&mut self) -> UnitQuaternion<f64> {
-        loop {
-            let q = [0; 4].map(|_| self.within(-1.0, 1.0));
-            let q = nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]);
-            if q.norm() > 0.1 && q.norm() < 1.0 {
-                return UnitQuaternion::new_normalize(q);
-            }
         }
     }
 }

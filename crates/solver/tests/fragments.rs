@@ -5,21 +5,22 @@ mod files;
 mod pictures;
 mod resume;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::results::{Existing, ResultsFolder};
-use dem_io::scene::{BodySource, Scene};
-use dem_io::{Body, Result, scene_from_text};
+use dem_io::scene::Scene;
+use dem_io::{Result, scene_from_text};
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
 use dem_run::state::clusters::{Clusters, Triggers};
 use tempfile::TempDir;
+
+use dem_io::read_bodies;
 
 /// Particles of the rod.
 pub(crate) const PARTICLES: usize = 60;
@@ -68,21 +69,9 @@ pub(crate) fn bursting() -> Scene {
     scene_from_text(&text, "bursting.toml", &[]).unwrap()
 }
 
-/// The bodies that stand in a scene.
-pub(crate) fn bodies_of(scene: &Scene) -> BTreeMap<String, Body> {
-    let body = |source: &BodySource| match source {
-        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
-        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
-    };
-    let bodies = scene.bodies.iter();
-    bodies
-        .map(|(name, entry)| (name.clone(), body(&entry.source)))
-        .collect()
-}
-
 /// A plan whose bodies are searched for pieces in every step in which a bond breaks.
 pub(crate) fn planned(scene: &Scene) -> Plan {
-    let mut plan = plan(scene, bodies_of(scene), 1, false).unwrap();
+    let mut plan = plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap();
     let state = &mut plan.state;
     state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
     state.triggers = Triggers::every_step();

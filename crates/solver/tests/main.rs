@@ -10,6 +10,7 @@
 
 mod bars;
 mod closed_box;
+mod helpers;
 
 mod bond;
 mod clumps;
@@ -23,6 +24,7 @@ mod measures;
 mod meet;
 mod notation;
 mod pictures;
+mod program;
 mod shape;
 mod sleep;
 mod start;

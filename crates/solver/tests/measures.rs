@@ -7,8 +7,8 @@ mod whole;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{BodySource, Scene};
-use dem_io::{Body, Result, scene_from_text};
+use dem_io::Result;
+use dem_io::scene::Scene;
 use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::clumps::place_all;
@@ -18,19 +18,11 @@ use dem_run::state::bodies::PlacedBody;
 use dem_run::state::bodies::renumber;
 use dem_run::step::{drift, exchange, interact};
 
-pub(crate) fn scene(text: &str) -> Scene {
-    scene_from_text(text, "scene.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
+use crate::helpers::scene;
+use dem_io::read_bodies;
 
 pub(crate) fn try_plan(scene: &Scene) -> Result<Plan> {
-    let body = |source: &BodySource| match source {
-        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
-        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
-    };
-    let bodies: BTreeMap<String, Body> = (scene.bodies.iter())
-        .map(|(name, entry)| (name.clone(), body(&entry.source)))
-        .collect();
-    plan(scene, bodies, 1, true)
+    plan(scene, read_bodies(scene).unwrap(), 1, true)
 }
 
 /// A scene that is stepped, and its measures.

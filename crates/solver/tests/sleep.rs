@@ -6,16 +6,16 @@ mod restless;
 mod settle;
 mod wake;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use dem_io::scene::BodySource;
-use dem_io::{Body, scene_from_text};
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
 use dem_run::state::sleep::Sleep;
 use dem_run::step::step;
 use nalgebra::Vector3;
+
+use crate::helpers::scene;
+use dem_io::read_bodies;
 
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
 /// Of the scenes here.
@@ -66,16 +66,8 @@ pub(crate) fn ball(name: &str, [x_m, y_m, z_m]: [f64; 3], more: &str) -> String 
 }
 
 pub(crate) fn plan_of(text: &str) -> Plan {
-    let scene = scene_from_text(text, "scene.toml", &[]).unwrap();
-    let body = |source: &BodySource| match source {
-        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds).unwrap(),
-        BodySource::File(path) => dem_io::body::read_body(path).unwrap(),
-    };
-    let bodies = scene.bodies.iter();
-    let bodies: BTreeMap<String, Body> = bodies
-        .map(|(name, entry)| (name.clone(), body(&entry.source)))
-        .collect();
-    plan(&scene, bodies, 1, false).unwrap()
+    let scene = scene(text);
+    plan(&scene, read_bodies(&scene).unwrap(), 1, false).unwrap()
 }
 
 pub(crate) fn planned(text: &str) -> State {

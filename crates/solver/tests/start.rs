@@ -7,18 +7,19 @@ mod initial;
 mod keep;
 mod rigid;
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use dem_io::Result;
 use dem_io::results::ResultsFolder;
-use dem_io::scene::{BodySource, Scene, scene_from_text};
-use dem_io::{Body, Result};
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
 use dem_run::state::State;
 use nalgebra::Vector3;
+
+use crate::helpers::scene;
+use dem_io::read_bodies;
 
 /// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond is E A/L stiff with
 /// a radius of 1 mm.
@@ -33,22 +34,10 @@ const STIFFNESS_N_M: f64 = 1e6 * std::f64::consts::PI * 1e-6 / 2e-3;
 /// Mass of one of its spheres, kg.
 const MASS_KG: f64 = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
 
-fn scene(text: &str) -> Scene {
-    scene_from_text(text, "test.toml", &[]).unwrap()
-}
-
 /// The plan of a scene whose particles stand in it.
 fn try_planned(text: &str) -> Result<Plan> {
     let scene = scene(text);
-    let bodies: BTreeMap<String, Body> = (scene.bodies.iter())
-        .map(|(name, entry)| match &entry.source {
-            BodySource::Inline { particles, bonds } => {
-                (name.clone(), Body::from_spheres(particles, bonds).unwrap())
-            }
-            BodySource::File(path) => panic!("{path:?}"),
-        })
-        .collect();
-    plan(&scene, bodies, 1, false)
+    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
 }
 
 fn planned(text: &str) -> Plan {

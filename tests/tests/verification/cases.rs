@@ -2,7 +2,7 @@
 
 use dem_run::physics::bond::stiffness::BondModel;
 
-use crate::bar::{Bar, LOAD, Rest};
+use super::bar::{Bar, LOAD, Rest};
 
 /// Numbers of bonds that the bars of case 2 and 4 are run with.
 pub(crate) const COUNTS: [usize; 7] = [1, 2, 3, 4, 6, 8, 10];

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use dem_io::results::svg;
 
-use crate::cases::on_one_thread;
-use crate::tables::{
+use super::cases::on_one_thread;
+use super::tables::{
     of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
 };
 

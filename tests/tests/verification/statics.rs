@@ -3,12 +3,12 @@
 use dem_run::physics::bond::stiffness::BondModel;
 use nalgebra::UnitQuaternion;
 
-use crate::bar::LOAD;
-use crate::cases::{
+use super::bar::LOAD;
+use super::cases::{
     KAPPA_OF_CASE_5, TOLERANCE, assert_near, assert_profile, case1, case2, case3, case5,
     on_one_thread, small,
 };
-use crate::models::{MODELS, PARALLEL, number, numbers, small_load, whole_load};
+use super::models::{MODELS, PARALLEL, number, numbers, small_load, whole_load};
 
 /// The closed form that the bars are held against is what an independent implementation finds by
 /// direct stiffness.
@@ -157,7 +157,7 @@ fn the_lever_of_the_load_shortens() {
         });
         assert_near(less[0] / less[1], 4.0, 1e-3, "square of the load");
         let second_moment = 0.25 * std::f64::consts::PI * 0.2_f64.powi(4);
-        let bend = LOAD * 16.0 / (crate::bar::YOUNG * second_moment);
+        let bend = LOAD * 16.0 / (super::bar::YOUNG * second_moment);
         assert_near(less[0], 4.0 / 35.0 * bend * bend, 0.02, "elastica");
     });
 }

@@ -3,11 +3,11 @@
 use dem_io::results::{Axis, Line, Plot};
 use dem_run::physics::bond::stiffness::BondModel;
 
-use crate::bar::{Bar, euler_bernoulli_m, timoshenko_m};
-use crate::cases::{
+use super::bar::{Bar, euler_bernoulli_m, timoshenko_m};
+use super::cases::{
     COUNTS, KAPPA_OF_CASE_5, Small, TOLERANCE, case1, case2, case3, case4, case5, small,
 };
-use crate::models::{MODELS, PARALLEL};
+use super::models::{MODELS, PARALLEL};
 
 /// Names of the lines of plots; models without a name are not drawn. The elastic solid bond has the
 /// stiffnesses of the parallel bond where spheres are equal.
@@ -157,7 +157,7 @@ pub(crate) fn of_case1() -> (String, [Plot; 2]) {
         ["", ""],
     ];
     for ((named, found), [tip, error]) in MODELS.iter().zip(&found).zip(printed) {
-        let (exact, _) = case1(named.model).exact(crate::bar::LOAD);
+        let (exact, _) = case1(named.model).exact(super::bar::LOAD);
         table += &row(&[
             named.name.to_owned(),
             tip.to_owned(),
@@ -369,10 +369,10 @@ pub(crate) fn of_whole_load() -> String {
     ]);
     for named in MODELS {
         let mut bar = case1(named.model);
-        let (exact, _) = bar.exact(crate::bar::LOAD);
-        let total = bar.at_rest(crate::bar::LOAD).deflections_m[10];
+        let (exact, _) = bar.exact(super::bar::LOAD);
+        let total = bar.at_rest(super::bar::LOAD).deflections_m[10];
         bar.incremental = true;
-        let summed = bar.at_rest(crate::bar::LOAD).deflections_m[10];
+        let summed = bar.at_rest(super::bar::LOAD).deflections_m[10];
         let whole = |tip: f64| digits(1e3 * tip, 6, 1e-9 * 1e3 * tip);
         let less = |tip: f64| digits(1e6 * (tip / exact[10] - 1.0), 2, 2e-4);
         table += &row(&[

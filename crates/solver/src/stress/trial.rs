@@ -1,13 +1,11 @@
 //! A scene of the suite, run as a user would run it: from files in a folder.
 
-use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use dem_io::body::{read_body, write_body};
+use dem_io::body::write_body;
 use dem_io::diagnostic::Kind;
 use dem_io::safe_write::write_file;
-use dem_io::scene::{BodySource, Scene};
+use dem_io::scene::{Scene, read_bodies};
 use dem_io::{Body, Diagnostic, Result, scene_from_text};
 use tempfile::TempDir;
 
@@ -66,7 +64,7 @@ impl Trial {
             write_file(&file(name), |out| out.write_all(text.as_bytes()))?;
         }
         let scene = scene_from_text(&self.scene, &file("scene.toml").display().to_string(), &[])?;
-        let bodies = bodies_of(&scene)?;
+        let bodies = read_bodies(&scene)?;
         let threads = rayon::current_num_threads();
         let plan = plan(&scene, bodies, threads, self.force_step)?;
         Ok((scene, plan, folder))
@@ -98,16 +96,4 @@ impl Trial {
             },
         }
     }
-}
-
-/// The bodies of a scene.
-fn bodies_of(scene: &Scene) -> Result<BTreeMap<String, Body>> {
-    let read = |source: &BodySource| match source {
-        BodySource::File(path) => read_body(path as &Path),
-        BodySource::Inline { particles, bonds } => Body::from_spheres(particles, bonds),
-    };
-    let bodies = scene.bodies.iter();
-    bodies
-        .map(|(name, entry)| Ok((name.clone(), read(&entry.source)?)))
-        .collect()
 }

@@ -6,7 +6,8 @@ use dem_io::Body;
 use dem_run::plan::{Plan, plan};
 use dem_run::state::events::PopulationEvent;
 
-use super::{HEAD, MEETS, Whole, happens, scene};
+use super::{HEAD, MEETS, Whole, happens};
+use crate::helpers::scene;
 
 /// Volume of the shape that the body is said to fill, m3.
 const VOLUME_M3: f64 = 3e-8;

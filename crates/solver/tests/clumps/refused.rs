@@ -1,7 +1,8 @@
 //! Scenes with clumps that cannot be are refused, with the place, the value and what to do.
 
 use super::regions::box_stl;
-use super::{HEAD, MEETS, block, lump, scene, try_plan};
+use super::{HEAD, MEETS, block, lump, try_plan};
+use crate::helpers::scene;
 use dem_io::{Body, Diagnostic};
 use dem_run::plan::plan;
 
@@ -32,7 +33,7 @@ fn replacement_without_bonds() {
     let error = plan(&scene, [("ball".to_owned(), read)].into(), 1, false).unwrap_err();
     told(
         &error,
-        "scene.toml: [replacement.ball]",
+        "test.toml: [replacement.ball]",
         "the body has no bonds",
         "with bonds",
     );
@@ -110,8 +111,8 @@ fn clumps_in_other_bodies_at_the_start() {
             pair("under", second)
         );
         // Both are named, and how deep they are in each other.
-        refused(&text, "scene.toml", "'upper'", "move the bodies apart");
-        refused(&text, "scene.toml", "'under'", "move the bodies apart");
-        refused(&text, "scene.toml", "0.1 mm", "move the bodies apart");
+        refused(&text, "test.toml", "'upper'", "move the bodies apart");
+        refused(&text, "test.toml", "'under'", "move the bodies apart");
+        refused(&text, "test.toml", "0.1 mm", "move the bodies apart");
     }
 }

@@ -4,7 +4,8 @@ use dem_run::geometry::Bounds;
 use dem_run::state::regions::Region;
 use nalgebra::Vector3;
 
-use super::{HEAD, Random, planned};
+use super::{HEAD, planned};
+use crate::helpers::Random;
 
 /// The regions of a scene, by name.
 fn regions(text: &str) -> Vec<Region> {
@@ -18,7 +19,7 @@ fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, h
     let mut random = Random(5);
     let (mut inside, mut outside) = (0, 0);
     for _ in 0..20_000 {
-        let point = random.point(half);
+        let point = Vector3::from(random.point(half));
         let Some(wanted) = is_inside(&point) else {
             continue;
         };
@@ -49,7 +50,7 @@ fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, h
     // allows.
     let (mut mean, mut n) = (Vector3::zeros(), 0.0);
     for _ in 0..20_000 {
-        let point = random.point(half);
+        let point = Vector3::from(random.point(half));
         if is_inside(&point) == Some(true) {
             mean += point;
             n += 1.0;

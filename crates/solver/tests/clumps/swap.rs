@@ -12,7 +12,8 @@ use dem_run::step::{drift, exchange, interact};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use super::{HEAD, MEETS, Random, Whole, go, lump, planned};
+use super::{HEAD, MEETS, Whole, go, lump, planned};
+use crate::helpers::Random;
 
 /// A lump that becomes a cluster at a time.
 fn one(time_s: f64) -> Plan {
@@ -27,16 +28,14 @@ fn swapped(far_m: f64, seed: u64) {
     let mut random = Random(seed);
     let template = state.clumps.templates[0].clone();
     let clump = &mut state.clumps.all[0];
-    clump.place_m = random.point(far_m).into();
+    clump.place_m = random.point(far_m);
     clump.turned = numbers(&random.rotation());
     let (fast, spin) = (
         10.0_f64.powf(random.within(-3.0, 2.0)),
         random.within(-1.0, 4.0),
     );
-    clump.velocity_m_s = random.point(fast).into();
-    clump.angular_momentum = random
-        .point(10.0_f64.powf(spin) * template.moments_kg_m2[0])
-        .into();
+    clump.velocity_m_s = random.point(fast);
+    clump.angular_momentum = random.point(10.0_f64.powf(spin) * template.moments_kg_m2[0]);
     let before = *clump;
     interact(&mut state);
     exchange(&mut state);

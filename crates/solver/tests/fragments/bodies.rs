@@ -9,7 +9,8 @@ use dem_io::scene::BodySource;
 use dem_run::plan::plan;
 use dem_run::step::{interact, step};
 
-use super::{bodies_of, burst, bursting, planned, run_into};
+use super::{burst, bursting, planned, run_into};
+use dem_io::read_bodies;
 
 fn fragment(folder: &Path, options: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_dem-run"))
@@ -76,7 +77,7 @@ fn the_first_frame_gives_back_the_body_under_the_stress_that_it_began_with() {
     let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap();
     let mut scene = bursting();
     scene.run.end_time_s = 1e-6;
-    let mut bodies = bodies_of(&scene);
+    let mut bodies = read_bodies(&scene).unwrap();
     let rod = bodies.get_mut("rod").unwrap();
     for (bond, length) in rod.bond_lengths.iter_mut().enumerate() {
         *length *= 1.0 + 1e-4 * (bond % 3) as f64;
@@ -100,7 +101,7 @@ fn the_first_frame_gives_back_the_body_under_the_stress_that_it_began_with() {
         assert!((read / wanted - 1.0).abs() < 1e-15);
     }
     // It runs again, and its bonds push as they did.
-    let mut bodies = bodies_of(&scene);
+    let mut bodies = read_bodies(&scene).unwrap();
     bodies.insert("rod".to_owned(), read);
     let again = plan(&scene, bodies, 1, false).unwrap();
     let mut loads = [stressed, again].map(|plan| plan.state);
@@ -135,7 +136,7 @@ fn a_fragment_runs_again_from_any_format() {
         let mut scene = bursting();
         scene.bodies.remove("pair");
         scene.bodies.get_mut("rod").unwrap().source = BodySource::File(here.join(name));
-        let mut plan = plan(&scene, bodies_of(&scene), 1, false).unwrap();
+        let mut plan = plan(&scene, read_bodies(&scene).unwrap(), 1, false).unwrap();
         assert_eq!(plan.state.particles.len(), wanted.positions.len(), "{name}");
         assert_eq!(plan.state.bonds.len(), wanted.bonds.len(), "{name}");
         (0..100).for_each(|_| {

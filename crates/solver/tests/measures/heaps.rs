@@ -8,23 +8,10 @@ use std::fmt::Write;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Measured, assert_near};
+use crate::helpers::Random;
 
 /// A sphere: centre and radius.
 type Sphere = (Vector3<f64>, f64);
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 /// A cone of this height and slope that stands on the plane z = 0.
 #[derive(Clone, Copy)]

@@ -1,11 +1,8 @@
 //! Overlapping bodies whose bonds vanish, all at once or one by one, with second neighbours
 //! overlapping as well: they part without gaining energy.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use dem_io::Body;
-use dem_io::scene::{BodySource, scene_from_text};
 use dem_run::measure::bond_utilisation;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::plan::{Plan, plan};
@@ -15,21 +12,15 @@ use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
 
 use super::clouds::scattered;
+use crate::helpers::scene;
+use dem_io::read_bodies;
 
 const RADIUS_M: f64 = 1e-3;
 
 /// The plan of a scene whose particles stand in it.
 pub(crate) fn planned(text: &str) -> Plan {
-    let scene = scene_from_text(text, "test.toml", &[]).unwrap();
-    let bodies: BTreeMap<String, Body> = (scene.bodies.iter())
-        .map(|(name, entry)| match &entry.source {
-            BodySource::Inline { particles, bonds } => {
-                (name.clone(), Body::from_spheres(particles, bonds).unwrap())
-            }
-            BodySource::File(path) => panic!("{path:?}"),
-        })
-        .collect();
-    plan(&scene, bodies, 2, false).unwrap()
+    let scene = scene(text);
+    plan(&scene, read_bodies(&scene).unwrap(), 2, false).unwrap()
 }
 
 /// A cube of 4 x 4 x 4 spheres on a lattice such that neighbours overlap by this share of r_gen,

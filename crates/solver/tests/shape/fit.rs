@@ -1,6 +1,7 @@
 //! The best rotation against known ones.
 
-use super::{Random, turned, unit};
+use super::{turned, unit};
+use crate::helpers::Random;
 use dem_run::shape::fit::best_rotation;
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use super::{Random, reference, turned, unit};
+use super::{reference, turned, unit};
+use crate::helpers::Random;
 use dem_run::shape::inertia::{MassProperties, of_spheres, of_union};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

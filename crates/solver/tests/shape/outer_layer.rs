@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-use super::{Random, turned};
+use super::turned;
+use crate::helpers::Random;
 use dem_run::shape::outer_layer::outer_layer;
 use nalgebra::Vector3;
 

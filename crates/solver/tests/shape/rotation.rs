@@ -1,6 +1,7 @@
 //! Free rotation against solutions in closed form.
 
-use super::{Random, reference, unit};
+use super::{reference, unit};
+use crate::helpers::Random;
 use dem_run::physics::rotation::{drift, kinetic_j, spin_rad_s};
 use nalgebra::Vector3;
 use serde_json::Value;

@@ -6,7 +6,7 @@ use std::path::Path;
 use dem_run::shape::outer_layer::{HIDDEN, outer_layer};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::Random;
+use crate::helpers::Random;
 
 /// Fraction of the smallest radius.
 const BALL: f64 = 0.7;

@@ -1,10 +1,9 @@
 //! Scenes that have no equilibrium to find, or none that is found.
 
-use std::collections::BTreeMap;
-
-use dem_io::scene::BodySource;
-use dem_io::{Body, Diagnostic, scene_from_text};
+use dem_io::{Diagnostic, scene_from_text};
 use dem_run::plan::plan;
+
+use dem_io::read_bodies;
 
 /// A scene of a body of these particles and bonds, and what else it has.
 fn refusal(particles: &str, bonds: &str, more: &str) -> Diagnostic {
@@ -26,13 +25,7 @@ particles = [{particles}]
 {more}"#
     );
     let scene = scene_from_text(&text, "bar.toml", &[]).unwrap();
-    let mut bodies = BTreeMap::new();
-    for (name, entry) in &scene.bodies {
-        if let BodySource::Inline { particles, bonds } = &entry.source {
-            bodies.insert(name.clone(), Body::from_spheres(particles, bonds).unwrap());
-        }
-    }
-    let problem = plan(&scene, bodies, 1, false).expect_err("is refused");
+    let problem = plan(&scene, read_bodies(&scene).unwrap(), 1, false).expect_err("is refused");
     assert_eq!(problem.exit_code(), 2);
     problem
 }

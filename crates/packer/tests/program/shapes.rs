@@ -1,7 +1,7 @@
 //! Every difficult shape that can be packed: the right solid, filled, exact.
 
-use super::exact::{assert_exact, length, sub};
 use super::{Bench, Made, bits, read_stl, shape};
+use crate::helpers::exact::{assert_exact, length, sub};
 use std::f64::consts::PI;
 
 const OPTIONS: [&str; 6] = [

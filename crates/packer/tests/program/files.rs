@@ -1,8 +1,9 @@
-//! Bodies to files and through pipes: every format, full disks, closed pipes, and on into dem-run.
+//! Bodies to files and through pipes: every format, full disks, closed pipes.
 
-use super::facets::cuboid;
-use super::{Bench, bits, dem_pack, piped, shape};
+use super::{Bench, bits, dem_pack, shape};
+use crate::helpers::facets::cuboid;
 use dem_io::body::read_body;
+use dem_testing::piped;
 use std::fs;
 use std::io::Read;
 use std::process::Stdio;
@@ -10,30 +11,24 @@ use std::process::Stdio;
 const OPTIONS: [&str; 4] = ["-d", "1.5mm..2mm", "--particle-density", "2050"];
 
 #[test]
-fn straight_into_dem_run_and_info() {
+fn straight_into_info() {
     let bench = Bench::new();
     let body = bench.run(&shape("02"), &[&OPTIONS[..], &["-q"]].concat());
     assert!(body.status.success() && body.stderr.is_empty());
     let made = bench.pack(&shape("02"), &OPTIONS);
     let [particles, bonds] = [made.body.radii.len(), made.body.bonds.len()];
-    let mut run = dem_tests::program("dem-run");
-    run.args(["--body", "-"]);
-    let mut info = dem_pack();
-    info.args(["info", "-"]);
-    for program in [run, info] {
-        let output = piped(program, &body.stdout);
-        assert!(output.status.success() && output.stderr.is_empty());
-        let said = String::from_utf8(output.stdout).unwrap();
-        assert!(
-            said.contains(&format!("particles  {particles},"))
-                && said.contains(&format!("bonds      {bonds},")),
-            "{said}"
-        );
-        assert!(
-            said.contains("2050 kg/m3") && said.contains("seed 1"),
-            "{said}"
-        );
-    }
+    let output = piped(dem_pack().args(["info", "-"]), &body.stdout);
+    assert!(output.status.success() && output.stderr.is_empty());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains(&format!("particles  {particles},"))
+            && said.contains(&format!("bonds      {bonds},")),
+        "{said}"
+    );
+    assert!(
+        said.contains("2050 kg/m3") && said.contains("seed 1"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -46,7 +41,7 @@ fn the_stl_may_come_through_a_pipe() {
         .arg("-")
         .args(OPTIONS)
         .args(["-q", "-o", "piped.vtp"]);
-    let output = piped(program, &fs::read(shape("02")).unwrap());
+    let output = piped(&mut program, &fs::read(shape("02")).unwrap());
     assert!(output.status.success() && output.stderr.is_empty());
     let body = read_body(&bench.path("piped.vtp")).unwrap();
     assert!(bits(&body) == bits(&by_name.body));
@@ -96,7 +91,7 @@ fn convert_through_pipes_keeps_every_byte() {
     let bytes = fs::read(bench.path("body.vtp")).unwrap();
     let mut convert = dem_pack();
     convert.args(["convert", "-", "-"]);
-    let output = piped(convert, &bytes);
+    let output = piped(&mut convert, &bytes);
     assert!(output.status.success() && output.stderr.is_empty());
     assert!(output.stdout == bytes);
 }
@@ -207,7 +202,7 @@ fn a_standard_error_that_takes_nothing() {
     let mut command = dem_pack();
     command.args(["none.stl", "--diameter", "2mm"]);
     assert_eq!(
-        dem_tests::codes_without_standard_error(&mut command),
+        dem_testing::codes_without_standard_error(&mut command),
         [Some(2); 2]
     );
 }

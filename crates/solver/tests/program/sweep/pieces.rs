@@ -22,7 +22,7 @@ reference = "finest"
 
 #[test]
 fn distributions_of_masses_are_compared() {
-    let scene = crate::good("following.toml").display().to_string();
+    let scene = crate::program::good("following.toml").display().to_string();
     let bench = bench(&PIECES.replace("SCENE", &scene));
     good(&bench, &["--quiet"]);
     let masses = |run: usize| -> Vec<f64> {

@@ -1,8 +1,8 @@
 //! Ctrl-C leaves no file behind, finished or not.
 #![cfg(target_os = "linux")]
 
-use super::facets::cuboid;
 use super::{Bench, dem_pack};
+use crate::helpers::facets::cuboid;
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;

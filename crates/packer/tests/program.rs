@@ -1,7 +1,5 @@
 //! dem-pack as a person meets it: shapes and options in; bodies, reports and messages out.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod bad_input;
 mod bonds;
 mod command_line;
@@ -14,29 +12,29 @@ mod refused_shapes;
 mod shapes;
 mod sizes;
 
-#[path = "../../../crates/packer/tests/helpers/exact.rs"]
-mod exact;
-#[path = "../../../crates/packer/tests/helpers/facets.rs"]
-mod facets;
-
+use super::helpers::exact;
+use super::helpers::facets::{self, Facets, Point};
 use dem_io::Body;
 use dem_io::body::read_body;
-use facets::{Facets, Point};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use tempfile::TempDir;
 
 fn dem_pack() -> Command {
-    dem_tests::program("dem-pack")
+    Command::new(env!("CARGO_BIN_EXE_dem-pack"))
+}
+
+/// The root of the repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// A difficult STL file, by the beginning of its name.
 fn shape(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/io/tests/shapes");
+    let folder = root().join("crates/io/tests/shapes");
     fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -102,12 +100,7 @@ impl Bench {
 
     /// Names of the files in the folder, hidden ones too.
     fn files(&self) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(self.folder.path())
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
+        dem_testing::names_in(self.folder.path())
     }
 
     /// dem-pack STL OPTIONS, in the folder.
@@ -168,22 +161,6 @@ fn bits(body: &Body) -> (Vec<[u64; 3]>, Vec<u64>) {
         body.positions.iter().map(|p| p.map(f64::to_bits)).collect(),
         body.radii.iter().map(|r| r.to_bits()).collect(),
     )
-}
-
-/// Runs a program with `input` on its standard input.
-fn piped(mut program: Command, input: &[u8]) -> Output {
-    let mut child = program
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    std::thread::scope(|scope| {
-        // A program that refuses its input early closes it.
-        scope.spawn(move || stdin.write_all(input));
-        child.wait_with_output().unwrap()
-    })
 }
 
 /// The one message of a run that was refused: exit code 2, nothing on standard output.

@@ -1,10 +1,9 @@
 //! How good the bending sample's packing is: the figures that README.md states.
 
-use super::{Bench, Made};
-use std::path::Path;
+use super::{Bench, Made, root};
 
 fn bending_sample(settle: &[&str]) -> Made {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/shapes/bending-sample.stl");
+    let file = root().join("data/shapes/bending-sample.stl");
     let options = ["--diameter", "2mm..3mm", "--overlap", "0", "--unit", "mm"];
     Bench::new().pack(&file, &[&options, settle].concat())
 }

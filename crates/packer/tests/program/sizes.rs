@@ -1,8 +1,8 @@
 //! The spheres placed have the sizes asked for: Kolmogorov-Smirnov, by number and by mass, against
 //! the distributions' own formulas.
 
-use super::facets::cuboid;
 use super::{Bench, Made};
+use crate::helpers::facets::cuboid;
 use std::fs;
 use std::path::Path;
 

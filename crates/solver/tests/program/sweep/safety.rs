@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::{SCENE, STEPS, bad, bench, good, partly, sweep};
-use crate::Bench;
+use crate::program::Bench;
 
 /// A study of one run and no more.
 const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n";
@@ -353,7 +353,7 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
             .current_dir(bench.path(""))
             .output()
             .unwrap();
-        let (said, code) = crate::refused(&output);
+        let (said, code) = crate::program::refused(&output);
         assert_eq!(code, 2, "{said}");
         assert!(said.contains(parts), "{said}\n{parts}");
         assert!(!bench.path("study-sweep").exists());

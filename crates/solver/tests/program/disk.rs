@@ -117,11 +117,11 @@ fn a_full_disk_behind_standard_output() {
 
 #[test]
 fn a_standard_error_that_takes_nothing() {
-    let codes = dem_tests::codes_without_standard_error(dem_run().arg("none.toml"));
+    let codes = dem_testing::codes_without_standard_error(dem_run().arg("none.toml"));
     assert_eq!(codes, [Some(2); 2]);
     let bench = Bench::new();
     let mut command = bench.command(&good("alone.toml"), &["--quiet", "--out", "out", "--force"]);
-    let codes = dem_tests::codes_without_standard_error(&mut command);
+    let codes = dem_testing::codes_without_standard_error(&mut command);
     assert_eq!(codes, [Some(0); 2]);
 }
 

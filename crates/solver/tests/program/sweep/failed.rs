@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::{STEPS, bad, bench, csv, good, json, partly};
-use crate::Bench;
+use crate::program::Bench;
 
 #[test]
 fn runs_that_fail_are_shown_and_the_sweep_goes_on() {

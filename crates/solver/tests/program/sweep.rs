@@ -12,7 +12,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Bench, root};
+use super::{Bench, dem_pack, root};
 
 /// A mass on a spring, which a force sets swinging: the end of two bonded spheres.
 const SCENE: &str = r#"version = 1
@@ -508,12 +508,11 @@ fn studies_of_data() {
         let study = fs::read_to_string(&path).unwrap();
         for line in study.lines() {
             if let Some(arguments) = line.strip_prefix("#   dem-pack ") {
-                let made = dem_tests::program("dem-pack")
-                    .current_dir(bench.path(""))
-                    .args(arguments.split(' '))
-                    .arg("--quiet")
-                    .status();
-                assert!(made.unwrap().success(), "{line}");
+                let words: Vec<&str> = arguments.split(' ').collect();
+                let [stl, options @ .., "-o", body] = &words[..] else {
+                    panic!("{line}");
+                };
+                dem_pack(&bench.path(stl), options, &bench.path(body));
             }
         }
         let output = bench

@@ -233,7 +233,7 @@ fn damaged_standard_input() {
     for input in [&b""[..], b"solid", b"no STL at all", &[0; 84], &[255; 500]] {
         let mut program = dem_pack();
         program.args(["-", "-d", "2mm", "-q"]);
-        let said = refusal(&super::piped(program, input), &"standard input");
+        let said = refusal(&dem_testing::piped(&mut program, input), &"standard input");
         assert!(said.starts_with("error: standard input: "), "{said}");
     }
 }

@@ -1,6 +1,5 @@
 //! Static cases of Chen et al. 2022, run through the time stepping to rest, and the page about
 //! them.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod bar;
 mod cases;

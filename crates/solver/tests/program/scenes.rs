@@ -1,8 +1,6 @@
 //! The scenes of the repository, as its pages tell people to run them.
 
-use std::process::Stdio;
-
-use super::{Bench, corpus, dem_run, names_in, root, scene_of_data};
+use super::{Bench, corpus, dem_pack, dem_run, names_in, root, scene_of_data};
 
 #[test]
 fn cantilever() {
@@ -42,36 +40,6 @@ fn spinning_bar() {
     assert_eq!(summary["results"], "again");
     let written = std::fs::read_to_string(bench.path("again/summary.json")).unwrap();
     assert_eq!(json, written);
-}
-
-#[test]
-fn a_packed_sample_through_a_pipe() {
-    let bench = Bench::new();
-    let mut pack = dem_tests::program("dem-pack")
-        .arg(root().join("data/shapes/bending-sample.stl"))
-        .args(["--diameter", "7mm..9mm", "--quiet"])
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let output = dem_run()
-        .current_dir(bench.path(""))
-        .arg(scene_of_data("clamped.toml"))
-        .args(["--body", "-", "--set", "run.end_time=1 ms"])
-        .stdin(pack.stdout.take().unwrap())
-        .output()
-        .unwrap();
-    assert!(pack.wait().unwrap().success());
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert!(
-        said.contains("end_deflection") && said.contains("-> clamped-out"),
-        "{said}"
-    );
-    assert!(names_in(&bench.path("clamped-out/plots")).contains(&"end_deflection.svg".to_owned()));
 }
 
 #[test]
@@ -145,34 +113,6 @@ fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
     }
 }
 
-/// The bodies that scenes of `data` run with are those that their page tells how to make.
-#[test]
-fn bodies_of_data_are_as_said() {
-    let bench = Bench::new();
-    let page = std::fs::read_to_string(root().join("data/bodies/README.md")).unwrap();
-    let commands: Vec<&str> = page
-        .lines()
-        .filter(|line| line.starts_with("dem-pack "))
-        .collect();
-    assert_eq!(commands.len(), 6);
-    for command in commands {
-        let mut words: Vec<&str> = command.split(' ').skip(1).collect();
-        let kept = words.pop().unwrap();
-        let made = bench.path("made.vtp");
-        let done = dem_tests::program("dem-pack")
-            .current_dir(root())
-            .args(&words)
-            .arg(&made)
-            .arg("--quiet")
-            .status();
-        assert!(done.unwrap().success(), "{command}");
-        assert!(
-            std::fs::read(&made).unwrap() == std::fs::read(root().join(kept)).unwrap(),
-            "{kept} is not what its command makes"
-        );
-    }
-}
-
 #[test]
 fn quiet_means_quiet() {
     let bench = Bench::new();
@@ -234,13 +174,13 @@ fn no_scene_of_data_is_stopped() {
         let mut options = Vec::new();
         if !shape.is_empty() {
             let packed = format!("{shape}.vtp");
-            let done = dem_tests::program("dem-pack")
-                .current_dir(bench.path(""))
-                .arg(root().join(format!("data/shapes/{shape}.stl")))
-                .args(["--diameter", diameters, "--overlap", "0.296", "--quiet"])
-                .args(["--bonding-radius", "1.0", "-o", &packed])
-                .status();
-            assert!(done.unwrap().success(), "{shape}");
+            let stl = root().join(format!("data/shapes/{shape}.stl"));
+            let radii = ["--overlap", "0.296", "--bonding-radius", "1.0"];
+            dem_pack(
+                &stl,
+                &[&["--diameter", diameters], &radii[..]].concat(),
+                &bench.path(&packed),
+            );
             options.extend(["--body".to_owned(), packed]);
         }
         let set: &[String] = if end.is_empty() {

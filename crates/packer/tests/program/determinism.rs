@@ -1,8 +1,8 @@
 //! The same input gives the same bytes, for any number of threads; another seed another body; and
 //! the unit does not matter.
 
-use super::facets::{cuboid, prism};
-use super::{Bench, bits, shape};
+use super::{Bench, bits, dem_pack, root, shape};
+use crate::helpers::facets::{cuboid, prism};
 use std::fs;
 use std::path::Path;
 
@@ -144,4 +144,32 @@ fn the_scale_does_what_the_unit_does() {
     assert_eq!(by_unit.body.radii.len(), by_scale.body.radii.len());
     assert!((by_unit.number("/quality/shape_volume_m3") / 2400e-6 - 1.0).abs() < 1e-12);
     assert!((by_scale.number("/quality/shape_volume_m3") / 2400e-6 - 1.0).abs() < 1e-12);
+}
+
+/// The bodies that scenes of `data` run with are those that their page tells how to make.
+#[test]
+fn bodies_of_data_are_as_said() {
+    let bench = Bench::new();
+    let page = std::fs::read_to_string(root().join("data/bodies/README.md")).unwrap();
+    let commands: Vec<&str> = page
+        .lines()
+        .filter(|line| line.starts_with("dem-pack "))
+        .collect();
+    assert_eq!(commands.len(), 6);
+    for command in commands {
+        let mut words: Vec<&str> = command.split(' ').skip(1).collect();
+        let kept = words.pop().unwrap();
+        let made = bench.path("made.vtp");
+        let done = dem_pack()
+            .current_dir(root())
+            .args(&words)
+            .arg(&made)
+            .arg("--quiet")
+            .status();
+        assert!(done.unwrap().success(), "{command}");
+        assert!(
+            std::fs::read(&made).unwrap() == std::fs::read(root().join(kept)).unwrap(),
+            "{kept} is not what its command makes"
+        );
+    }
 }

@@ -1,7 +1,5 @@
 //! dem-run as a person meets it: scenes and options in; results, messages and exit codes out.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod adaptive;
 mod bad_bodies;
 mod bad_input;
@@ -29,23 +27,36 @@ mod unstable;
 mod verdict;
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
+use clap::Parser;
 use dem_io::Body;
 use dem_io::body::{About, vtp};
+use dem_pack::cli::Arguments;
+use dem_testing::names_in;
 use serde_json::Value;
 use tempfile::TempDir;
 
 fn dem_run() -> Command {
-    dem_tests::program("dem-run")
+    Command::new(env!("CARGO_BIN_EXE_dem-run"))
+}
+
+/// Packs a shape as dem-pack does, in this process.
+fn dem_pack(stl: &Path, options: &[&str], output: &Path) {
+    let mut arguments = vec![OsStr::new("dem-pack"), stl.as_os_str()];
+    arguments.extend(options.iter().map(OsStr::new));
+    arguments.extend(["--quiet", "-o"].map(OsStr::new));
+    arguments.push(output.as_os_str());
+    let arguments = Arguments::try_parse_from(arguments).unwrap();
+    dem_pack::cli::run(&arguments).unwrap_or_else(|error| panic!("{}: {error}", stl.display()));
 }
 
 /// The root of the repository.
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// A scene of data/scenes.
@@ -126,15 +137,6 @@ impl Bench {
         assert_eq!(found, code, "{said}");
         said
     }
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// All files of a results folder by their names, but for what time and place put into the summary.
@@ -233,16 +235,7 @@ fn vtp_bytes(body: &Body) -> Vec<u8> {
 
 /// Runs dem-run with `input` on its standard input.
 fn piped(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = dem_run()
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A program that refuses its input early closes it.
-    let _ = child.stdin.take().unwrap().write_all(input);
-    child.wait_with_output().unwrap()
+    dem_testing::piped(dem_run().args(arguments), input)
 }
 
 /// What is said on standard error besides the warnings at the start of a run, which may be doubtful

@@ -1,8 +1,8 @@
 //! The bonds in the file are those that the options say, found again one pair after the other.
 
-use super::exact::{length, sub};
-use super::facets::{cuboid, prism};
 use super::{Bench, Made};
+use crate::helpers::exact::{length, sub};
+use crate::helpers::facets::{cuboid, prism};
 use dem_io::Body;
 
 /// Every pair whose centres are at most `bonding_radius` times the sum of the radii apart.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Bench, root, scene_of_data};
+use crate::program::{Bench, dem_pack, root, scene_of_data};
 
 /// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The
 /// bonds are rods of 4 mm by which it has a closed form.
@@ -159,13 +159,12 @@ fn a_test_that_goes_on_says_the_same() {
 #[test]
 fn a_sample_is_bent_by_four_pins() {
     let bench = Bench::new();
-    let packed = dem_tests::program("dem-pack")
-        .current_dir(bench.path(""))
-        .arg(root().join("data/shapes/bending-sample.stl"))
-        .args(["--diameter", "5mm..7mm", "--overlap", "0.296"])
-        .args(["--bonding-radius", "1.0", "--quiet", "-o", "sample.vtp"])
-        .status();
-    assert!(packed.unwrap().success());
+    let sizes = ["--diameter", "5mm..7mm", "--overlap", "0.296"];
+    dem_pack(
+        &root().join("data/shapes/bending-sample.stl"),
+        &[&sizes[..], &["--bonding-radius", "1.0"]].concat(),
+        &bench.path("sample.vtp"),
+    );
     let scene = scene_of_data("four-point-bending.toml");
     // Quiet: dem-pack warned of spheres as large as these, and dem-run repeats it.
     let mut options = vec![
@@ -278,7 +277,7 @@ fn what_a_test_cannot_be_made_of() {
             .arg(scene_of_data(name))
             .output()
             .unwrap();
-        assert_eq!(crate::refused(&output), (said, 2));
+        assert_eq!(crate::program::refused(&output), (said, 2));
     }
 
     // A bar is no disc: 180 mm by 35 mm across the load and along it.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::{assert_same_number, assert_well_formed, bad, bench, csv, good, json};
-use crate::laboratory::bar;
+use crate::program::laboratory::bar;
 
 /// A bar that is pulled until it breaks, once.
 fn pulled() -> String {
