@@ -217,9 +217,9 @@ fn main() {
         );
         let ratio = median(pairs.map(|(with, without)| with / without).collect());
         let steps = states[at].steps as f64;
-        let items = states[at].clock.done(number_of(&case.stage)) as f64 / steps;
+        let items = states[at].scratch.clock.done(number_of(&case.stage)) as f64 / steps;
         let absent = [
-            states[base].clock.done(number_of(&case.stage)),
+            states[base].scratch.clock.done(number_of(&case.stage)),
             (case.stage.bytes)(&states[base]) as u64,
         ];
         println!(

@@ -112,7 +112,12 @@ fn steps(criterion: &mut Criterion) {
                 b.iter_custom(|rounds| {
                     timed(rounds, &mut || {
                         let p = &mut free.particles;
-                        bond_wrenches(&free.bonds, &p.poses, &mut free.partitions, &mut p.wrenches);
+                        bond_wrenches(
+                            &free.bonds,
+                            &p.poses,
+                            &mut free.scratch.partitions,
+                            &mut p.wrenches,
+                        );
                     })
                 });
             });

@@ -4,7 +4,7 @@
 const START: u64 = 0xcbf2_9ce4_8422_2325;
 
 /// Hash of these bytes.
-pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
+pub fn fnv1a(bytes: &[u8]) -> u64 {
     fnv1a_of_parts(&[bytes])
 }
 

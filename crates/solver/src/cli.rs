@@ -448,7 +448,7 @@ fn open_folder(path: Option<(PathBuf, Existing)>, scene: &Scene) -> Result<Optio
     ResultsFolder::create(&path, existing).map(Some)
 }
 
-fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot> {
+fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot<'static>> {
     let path = folder.checkpoint();
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)

@@ -14,6 +14,7 @@ pub mod plane;
 pub mod solid_box;
 
 use nalgebra::Vector3;
+use serde::Serialize;
 
 pub use cylinder::Cylinder;
 pub use frame::Frame;
@@ -74,7 +75,7 @@ impl Touch {
 }
 
 /// A box with sides along the axes, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bounds {
     /// Smallest coordinates; may be infinite. Length 3.
     pub low: [f64; 3],
@@ -142,7 +143,7 @@ impl Bounds {
 }
 
 /// The shape of a wall.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Shape {
     /// Half of space.
     Plane(Plane),
@@ -152,6 +153,13 @@ pub enum Shape {
     Cylinder(Cylinder),
     /// A triangulated surface.
     Mesh(Mesh),
+}
+
+impl Default for Shape {
+    /// A plane without direction, as a wall has before it is told its own.
+    fn default() -> Self {
+        Self::Plane(Plane::default())
+    }
 }
 
 impl Shape {

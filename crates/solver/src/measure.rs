@@ -167,7 +167,7 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
     let motions = if probes.iter().any(needs_motions) {
         Motions {
             particles: synchronous_motions(state),
-            clumps: synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s),
+            clumps: synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s),
         }
     } else {
         Motions::default()
@@ -295,7 +295,7 @@ impl Probe {
                 largest.max(bond_utilisation(state, at))
             }),
             Quantity::AngleOfRepose => {
-                let down = Vector3::from(state.gravity_m_s2);
+                let down = Vector3::from(state.model.gravity_m_s2);
                 let up = (-down).try_normalize(0.0).unwrap_or_else(Vector3::z);
                 heap::angle_of_repose_deg(members, state, up)
             }

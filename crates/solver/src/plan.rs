@@ -20,6 +20,7 @@ pub mod time_step;
 mod walls;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use dem_io::body::About;
 use dem_io::body::mass::BodyMass;
@@ -33,7 +34,8 @@ use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::SetLoad;
 use crate::state::particles::Wrench;
-use crate::state::sleep::Sleep;
+use crate::state::population::{InletProgress, OutletTotals};
+use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::Held;
 use crate::state::supports::SetSupport;
 
@@ -125,19 +127,22 @@ pub fn plan(
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
     let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
-    state.gravity_m_s2 = scene.run.gravity_m_s2;
-    state.particle_damping = scene.run.particle_damping;
-    if state.particle_damping > 0.0 {
-        state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+    state.model.gravity_m_s2 = scene.run.gravity_m_s2;
+    state.model.particle_damping = scene.run.particle_damping;
+    if state.model.particle_damping > 0.0 {
+        state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
     }
     state.supports = supports(scene, &sets)?;
     start(scene, &sets, &bodies, &mut state)?;
     state.loads = loads(scene, &sets, &state.supports)?;
     let mut notes = masses::notes(scene, &masses);
-    state.rules = rules(scene, &templates)?;
+    state.model.rules = rules(scene, &templates)?;
+    state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
+    state.population.outlets = vec![OutletTotals::default(); state.model.rules.outlets.len()];
+    state.model.templates.clone_from(&templates);
     state.clumps.templates = templates;
-    state.clumps.ball_m = ball_m;
-    if !state.clumps.templates.is_empty() && state.particle_damping > 0.0 {
+    state.model.ball_m = ball_m;
+    if !state.clumps.templates.is_empty() && state.model.particle_damping > 0.0 {
         return Err(Diagnostic::input(
             format!("{}: run.particle_damping", scene.source),
             "clumps have no particles of their own, which alone are damped so",
@@ -222,7 +227,7 @@ fn place_meetings(
         };
         apply_topology_change(state, changes);
     }
-    state.triggers = Triggers {
+    state.model.search = Triggers {
         interval: scene.clusters.interval,
         min_broken: scene.clusters.min_broken,
         force_every: scene.clusters.force_every,
@@ -235,7 +240,13 @@ fn place_meetings(
         place_contacts(scene, &kinds, bodies, state)?;
         state.walls = walls::place_walls(scene, &kinds, bodies, state, notes)?;
         let asked = scene.sleep.as_ref();
-        state.sleep = asked.map(|asked| Sleep::new(asked.speed_m_s, asked.after_s));
+        state.sleep = asked.map(|_| Sleep::default());
+        state.model.sleep = asked.map(|asked| SleepRule {
+            speed_m_s: asked.speed_m_s,
+            after_s: asked.after_s,
+        });
+        let models = state.walls.iter().map(|wall| Arc::clone(&wall.model));
+        state.model.walls = models.collect();
     }
     Ok(())
 }

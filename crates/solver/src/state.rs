@@ -8,56 +8,62 @@ pub mod contacts;
 pub mod events;
 pub mod ledger;
 pub mod loads;
+pub mod model;
 pub mod order;
 pub mod particles;
 pub mod partitions;
+pub mod population;
 pub mod regions;
 pub mod rules;
+pub mod scratch;
 pub mod sleep;
 pub mod supports;
 pub mod walls;
 pub mod watches;
 
-use crate::clock::StageClock;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
 use crate::physics::bond::failure::CauseCounts;
 
 use self::bonds::Bonds;
 use self::clumps::Clumps;
-use self::clusters::{Clusters, Triggers};
+use self::clusters::Clusters;
 use self::contacts::Contacts;
-use self::events::Events;
 use self::ledger::EnergyLedger;
 use self::loads::SetLoad;
+use self::model::Model;
 use self::particles::{Particles, Wrench};
-use self::partitions::{Partition, divide};
-use self::rules::Rules;
+use self::partitions::divide_awake;
+use self::population::Population;
+use self::scratch::Scratch;
 use self::sleep::Sleep;
 use self::supports::SetSupport;
 use self::walls::Wall;
 use self::watches::Watch;
 
-/// A simulation between two steps. Poses stand at `time_s`, velocities half a step before; before
-/// the first step both stand at the start.
-#[derive(Debug, Clone)]
+/// A simulation between two steps, in three parts: what the plan fixed; what moves and is saved,
+/// which is a checkpoint as it stands; and what can be rebuilt from these two. Poses stand at
+/// `time_s`, velocities half a step before; before the first step both stand at the start.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
+    /// What the plan fixed.
+    #[serde(skip)]
+    pub model: Model,
+
     /// Spheres: first those that move by themselves, then those that clumps carry.
     pub particles: Particles,
     /// Rigid clumps.
     pub clumps: Clumps,
-    /// What joins them.
+    /// What joins particles.
     pub bonds: Bonds,
-    /// Number of partitions in which the work is divided, at most.
-    pub threads: usize,
-    /// Who works on what.
-    pub partitions: Vec<Partition>,
     /// Which particles are of one piece. None: nothing can break, and nothing can touch.
     pub clusters: Option<Clusters>,
-    /// When pieces are looked for.
-    pub triggers: Triggers,
     /// Bonds that broke since pieces were looked for last.
     pub unsearched: Vec<u32>,
-    /// When bodies come, go, and become others.
-    pub rules: Rules,
+    /// Bodies that came, went and became others so far.
+    pub population: Population,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
     /// Bodies that sleep. None: none can.
@@ -70,14 +76,6 @@ pub struct State {
     pub loads: Vec<SetLoad>,
     /// Supports.
     pub supports: Vec<SetSupport>,
-    /// m/s2. Length 3.
-    pub gravity_m_s2: [f64; 3],
-    /// gamma of Chen et al. 2022, eqs. 11 and 12. 0: none.
-    pub particle_damping: f64,
-    /// Damping forces of bonds. Empty: no bond is damped.
-    pub bond_resistance: Vec<Wrench>,
-    /// Damping forces on particles. Empty: none.
-    pub particle_resistance: Vec<Wrench>,
     /// Steps done.
     pub steps: u64,
     /// Simulated time, s.
@@ -89,8 +87,6 @@ pub struct State {
     /// Largest speed of a particle in the step before, and where there are contacts that of a wall
     /// on top, m/s.
     pub fastest_m_s: f64,
-    /// What happened in the last step.
-    pub events: Events,
     /// Bonds broken so far.
     pub broken_count: u64,
     /// The same by what they failed by.
@@ -99,58 +95,106 @@ pub struct State {
     pub broken_gone: u64,
     /// Energy and momentum that went in and out.
     pub ledger: EnergyLedger,
-    /// Where the time goes.
-    pub clock: StageClock,
+
+    /// What can be rebuilt.
+    #[serde(skip)]
+    pub scratch: Scratch,
 }
 
 impl State {
     /// A simulation of these particles and bonds, without loads, supports, gravity and particle
     /// damping. Work is divided for this many threads.
     pub fn new(particles: Particles, bonds: Bonds, time_step_s: f64, threads: usize) -> Self {
-        let damped = bonds.rules.iter().any(|rule| rule.damped);
-        let partitions = divide(&bonds, particles.len(), threads);
-        Self {
-            bond_resistance: if damped {
-                vec![Wrench::default(); particles.len()]
-            } else {
-                Vec::new()
+        let mut state = Self {
+            model: Model {
+                bond_rules: Arc::clone(&bonds.rules),
+                ..Model::default()
             },
             ledger: EnergyLedger::default(),
             particles,
             clumps: Clumps::default(),
             bonds,
-            threads,
-            partitions,
             clusters: None,
-            triggers: Triggers::default(),
             unsearched: Vec::new(),
-            rules: Rules::default(),
+            population: Population::default(),
             contacts: None,
             sleep: None,
             walls: Vec::new(),
             watches: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
-            gravity_m_s2: [0.0; 3],
-            particle_damping: 0.0,
-            particle_resistance: Vec::new(),
             steps: 0,
             time_s: 0.0,
             time_step_s,
             previous_time_step_s: 0.0,
             fastest_m_s: 0.0,
-            events: Events::default(),
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
             broken_gone: 0,
-            clock: StageClock::default(),
-        }
+            scratch: Scratch {
+                threads,
+                ..Scratch::default()
+            },
+        };
+        state.divide();
+        state
     }
 
-    /// The lists of damping forces that are booked apart: of bonds and on particles; each with one
-    /// for each particle, or empty.
-    pub fn resistances(&self) -> [&[Wrench]; 2] {
-        [&self.bond_resistance, &self.particle_resistance]
+    /// Divides the work on particles and bonds anew, and makes room for damping forces.
+    pub fn divide(&mut self) {
+        let free = self.particles.free;
+        let scratch = &mut self.scratch;
+        let asleep = &self.particles.asleep;
+        scratch.partitions = divide_awake(&self.bonds, free, scratch.threads, asleep);
+        let damped = self.bonds.rules.iter().any(|rule| rule.damped);
+        let resistances = if damped { free } else { 0 };
+        scratch.bond_resistance = vec![Wrench::default(); resistances];
+    }
+
+    /// The state that comes from a checkpoint, with the model that was planned for it and all that
+    /// can be rebuilt, for this many threads. None: the two do not belong together.
+    pub fn rebuilt(mut self, model: Model, threads: usize) -> Option<Self> {
+        let of_fragments = self.population.fragments.iter_mut();
+        for fragment in of_fragments {
+            Arc::make_mut(&mut fragment.template).bonds.rules = Arc::clone(&model.bond_rules);
+        }
+        self.bonds.rules = Arc::clone(&model.bond_rules);
+        let of_fragments = self.population.fragments.iter();
+        let of_fragments = of_fragments.map(|fragment| &fragment.template);
+        let templates = model.templates.iter().chain(of_fragments).cloned();
+        self.clumps.templates = templates.collect();
+        if self.walls.len() != model.walls.len() {
+            return None;
+        }
+        for (wall, model) in self.walls.iter_mut().zip(&model.walls) {
+            wall.model = Arc::clone(model);
+        }
+        if let Some(contacts) = &mut self.contacts {
+            contacts.model = Arc::clone(model.contacts.as_ref()?);
+        }
+        self.model = model;
+        self.scratch.threads = threads;
+        self.divide();
+        self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
+        if self.model.particle_damping > 0.0 {
+            self.scratch.particle_resistance = vec![Wrench::default(); self.particles.len()];
+        }
+        if let Some(clusters) = &mut self.clusters {
+            clusters.rebuild(&self.bonds)?;
+        }
+        if let Some(contacts) = &mut self.contacts {
+            contacts.divide(self.particles.len(), self.scratch.partitions.len().max(1));
+        }
+        Some(self)
+    }
+
+    /// The template of the scene that a template comes from.
+    pub fn base_of(&self, template: u32) -> u32 {
+        let of_scene = self.model.templates.len();
+        match (template as usize).checked_sub(of_scene) {
+            Some(fragment) => self.population.fragments[fragment].base,
+            None => template,
+        }
     }
 
     /// Density of particle `i`, kg/m3, be it carried by a clump or not.

@@ -90,13 +90,13 @@ const DRIFT: &[Part] = &[
 pub fn step(state: &mut State) -> &Events {
     interact(state);
     advance(state);
-    &state.events
+    &state.scratch.events
 }
 
 /// First half of a step. Afterwards poses stand at `time_s` and velocities half a step later: the
 /// moment at which everything can be measured.
 pub fn interact(state: &mut State) {
-    state.events.begin(state.steps, state.time_s);
+    state.scratch.events.begin(state.steps, state.time_s);
     if !state.ledger.is_open {
         state.ledger = opened(state);
     }
@@ -121,12 +121,12 @@ pub fn drift(state: &mut State) {
 }
 
 fn run(parts: &[Part], stages: &[usize], state: &mut State) {
-    state.clock.start(state.steps);
+    state.scratch.clock.start(state.steps);
     for ((_, part), &stage) in parts.iter().zip(stages) {
-        if !state.clock.is_left_out(stage) {
+        if !state.scratch.clock.is_left_out(stage) {
             let items = part(state);
-            state.clock.did(stage, items);
-            state.clock.book(stage);
+            state.scratch.clock.did(stage, items);
+            state.scratch.clock.book(stage);
         }
     }
 }

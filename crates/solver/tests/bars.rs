@@ -75,7 +75,7 @@ pub(crate) fn add_bonds(
     of: &Bonding,
 ) {
     let rule = bonds.rules.len();
-    bonds.rules.push(of.rule);
+    bonds.rules = bonds.rules.iter().copied().chain([of.rule]).collect();
     for &[a, b] in pairs {
         let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
         let radii = [a, b].map(|end| particles.poses[end as usize].radius_m());
@@ -180,16 +180,18 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
         [d.normal, d.shear, d.torsion, d.bending]
     };
     state.bonds.damping = (0..state.bonds.len()).map(of_bond).collect();
-    for rule in &mut state.bonds.rules {
-        rule.damped = true;
-    }
-    state.bond_resistance = vec![Wrench::default(); p.len()];
+    let damped = |rule: &BondRule| BondRule {
+        damped: true,
+        ..*rule
+    };
+    state.bonds.rules = state.bonds.rules.iter().map(damped).collect();
+    state.scratch.bond_resistance = vec![Wrench::default(); p.len()];
 }
 
 /// Damps all particles with this share of what acts on them.
 pub(crate) fn damp_particles(state: &mut State, gamma: f64) {
-    state.particle_damping = gamma;
-    state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+    state.model.particle_damping = gamma;
+    state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
 }
 
 /// Numbers between -1 and 1 that look random, the same on every machine.

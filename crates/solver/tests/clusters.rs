@@ -4,6 +4,8 @@ mod breaking;
 mod fragments;
 mod triggers;
 
+use std::sync::Arc;
+
 use dem_run::physics::bond::stiffness::Stiffness;
 use dem_run::state::bonds::{BondRule, Bonds};
 
@@ -17,13 +19,13 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
     sorted.sort_unstable();
     sorted.dedup();
     let mut bonds = Bonds {
-        rules: vec![BondRule {
+        rules: Arc::new([BondRule {
             incremental: false,
             damped: false,
             criteria: None,
             strengthening_from_1_s: None,
             rate_of: dem_io::scene::RateOf::Elongation,
-        }],
+        }]),
         ..Bonds::default()
     };
     let stiffness = Stiffness {

@@ -74,7 +74,7 @@ pub(crate) fn planned(scene: &Scene) -> Plan {
     let mut plan = plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap();
     let state = &mut plan.state;
     state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
-    state.triggers = Triggers::every_step();
+    state.model.search = Triggers::every_step();
     plan
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn run_into(
     folder: &ResultsFolder,
     plan: Plan,
     scene: &Scene,
-    resume: Option<Snapshot>,
+    resume: Option<Snapshot<'static>>,
     stop_at: f64,
 ) -> Result<Summary> {
     let interrupted = AtomicBool::new(false);

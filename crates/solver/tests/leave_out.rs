@@ -43,7 +43,7 @@ fn go(state: &mut State, steps: u64) {
 /// Stages that have done something.
 fn busy(state: &State) -> Vec<&'static str> {
     let all = stages().iter();
-    let busy = all.filter(|stage| state.clock.done(number_of(stage)) > 0);
+    let busy = all.filter(|stage| state.scratch.clock.done(number_of(stage)) > 0);
     busy.map(|stage| stage.name).collect()
 }
 

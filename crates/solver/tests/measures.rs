@@ -55,10 +55,10 @@ impl Measured {
     /// What comes and goes. Whether anything did.
     pub(crate) fn replace(&mut self) -> bool {
         exchange(&mut self.state);
-        if self.state.events.population.is_empty() {
+        if self.state.scratch.events.population.is_empty() {
             return false;
         }
-        let renumbered = std::mem::take(&mut self.state.events.renumberings);
+        let renumbered = std::mem::take(&mut self.state.scratch.events.renumberings);
         for by in &renumbered {
             renumber(&mut self.bodies, by);
         }

@@ -120,6 +120,7 @@ pub(crate) fn slab_kg() -> f64 {
 /// Contacts, bonds and wall touches that a step works on.
 pub(crate) fn work(state: &State) -> [usize; 4] {
     let bonds = state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.own_bonds())

@@ -48,7 +48,7 @@ fn planned(text: &str) -> Plan {
 fn run_of(
     text: &str,
     folder: Option<&ResultsFolder>,
-    resume: Option<Snapshot>,
+    resume: Option<Snapshot<'static>>,
     stop_at: f64,
 ) -> Result<Summary> {
     let interrupted = AtomicBool::new(false);

@@ -1,5 +1,7 @@
 //! A bed of spheres that touch as those of a heap do.
 
+use std::sync::Arc;
+
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::law::ContactKind;
 use dem_run::physics::contact::law::Law;
@@ -10,7 +12,7 @@ use dem_run::stages::neighbours::near_pairs;
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
-use dem_run::state::contacts::Contacts;
+use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
 
@@ -61,15 +63,18 @@ fn contacts(state: &State, threads: usize) -> Contacts {
         poisson_ratio: 0.3,
     };
     let mut contacts = Contacts {
-        kinds: vec![ContactKind {
-            law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &PairInput::new(0.5, 0.5))),
-            rolling: Rolling::Free,
-        }],
-        kind_of: vec![0],
+        model: Arc::new(ContactModel {
+            kinds: vec![ContactKind {
+                law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &PairInput::new(0.5, 0.5))),
+                rolling: Rolling::Free,
+            }],
+            kind_of: vec![0],
+            least_overlap: 1e-3,
+            ..ContactModel::default()
+        }),
         materials: vec![0; poses.len()],
         skin_m: SKIN_M,
         skin_left_m: 0.5 * SKIN_M,
-        least_overlap: 1e-3,
         lost_j: vec![[0.0; 2]; poses.len()],
         ..Contacts::default()
     };

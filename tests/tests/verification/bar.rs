@@ -1,5 +1,7 @@
 //! Cantilevers of bonded spheres, run until they are at rest.
 
+use std::sync::Arc;
+
 use std::f64::consts::PI;
 
 use dem_io::scene::{Factor, Hold};
@@ -102,13 +104,13 @@ impl Bar {
             particles.push_sphere(place.into(), radius_m, DENSITY);
         }
         let mut bonds = Bonds {
-            rules: vec![BondRule {
+            rules: Arc::new([BondRule {
                 incremental: self.incremental,
                 damped: false,
                 criteria: None,
                 strengthening_from_1_s: None,
                 rate_of: dem_io::scene::RateOf::Elongation,
-            }],
+            }]),
             ..Bonds::default()
         };
         for i in 0..self.bonds() {
@@ -138,8 +140,8 @@ impl Bar {
             factor: Factor::One,
             held: vec![Held::default()],
         });
-        state.particle_damping = DAMPING;
-        state.particle_resistance = vec![Wrench::default(); count];
+        state.model.particle_damping = DAMPING;
+        state.scratch.particle_resistance = vec![Wrench::default(); count];
         state.time_step_s = 0.5 * limit(&mut state).step_s;
         state
     }

@@ -8,6 +8,7 @@ use super::table::Table;
 use super::tree::Value;
 use crate::diagnostic::Result;
 use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
+use serde::Serialize;
 
 /// Which beam a bond is taken for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +75,7 @@ pub struct BondDamping {
 }
 
 /// What the rate is of that strengthens bonds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum RateOf {
     /// "elongation": relative velocity along the bond over its initial length.
     #[default]

@@ -7,9 +7,10 @@ use super::schema::{Key, Kind};
 use super::table::Table;
 use crate::diagnostic::Result;
 use crate::units::{NUMBER, TIME};
+use serde::{Deserialize, Serialize};
 
 /// Factor on a load or a motion, over time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Factor {
     /// 1 from the start.
     One,

@@ -12,12 +12,13 @@ use crate::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
     TORQUE, VELOCITY,
 };
+use serde::{Deserialize, Serialize};
 
 /// What is measured. Of a set, positions and velocities are those of its centre of mass, energies,
 /// forces and counts are
 /// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but
 /// torques, count and masses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
     Position(u8),

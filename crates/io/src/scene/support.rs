@@ -11,9 +11,10 @@ use super::targets::{OF, Targets};
 use super::tree::Value;
 use crate::diagnostic::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
+use serde::{Deserialize, Serialize};
 
 /// What holds one degree of freedom.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Hold {
     /// Does not move.
     Fixed,

@@ -105,7 +105,7 @@ impl Flyer {
             let pose = &p.poses[i as usize];
             (pose.place() - centre_m, pose.radius_m())
         });
-        let gravity_m_s2 = state.gravity_m_s2.into();
+        let gravity_m_s2 = state.model.gravity_m_s2.into();
         let velocity_m_s = momentum / mass_kg;
         Self::new(name, spheres.collect(), gravity_m_s2).moving(
             centre_m,
@@ -121,7 +121,12 @@ impl Flyer {
             let pose = template.pose(sphere as usize, clump);
             (pose.place() - centre_m, template.scale * pose.radius_m())
         });
-        Self::new(&template.body, spheres.collect(), state.gravity_m_s2.into()).moving(
+        Self::new(
+            &template.body,
+            spheres.collect(),
+            state.model.gravity_m_s2.into(),
+        )
+        .moving(
             centre_m,
             clump.velocity_m_s.into(),
             clump.spin_rad_s(template),
@@ -184,7 +189,7 @@ impl Flyer {
 
     /// What comes of it and this wall alone.
     fn meeting(&self, wall: &Wall) -> Meeting {
-        if wall.motion != WallMotion::Fixed {
+        if wall.model.motion != WallMotion::Fixed {
             return Meeting::Unknown;
         }
         let mut after_s = 0.0;
@@ -192,7 +197,7 @@ impl Flyer {
             let gap_m = self.gap_after(wall, after_s);
             if gap_m <= CLOSED * self.reach_m {
                 let speed_m_s = self.velocity_after(after_s).norm();
-                let wall = wall.name.clone();
+                let wall = wall.model.name.clone();
                 return Meeting::At {
                     after_s,
                     wall,
@@ -215,7 +220,8 @@ impl Flyer {
         let to_wall = wall.frame.all_to_wall();
         let centre = self.centre_after(time_s);
         let mut found = Vec::new();
-        wall.shape
+        wall.model
+            .shape
             .touches(to_wall(centre.into()), f64::INFINITY, &mut found);
         let nearest = found.iter().map(|touch| touch.distance_m);
         let from_centre_m = nearest.fold(f64::INFINITY, f64::min);
@@ -230,7 +236,8 @@ impl Flyer {
             found.clear();
             // Every sphere is within twice the reach of what is nearest to the centre.
             let within_m = (gap_m + radius_m).min(from_centre_m.abs() + 2.0 * self.reach_m);
-            wall.shape
+            wall.model
+                .shape
                 .touches(to_wall(place.into()), within_m, &mut found);
             for touch in &found {
                 gap_m = gap_m.min(touch.distance_m - radius_m);
@@ -251,10 +258,11 @@ impl Flyer {
     fn leaves(&self, wall: &Wall, from_s: f64) -> bool {
         let velocity = self.velocity_after(from_s);
         let centre = self.centre_after(from_s);
-        if let Shape::Plane(_) = wall.shape {
+        if let Shape::Plane(_) = wall.model.shape {
             let mut found = Vec::new();
             let to_wall = wall.frame.all_to_wall();
-            wall.shape
+            wall.model
+                .shape
                 .touches(to_wall(centre.into()), f64::INFINITY, &mut found);
             return found.iter().all(|touch| {
                 let into_wall = Vector3::from(wall.frame.touch_to_space(touch).normal);
@@ -311,7 +319,7 @@ mod tests {
     fn floor() -> Wall {
         let plane = Plane::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap();
         let mut wall = Wall::standing(Shape::Plane(plane), Frame::default());
-        wall.name = "floor".to_owned();
+        std::sync::Arc::make_mut(&mut wall.model).name = "floor".to_owned();
         wall
     }
 

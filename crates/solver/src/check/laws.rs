@@ -69,7 +69,7 @@ pub fn foreseen(
                 significant(100.0 * speed_m_s / wave_m_s, 2)
             ));
         }
-        let gravity = Vector3::from(state.gravity_m_s2).norm();
+        let gravity = Vector3::from(state.model.gravity_m_s2).norm();
         let by_weight = body.density_kg_m3 * gravity * body.height_m / body.modulus_pa;
         if by_weight > LARGEST_STRAIN {
             warnings.push(format!(
@@ -105,7 +105,7 @@ struct Assembly<'a> {
 }
 
 fn assemblies<'a>(state: &'a State, bodies: &'a [PlacedBody]) -> Vec<Assembly<'a>> {
-    let down = Vector3::from(state.gravity_m_s2).try_normalize(0.0);
+    let down = Vector3::from(state.model.gravity_m_s2).try_normalize(0.0);
     let of_bodies = bodies.iter().filter_map(|body| {
         let range = body.first_bond..body.first_bond + body.bonds.len();
         let (modulus_pa, at) = softest_bond(&state.bonds, range)?;
@@ -126,7 +126,7 @@ fn assemblies<'a>(state: &'a State, bodies: &'a [PlacedBody]) -> Vec<Assembly<'a
     });
     let templates = state.clumps.templates.iter().enumerate();
     let of_templates = templates.filter_map(|(n, template)| {
-        let rules = &state.rules;
+        let rules = &state.model.rules;
         let becomes_bonded = rules.starts.get(n).is_some_and(|start| start.bonded)
             || rules.triggers.get(n).is_some_and(Option::is_some);
         let (modulus_pa, at) = softest_bond(&template.bonds, 0..template.bonds.len())?;

@@ -9,7 +9,9 @@ use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::damping::damping_wrenches;
 use crate::state::State;
+use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Pose, Wrench};
+use crate::state::scratch::Scratch;
 
 /// Iterations at least and at most.
 const ITERATIONS: [usize; 2] = [20, 200];
@@ -132,15 +134,15 @@ pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
 
 /// Damping of particles always acts against the fastest mode: see [`limit`].
 fn stiffer_by_damping(state: &State) -> f64 {
-    if state.particle_resistance.is_empty() {
+    if state.scratch.particle_resistance.is_empty() {
         1.0
     } else {
-        1.0 + state.particle_damping
+        1.0 + state.model.particle_damping
     }
 }
 
 fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
-    !state.bond_resistance.is_empty() || !contacts.is_empty()
+    !state.scratch.bond_resistance.is_empty() || !contacts.is_empty()
 }
 
 /// Those of other particles begin anew in each step; what acts on spheres of clumps is added to
@@ -293,7 +295,7 @@ fn largest_eigenvalue(
                 &mut image,
             );
         }
-        if weights.damping > 0.0 && !state.bond_resistance.is_empty() {
+        if weights.damping > 0.0 && !state.scratch.bond_resistance.is_empty() {
             add_damping_times(state, weights.damping, &roots, &present, &mut image);
         }
         if !contacts.is_empty() {
@@ -465,13 +467,15 @@ pub(super) fn add_stiffness_times(
 
 /// Forces of all bonds at these poses by the total formulation, without looking for failing ones.
 fn bonds_as_total(state: &mut State, poses: &[Pose]) {
-    let rules = state.bonds.rules.clone();
-    for rule in &mut state.bonds.rules {
-        rule.incremental = false;
-        rule.criteria = None;
-    }
+    let as_total = |rule: &BondRule| BondRule {
+        incremental: false,
+        criteria: None,
+        ..*rule
+    };
+    let as_total = state.bonds.rules.iter().map(as_total).collect();
+    let rules = std::mem::replace(&mut state.bonds.rules, as_total);
     let wrenches = &mut state.particles.wrenches;
-    bond_wrenches(&state.bonds, poses, &mut state.partitions, wrenches);
+    bond_wrenches(&state.bonds, poses, &mut state.scratch.partitions, wrenches);
     state.bonds.rules = rules;
 }
 
@@ -500,10 +504,14 @@ fn add_damping_times(
     let State {
         bonds,
         particles,
+        scratch,
+        ..
+    } = state;
+    let Scratch {
         partitions,
         bond_resistance,
         ..
-    } = state;
+    } = scratch;
     damping_wrenches(
         bonds,
         &particles.poses,

@@ -44,7 +44,7 @@ pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
                     0.0,
                 );
                 touch.overlap_m = overlap_m;
-                let kind = &contacts.kinds[contacts.kind(pair)];
+                let kind = &contacts.model.kinds[contacts.kind(pair)];
                 found.push(LinearContact {
                     ends: pair.map(Some),
                     touch,
@@ -203,13 +203,18 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
         let per_mass = p.motions[a].inverse_mass + p.motions[b].inverse_mass;
         kind.normal_n_m(overlap_m, ra * rb / (ra + rb)) * per_mass
     };
-    let least_m: Vec<f64> = (contacts.kinds.iter())
+    let least_m: Vec<f64> = (contacts.model.kinds.iter())
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
     // Whatever touches was close when pairs were looked at last.
     let of_partition = |partition: &ContactPartition| {
         let mut largest = 0.0_f64;
-        for ((kind, [_, own]), least_m) in contacts.kinds.iter().zip(&partition.close).zip(&least_m)
+        for ((kind, [_, own]), least_m) in contacts
+            .model
+            .kinds
+            .iter()
+            .zip(&partition.close)
+            .zip(&least_m)
         {
             for at in own.iter().map(|&at| at as usize) {
                 let overlap_m = contacts.histories[at].overlap_m();
@@ -220,7 +225,8 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
         }
         largest
     };
-    let of_pairs = (contacts.partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
+    let of_pairs =
+        (contacts.scratch.partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
@@ -270,7 +276,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         return [0.0; 3];
     };
     let p = &state.particles;
-    let materials = contacts.kind_of.len().isqrt();
+    let materials = contacts.model.kind_of.len().isqrt();
     let mut largest = [0.0_f64; 3];
     let mut take = |kind: &ContactKind, i: usize, inverse_kg: f64, at_wall: bool| {
         let n = Vector3::x();
@@ -295,14 +301,18 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     };
     for (i, inverse_kg) in first_to_hit(state) {
         let material = usize::from(contacts.materials[i]);
-        let row = &contacts.kind_of[material * materials..(material + 1) * materials];
+        let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
-            if let Some(kind) = contacts.kinds.get(usize::from(kind)) {
+            if let Some(kind) = contacts.model.kinds.get(usize::from(kind)) {
                 take(kind, i, inverse_kg, false);
             }
         }
         for wall in &state.walls {
-            if let Some(kind) = wall.kinds.get(usize::from(wall.kind_of[material])) {
+            if let Some(kind) = wall
+                .model
+                .kinds
+                .get(usize::from(wall.model.kind_of[material]))
+            {
                 take(kind, i, inverse_kg, true);
             }
         }
@@ -319,7 +329,7 @@ pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
-    let materials = contacts.kind_of.len().isqrt();
+    let materials = contacts.model.kind_of.len().isqrt();
     let mut seen = vec![false; materials];
     let mut largest = 0.0_f64;
     for (i, &material) in contacts.materials.iter().enumerate() {
@@ -330,11 +340,11 @@ pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
         let radius_m = state.particles.poses[i].radius_m();
         let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
         let inverse_kg = 1.0 / (state.density_kg_m3(i) * volume_m3);
-        let row = &contacts.kind_of[material * materials..(material + 1) * materials];
-        let pairs = (row.iter()).filter_map(|&kind| contacts.kinds.get(usize::from(kind)));
+        let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
+        let pairs = (row.iter()).filter_map(|&kind| contacts.model.kinds.get(usize::from(kind)));
         let walls = state.walls.iter().filter_map(|wall| {
-            let kind = wall.kind_of.get(material)?;
-            wall.kinds.get(usize::from(*kind))
+            let kind = wall.model.kind_of.get(material)?;
+            wall.model.kinds.get(usize::from(*kind))
         });
         let all = (pairs.map(|kind| (kind, false))).chain(walls.map(|kind| (kind, true)));
         for (kind, at_wall) in all {

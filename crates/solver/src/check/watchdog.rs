@@ -52,7 +52,10 @@ impl Watchdog {
         let kinetic = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
         // Not a number is due as well.
         let quiet = kinetic
-            <= (1.0 + self.allowed) * state.ledger.put_in_j(state.gravity_m_s2, &state.walls);
+            <= (1.0 + self.allowed)
+                * state
+                    .ledger
+                    .put_in_j(state.model.gravity_m_s2, &state.walls);
         !quiet
     }
 
@@ -70,7 +73,10 @@ impl Watchdog {
             &state.particles.motions,
         );
         let coming = 0.5 * state.time_step_s * power_w.abs();
-        let put_in = state.ledger.put_in_j(state.gravity_m_s2, &state.walls) + coming;
+        let put_in = state
+            .ledger
+            .put_in_j(state.model.gravity_m_s2, &state.walls)
+            + coming;
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }
@@ -89,7 +95,8 @@ fn unstable(
         state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
     );
     let contact = contact_culprit(state);
-    let parted = state.broken_count > 0 && state.contacts.as_ref().is_some_and(|c| !c.relaxes);
+    let parted =
+        state.broken_count > 0 && state.contacts.as_ref().is_some_and(|c| !c.model.relaxes);
     let is_unrelaxed = contact.is_some() && parted;
     if let Some(contact) = contact {
         problem += &contact;
@@ -130,15 +137,18 @@ fn contact_culprit(state: &State) -> Option<String> {
     let at = (0..contacts.pairs.len()).max_by(|&a, &b| energy(a).total_cmp(&energy(b)));
     let of_pairs: f64 = (0..contacts.pairs.len()).map(energy).sum();
     let walls = state.walls.iter();
-    let wall = walls.max_by(|a, b| a.elastic_j.total_cmp(&b.elastic_j));
-    let of_walls: f64 = state.walls.iter().map(|wall| wall.elastic_j).sum();
+    let wall = walls.max_by(|a, b| {
+        let [a, b] = [a, b].map(|wall| wall.scratch.elastic_j);
+        a.total_cmp(&b)
+    });
+    let of_walls: f64 = state.walls.iter().map(|wall| wall.scratch.elastic_j).sum();
     if of_pairs + of_walls <= elastic_energy(state).total() {
         return None;
     }
     if let Some(wall) = wall.filter(|_| of_walls > of_pairs) {
         return Some(format!(
             "; most of it in contacts with the wall '{}'",
-            wall.name
+            wall.model.name
         ));
     }
     let [x, y, z, _] = p.poses[contacts.pairs[at?][0] as usize].position_m;

@@ -27,7 +27,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
     // What the first steps take says nothing where bodies come, go, or become others.
-    let trial = (plan.state.rules.are_none()).then(|| Trial::of(&plan.state));
+    let trial = (plan.state.model.rules.are_none()).then(|| Trial::of(&plan.state));
     let per_step_s = trial.as_ref().map(|trial| trial.per_step_s);
     let of_stages = |needed: bool| -> Vec<Value> {
         let of_stage = |stage: &PlannedStage| {
@@ -136,7 +136,7 @@ fn contents(plan: &Plan) -> String {
             "{} particles, {} bonds{}",
             state.particles.len(),
             state.bonds.len(),
-            if state.rules.inlets.is_empty() {
+            if state.model.rules.inlets.is_empty() {
                 ""
             } else {
                 " at the start"
@@ -296,7 +296,10 @@ pub(super) fn size_text(bytes: usize) -> String {
 /// What the arrays of a state take, and what contacts may come to take, bytes.
 fn memory_bytes(state: &State) -> usize {
     let now = all_bytes(state);
-    let may_come = state.contacts.as_ref().filter(|contacts| !contacts.alone);
+    let may_come = state
+        .contacts
+        .as_ref()
+        .filter(|contacts| !contacts.model.alone);
     // Every particle may come to touch a few others.
     now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())
 }
@@ -318,7 +321,7 @@ impl Trial {
         }
         Self {
             per_step_s: clock.elapsed().as_secs_f64() / f64::from(done),
-            clock: copy.clock,
+            clock: copy.scratch.clock,
         }
     }
 

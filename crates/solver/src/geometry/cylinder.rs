@@ -2,12 +2,13 @@
 
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 
 /// A solid cylinder. Features: 0 the round side, 1 and 2 the first and the second end, 3 and 4
 /// their rims.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cylinder {
     start: Vector3<f64>,
     /// Unit vector from the first to the second end.

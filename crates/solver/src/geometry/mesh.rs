@@ -20,6 +20,7 @@ mod triangle;
 use dem_io::surface::OpenSurface;
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 use features::features;
@@ -47,7 +48,7 @@ const NO_HEIGHT: f64 = 1e-12;
 ///
 /// Features are numbered: flat parts, then straight edges between or around them, then corners.
 /// Triangles in one plane are one flat part.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mesh {
     /// In the order of the tree.
     triangles: Vec<Triangle>,
@@ -60,7 +61,7 @@ pub struct Mesh {
 }
 
 /// What a mesh consists of.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Content {
     /// Triangles with an area.
     pub triangles: usize,

@@ -2,11 +2,12 @@
 
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 
 /// The half of space behind a plane. Its only feature is 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Plane {
     point: Vector3<f64>,
     normal: Vector3<f64>,

@@ -2,6 +2,7 @@
 
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 
@@ -9,7 +10,7 @@ use super::{Bounds, Touch, are_finite};
 ///
 /// A feature is sx + 3 sy + 9 sz, where sx is 0 on the side of the smallest x, 2 on that of the
 /// largest, 1 between, and so on: a face has one that is not 1, an edge two, a corner three.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SolidBox {
     low: [f64; 3],
     high: [f64; 3],

@@ -95,7 +95,7 @@ impl Loading {
         let mut loading = Self {
             moving,
             resting,
-            weight_n: state.ledger.mass_kg() * dot(state.gravity_m_s2, setup.direction),
+            weight_n: state.ledger.mass_kg() * dot(state.model.gravity_m_s2, setup.direction),
             every: (every as u64).max(FEWEST_STEPS),
             start_m: 0.0,
             apart_m: 0.0,
@@ -158,7 +158,7 @@ impl Record {
     /// Notes a step between a kick and the drift after it. Whether the body is broken: bonds have,
     /// and the force has fallen below half of its largest.
     pub fn note(&mut self, setup: &Setup, loading: &Loading, state: &State) -> bool {
-        for broken in &state.events.broken {
+        for broken in &state.scratch.events.broken {
             self.broken.push(BrokenBond {
                 time_s: state.time_s,
                 bond: broken.bond,

@@ -234,13 +234,14 @@ impl SleepSummary {
 impl PopulationSummary {
     /// Of a state at its end. None: no body can come, go, or become another.
     pub fn of(state: &State) -> Option<Self> {
-        let (rules, clumps) = (&state.rules, &state.clumps);
+        let (rules, clumps) = (&state.model.rules, &state.clumps);
+        let population = &state.population;
         if clumps.templates.is_empty() && rules.are_none() {
             return None;
         }
         let is_single = |clump: &&Clump| clumps.template(clump).spheres.len() == 1;
         let single = clumps.all.iter().filter(is_single).count();
-        let [done, left_out] = rules.bond_steps.map(|count| count as f64);
+        let [done, left_out] = population.bond_steps.map(|count| count as f64);
         let inner = clumps.templates.iter();
         let inner: f64 = inner
             .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
@@ -248,25 +249,17 @@ impl PopulationSummary {
         Some(Self {
             clumps: clumps.all.len() - single,
             single_spheres: single,
-            replaced: rules.replaced,
-            restored: rules.restored,
-            came: rules.inlets.iter().map(|inlet| inlet.progress.bodies).sum(),
-            came_kg: (rules.inlets.iter()).fold(0.0, |sum, inlet| sum + inlet.progress.mass_kg),
-            delayed: rules
-                .inlets
-                .iter()
-                .map(|inlet| inlet.progress.delayed)
-                .sum(),
-            waiting: (rules.inlets.iter())
+            replaced: population.replaced,
+            restored: population.restored,
+            came: population.inlets.iter().map(|come| come.bodies).sum(),
+            came_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
+            delayed: population.inlets.iter().map(|come| come.delayed).sum(),
+            waiting: (rules.inlets.iter().zip(&population.inlets))
                 // Of what is due at the very end nothing has been tried.
-                .map(|inlet| inlet.owed(state.time_s - state.time_step_s))
+                .map(|(inlet, come)| inlet.owed(come, state.time_s - state.time_step_s))
                 .sum(),
-            left: rules
-                .outlets
-                .iter()
-                .map(|outlet| outlet.removed.bodies)
-                .sum(),
-            left_kg: (rules.outlets.iter()).fold(0.0, |sum, outlet| sum + outlet.removed.mass_kg),
+            left: population.outlets.iter().map(|left| left.bodies).sum(),
+            left_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
             bonds_left_out: over(left_out, done + left_out),
             inner_spheres: over(inner, clumps.templates.len() as f64),
         })

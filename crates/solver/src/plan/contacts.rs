@@ -1,6 +1,8 @@
 //! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of
 //! particles may.
 
+use std::sync::Arc;
+
 use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
 use dem_io::{Diagnostic, Result};
 
@@ -15,7 +17,7 @@ use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 use crate::state::clusters::Clusters;
-use crate::state::contacts::{ContactHistory, Contacts};
+use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
 
 /// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise
 /// or things are fast; and the largest such share.
@@ -161,18 +163,25 @@ pub(super) fn place_contacts(
     for clump in &state.clumps.all {
         materials[state.clumps.spheres_of(clump)].fill(state.clumps.template(clump).material);
     }
-    let mut contacts = Contacts {
+    let model = ContactModel {
         kinds: kinds.kinds.clone(),
         kind_of: kinds.of_pair.clone(),
+        alone: is_alone(state, clusters),
+        relaxes: scene.relaxation.enabled,
+        least_overlap: scene.relaxation.min_overlap,
+    };
+    let mut contacts = Contacts {
+        // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
+        model: Arc::new(ContactModel {
+            relaxes: scene.run.start_overlap != StartOverlap::Keep,
+            ..model.clone()
+        }),
         materials,
         skin_m: scene.search.skin.unwrap_or(SKIN[0]) * state.largest_radius_m(),
-        least_overlap: scene.relaxation.min_overlap,
-        relaxes: scene.run.start_overlap != StartOverlap::Keep,
         lost_j: vec![[0.0; 2]; p.len()],
         ..Contacts::default()
     };
-    contacts.divide(p.len(), state.partitions.len().max(1));
-    // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
+    contacts.divide(p.len(), state.scratch.partitions.len().max(1));
     let skin_m = contacts.skin_m;
     list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
     refuse_same_place(scene, &contacts, bodies, state)?;
@@ -184,8 +193,8 @@ pub(super) fn place_contacts(
             keep_overlaps(&mut contacts, state);
         }
     }
-    contacts.relaxes = scene.relaxation.enabled;
-    contacts.alone = is_alone(state, clusters);
+    contacts.model = Arc::new(model);
+    state.model.contacts = Some(Arc::clone(&contacts.model));
     contacts.skin_left_m = -1.0;
     state.contacts = Some(contacts);
     Ok(())
@@ -197,7 +206,7 @@ fn keep_overlaps(contacts: &mut Contacts, state: &State) {
     for (&pair, history) in contacts.pairs.iter().zip(&mut contacts.histories) {
         *history = ContactHistory::pressed_by(overlap_m(poses, pair));
     }
-    contacts.divide(state.particles.len(), contacts.wanted_partitions);
+    contacts.divide(state.particles.len(), contacts.scratch.wanted_partitions);
 }
 
 /// Whether there is one piece that cannot break, and no other can come.
@@ -205,7 +214,7 @@ fn is_alone(state: &State, clusters: &Clusters) -> bool {
     let of_clumps = state.clumps.templates.iter().any(|t| !t.bonds.is_empty());
     let has_bonds = of_clumps || !state.bonds.is_empty();
     let breaks = has_bonds && state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
-    clusters.living().count() <= 1 && !breaks && state.rules.inlets.is_empty()
+    clusters.living().count() <= 1 && !breaks && state.model.rules.inlets.is_empty()
 }
 
 /// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may

@@ -117,7 +117,7 @@ fn regions(scene: &Scene, state: &State, flyer: &Flyer, until_s: f64, forecast: 
     let Some(number) = scene.regions.keys().position(|region| region == name) else {
         return;
     };
-    let region = &state.rules.regions[number];
+    let region = &state.model.rules.regions[number];
     let end_s = until_s.min(scene.run.end_time_s);
     let mut moments = (0..=MOMENTS).map(|n| end_s * n as f64 / MOMENTS as f64);
     let body = &flyer.name;
@@ -139,7 +139,7 @@ fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<ToCome
         let items = arriving.particles.len() + arriving.bonds.len();
         all_bytes(arriving) as f64 / items.max(1) as f64
     });
-    let inlets = state.rules.inlets.iter().zip(scene.inlets.values());
+    let inlets = state.model.rules.inlets.iter().zip(scene.inlets.values());
     inlets
         .map(|(inlet, asked)| {
             let mean = |of: &dyn Fn(&crate::state::clumps::Template) -> f64| -> f64 {

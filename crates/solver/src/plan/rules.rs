@@ -13,9 +13,7 @@ use crate::physics::rotation::numbers;
 use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::regions::Region;
-use crate::state::rules::{
-    Feed, Inlet, InletProgress, Outlet, OutletTotals, Restore, Rules, Start, Trigger,
-};
+use crate::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
 
 /// What the scene says of when bodies come, go, and become others.
 ///
@@ -74,14 +72,12 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
             random_orientation: inlet.random_orientation,
             between_s: [inlet.start_s, inlet.end_s],
             count: inlet.count.unwrap_or(u32::MAX),
-            progress: InletProgress::default(),
         }
     });
     let outlets = scene.outlets.iter().map(|(name, outlet)| Outlet {
         name: name.clone(),
         region: number(&outlet.region).unwrap_or(0),
         removes_outside: outlet.removes_outside,
-        removed: OutletTotals::default(),
     });
     Ok(Rules {
         triggers: triggers.collect(),
@@ -91,7 +87,6 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
         outlets: outlets.collect(),
         seed: scene.run.seed,
         regions,
-        ..Rules::default()
     })
 }
 
@@ -151,7 +146,12 @@ fn region(entry: &SceneRegion) -> Result<Region> {
 /// nothing, bodies that have to wait.
 pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
     let mut doubts = Vec::new();
-    for (template, trigger) in state.clumps.templates.iter().zip(&state.rules.triggers) {
+    for (template, trigger) in state
+        .clumps
+        .templates
+        .iter()
+        .zip(&state.model.rules.triggers)
+    {
         let Some(trigger) = trigger else {
             continue;
         };
@@ -164,7 +164,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
         }
         let away = trigger
             .enters
-            .filter(|&region| is_away(&state.rules.regions[region], state));
+            .filter(|&region| is_away(&state.model.rules.regions[region], state));
         if away.is_some() {
             doubts.push(format!(
                 "replacement of '{body}': its region lies away from all bodies, inlets and walls"
@@ -188,7 +188,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             ));
         }
     }
-    for inlet in &state.rules.inlets {
+    for inlet in &state.model.rules.inlets {
         if inlet.between_s[0] >= scene.run.end_time_s {
             doubts.push(format!(
                 "inlet '{}': it starts at {} s, and the run ends at {} s",
@@ -197,14 +197,15 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
                 significant(scene.run.end_time_s, 6)
             ));
         }
-        let gate = state.rules.regions[inlet.region].bounds();
+        let gate = state.model.rules.regions[inlet.region].bounds();
         for outlet in state
+            .model
             .rules
             .outlets
             .iter()
             .filter(|outlet| outlet.removes_outside)
         {
-            if is_apart(&gate, &state.rules.regions[outlet.region].bounds()) {
+            if is_apart(&gate, &state.model.rules.regions[outlet.region].bounds()) {
                 doubts.push(format!(
                     "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed at once",
                     outlet.name, inlet.name
@@ -237,8 +238,8 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
 /// Whether a region has nothing in common with the box around all bodies, inlets and walls.
 fn is_away(region: &Region, state: &State) -> bool {
     let places = state.particles.poses.iter().map(|pose| pose.place().into());
-    let inlets = state.rules.inlets.iter();
-    let inlets = inlets.map(|inlet| state.rules.regions[inlet.region].bounds());
+    let inlets = state.model.rules.inlets.iter();
+    let inlets = inlets.map(|inlet| state.model.rules.regions[inlet.region].bounds());
     let walls = state.walls.iter().map(|wall| wall.bounds_in_space());
     let all = inlets
         .chain(walls)
@@ -261,7 +262,7 @@ fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
     if speed == 0.0 || wide_m == 0.0 {
         return None;
     }
-    let Bounds { low, high } = state.rules.regions[inlet.region].bounds();
+    let Bounds { low, high } = state.model.rules.regions[inlet.region].bounds();
     let places: f64 = (0..3)
         .map(|k| ((high[k] - low[k]) / wide_m).floor() + 1.0)
         .product();

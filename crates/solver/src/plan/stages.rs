@@ -41,6 +41,6 @@ pub(super) fn planned_stages(state: &State, scene: &Scene) -> Vec<PlannedStage> 
 /// Leaves the stages out of the step that the scene does not need.
 pub(super) fn leave_out(stages: &[PlannedStage], state: &mut State) {
     for planned in stages.iter().filter(|planned| !planned.needed) {
-        state.clock.leave_out(number_of(planned.stage));
+        state.scratch.clock.leave_out(number_of(planned.stage));
     }
 }

@@ -3,6 +3,7 @@
 
 use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
 use dem_io::{Diagnostic, Result};
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -15,7 +16,7 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Clump;
 use crate::state::clusters::Clusters;
-use crate::state::contacts::Contacts;
+use crate::state::contacts::{ContactModel, Contacts};
 use crate::state::events::TopologyChange;
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
@@ -228,8 +229,18 @@ pub fn arriving_as_clusters(state: &State) -> Option<State> {
 /// One body of each shape; where clumps are `replaced`, those that can become clusters are some.
 fn coming(state: &State, replaced: bool) -> Option<State> {
     let becomes_one = |n: usize| {
-        let starts = state.rules.starts.get(n).is_some_and(|start| start.bonded);
-        let triggers = state.rules.triggers.get(n).is_some_and(Option::is_some);
+        let starts = state
+            .model
+            .rules
+            .starts
+            .get(n)
+            .is_some_and(|start| start.bonded);
+        let triggers = state
+            .model
+            .rules
+            .triggers
+            .get(n)
+            .is_some_and(Option::is_some);
         starts || (replaced && triggers)
     };
     let templates = &state.clumps.templates;
@@ -262,16 +273,20 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
         rules: state.bonds.rules.clone(),
         ..Bonds::default()
     };
-    let mut bonded = State::new(Particles::default(), bonds, 1.0, state.threads);
+    let mut bonded = State::new(Particles::default(), bonds, 1.0, state.scratch.threads);
     bonded.clumps.templates.clone_from(templates);
+    bonded.model.templates.clone_from(templates);
     bonded.clusters = Some(Clusters::new(0, &bonded.bonds));
     bonded.walls.clone_from(&state.walls);
     for wall in &mut bonded.walls {
         wall.touching.clear();
     }
     bonded.contacts = state.contacts.as_ref().map(|contacts| Contacts {
-        kinds: contacts.kinds.clone(),
-        kind_of: contacts.kind_of.clone(),
+        model: Arc::new(ContactModel {
+            kinds: contacts.model.kinds.clone(),
+            kind_of: contacts.model.kind_of.clone(),
+            ..ContactModel::default()
+        }),
         ..Contacts::default()
     });
     let to_clusters = (0..all.len())
@@ -338,7 +353,12 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
         return 0.0;
     }
     let of_particles = state.particles.motions.iter().map(|m| m.velocity_m_s);
-    let of_inlets = state.rules.inlets.iter().map(|inlet| inlet.velocity_m_s);
+    let of_inlets = state
+        .model
+        .rules
+        .inlets
+        .iter()
+        .map(|inlet| inlet.velocity_m_s);
     let of_particles = of_particles.chain(of_inlets);
     let of_walls = state.walls.iter().map(|wall| wall_speed(wall, state));
     let start_m_s =
@@ -365,7 +385,7 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
     let speed = |along: &[f64; 3], about: &[f64; 3]| {
         Vector3::from(*along).norm() + Vector3::from(*about).norm() * far_m
     };
-    match &wall.motion {
+    match &wall.model.motion {
         WallMotion::Fixed => 0.0,
         WallMotion::Velocity {
             velocity_m_s,
@@ -408,8 +428,11 @@ pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
 }
 
 fn share_of_impact(state: &State, safety: f64) -> f64 {
-    let of_particles = state.contacts.iter().flat_map(|contacts| &contacts.kinds);
-    let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.kinds));
+    let of_particles = state
+        .contacts
+        .iter()
+        .flat_map(|contacts| &contacts.model.kinds);
+    let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.model.kinds));
     let fractions = kinds.map(|kind| kind.law.at_impact().impact_fraction());
     let usual = fractions.fold(1.0, f64::min);
     // A factor of exactly 1 at the usual safety.
@@ -427,12 +450,12 @@ fn deepest(bounds: &Bounds, down: &Vector3<f64>) -> f64 {
 /// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall,
 /// m.
 fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
-    let regions =
-        (state.rules.inlets.iter()).map(|inlet| state.rules.regions[inlet.region].bounds());
+    let regions = (state.model.rules.inlets.iter())
+        .map(|inlet| state.model.rules.regions[inlet.region].bounds());
     let tops = regions.flat_map(|bounds| bounds.corners());
     let tops = tops.map(|corner| Vector3::from(corner).dot(down));
     let top = tops.fold(f64::INFINITY, f64::min);
-    let bottom = state.walls.iter().map(|wall| match &wall.shape {
+    let bottom = state.walls.iter().map(|wall| match &wall.model.shape {
         Shape::Plane(_) => Vector3::from(wall.frame.position_m).dot(down),
         _ => deepest(&wall.bounds_in_space(), down),
     });
@@ -450,12 +473,12 @@ fn fall_m(state: &State, down: &Vector3<f64>) -> f64 {
     }
     let mut farthest = low - high;
     for wall in &state.walls {
-        let to_wall = match &wall.shape {
+        let to_wall = match &wall.model.shape {
             Shape::Plane(_) => {
                 let far = |pose: &crate::state::particles::Pose| {
                     let mut found = Vec::new();
                     let centre = wall.frame.to_wall(pose.place().into());
-                    wall.shape.touches(centre, f64::INFINITY, &mut found);
+                    wall.model.shape.touches(centre, f64::INFINITY, &mut found);
                     found.first().map_or(0.0, |touch| {
                         let normal = Vector3::from(wall.frame.direction_to_space(touch.normal));
                         let slope = normal.dot(down);

@@ -2,6 +2,8 @@
 
 mod surface;
 
+use std::sync::Arc;
+
 use dem_io::scene::{Scene, StartOverlap, Wall as SceneWall, WallShape};
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
@@ -14,7 +16,7 @@ use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 use crate::state::contacts::ContactHistory;
-use crate::state::walls::{Wall, WallContact};
+use crate::state::walls::{Wall, WallContact, WallModel};
 
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, oddities, question_size};
@@ -57,14 +59,15 @@ pub(super) fn place_walls(
         let frame = frame(entry);
         refuse_belt_off_plane(&place, entry, &frame)?;
         let material = kinds.material(&entry.material);
-        let mut wall = Wall {
+        let model = WallModel {
             name: name.clone(),
+            shape,
+            motion: entry.motion.clone(),
+            surface_velocity_m_s: entry.surface_velocity_m_s,
             kind_of: kinds.row(material).to_vec(),
             kinds: kinds.kinds.clone(),
-            surface_velocity_m_s: entry.surface_velocity_m_s,
-            motion: entry.motion.clone(),
-            ..Wall::standing(shape, frame)
         };
+        let mut wall = Wall::new(Arc::new(model), frame);
         let keeps = scene.run.start_overlap == StartOverlap::Keep;
         // What only touches presses by so little that it is left out, unless it is to be kept.
         let least_share = if keeps { 0.0 } else { ROUNDING };
@@ -81,7 +84,7 @@ pub(super) fn place_walls(
             let pressed = wall.touching.iter();
             let pressed =
                 pressed.map(|touch| touch_energy_j(&wall, contacts, &state.particles, touch));
-            wall.elastic_j = pressed.sum();
+            wall.scratch.elastic_j = pressed.sum();
         }
         walls.push(wall);
     }
@@ -164,13 +167,13 @@ fn frame(entry: &SceneWall) -> Frame {
 fn starting_touches(wall: &Wall, state: &State, least_share: f64) -> Vec<(u32, Touch)> {
     let mut found = Vec::new();
     let mut of_one = Vec::new();
-    let bounds = wall.shape.bounds();
+    let bounds = wall.model.shape.bounds();
     for (i, pose) in (0..).zip(&state.particles.poses) {
         let centre = wall.frame.to_wall(pose.place().into());
         let reach_m = pose.radius_m() * (1.0 - least_share);
         if bounds.is_near(&centre, reach_m) {
             of_one.clear();
-            match &wall.shape {
+            match &wall.model.shape {
                 Shape::Mesh(mesh) if mesh.holds(centre) => {
                     of_one.push(mesh.touch_from_inside(centre));
                 }
@@ -204,7 +207,7 @@ fn refuse_touches(
         count => format!(", the deepest of {count} places"),
     };
     let is_behind = touch.distance_m < 0.0;
-    let remedy = match (&wall.shape, is_behind) {
+    let remedy = match (&wall.model.shape, is_behind) {
         (Shape::Plane(_), true) => {
             "turn the plane's normal to the side of the bodies, or move the bodies"
         }

@@ -87,7 +87,7 @@ impl<'a> Run<'a> {
             ..
         } = plan;
         place_watches(&probes, &mut state);
-        let fingerprint = fingerprint(&state);
+        let fingerprint = fingerprint(&state)?;
         // Of the bonds at the start, be they broken since or not.
         let mut order = FrameOrder::new(&bodies, &state);
         let of_pictures = settings.folder.and(Order::of(scene, &state));

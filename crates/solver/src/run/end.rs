@@ -89,15 +89,15 @@ impl Run<'_> {
         let [energy_error, momentum_error, angular_momentum_error] =
             progress.largest_errors(&ended.balance);
         let steps_per_s = (state.steps - self.first_step) as f64 / wall_s;
-        let bonds = if state.rules.are_none() {
+        let bonds = if state.model.rules.are_none() {
             state.bonds.len() as f64
         } else {
             // Of the entire run, as the number of bonds changes.
-            state.rules.bond_steps[0] as f64 / state.steps.max(1) as f64
+            state.population.bond_steps[0] as f64 / state.steps.max(1) as f64
         };
         let of_state = state.clusters.as_ref().zip(fragments);
         let left_out = self.planned.stages.iter().filter(|stage| !stage.needed);
-        let fraction = |stage| state.clock.fraction(number_of(stage));
+        let fraction = |stage| state.scratch.clock.fraction(number_of(stage));
         Summary {
             scene: scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),

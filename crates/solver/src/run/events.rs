@@ -18,7 +18,7 @@ pub(super) fn write_breaks(
     bodies: &[PlacedBody],
     files: &mut Files<'_>,
 ) -> Result<()> {
-    for broken in &state.events.broken {
+    for broken in &state.scratch.events.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
         let mut ends = ends.map(|end| {
@@ -50,6 +50,7 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
         return Ok(());
     };
     let details: Vec<String> = state
+        .scratch
         .events
         .splits
         .iter()
@@ -64,8 +65,8 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
 
 /// What has happened to bodies in this step.
 pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<()> {
-    let (step, time_s) = (state.events.step, state.events.time_s);
-    for one in &state.events.population {
+    let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
+    for one in &state.scratch.events.population {
         let (kind, cause, place_m, energy_j, detail) = match one {
             PopulationEvent::Replaced {
                 cluster,
@@ -139,7 +140,7 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
 
 /// The bodies that fell asleep or woke in this step.
 pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
-    for news in &state.events.sleep {
+    for news in &state.scratch.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
         files.events.append(&[Event {
             step: news.step,

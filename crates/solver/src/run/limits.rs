@@ -307,7 +307,11 @@ pub(super) fn went_through(
     scene: &Scene,
     bodies: &[PlacedBody],
 ) -> Option<Diagnostic> {
-    if let Some(pair) = state.contacts.as_ref().and_then(|c| c.excessive_overlap) {
+    if let Some(pair) = state
+        .contacts
+        .as_ref()
+        .and_then(|c| c.scratch.excessive_overlap)
+    {
         let [a, b] = pair.map(|particle| called(bodies, &state.clumps, particle));
         let radii = pair.map(|particle| state.particles.poses[particle as usize].radius_m());
         return Some(Diagnostic::unstable(
@@ -321,7 +325,7 @@ pub(super) fn went_through(
         ));
     }
     let (n, particle) = (state.walls.iter().enumerate())
-        .find_map(|(n, wall)| wall.crossed.map(|particle| (n, particle)))?;
+        .find_map(|(n, wall)| wall.scratch.crossed.map(|particle| (n, particle)))?;
     Some(Diagnostic::unstable(
         "",
         format!(

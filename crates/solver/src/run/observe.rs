@@ -256,7 +256,7 @@ impl Run<'_> {
     /// Takes up how particles are counted once bodies have come, gone or become others. Says
     /// whether clumps have become clusters.
     fn follow_population(&mut self) -> Result<bool> {
-        let events = &self.state.events;
+        let events = &self.state.scratch.events;
         if events.population.is_empty() {
             return Ok(false);
         }
@@ -266,7 +266,7 @@ impl Run<'_> {
         for by in &events.renumberings {
             renumber(&mut self.bodies, by);
         }
-        let renumberings = std::mem::take(&mut self.state.events.renumberings);
+        let renumberings = std::mem::take(&mut self.state.scratch.events.renumberings);
         renumber_probes(
             &mut self.probes,
             &renumberings,
@@ -322,6 +322,9 @@ impl Run<'_> {
 /// Books the time since then, if any, of work that is done in few steps.
 fn book(state: &mut State, stage: &Stage, since: Option<Instant>) {
     if let Some(since) = since {
-        state.clock.book_all(number_of(stage), since.elapsed());
+        state
+            .scratch
+            .clock
+            .book_all(number_of(stage), since.elapsed());
     }
 }

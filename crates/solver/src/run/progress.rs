@@ -74,7 +74,7 @@ fn last_change_s(state: &State) -> f64 {
         Factor::Ramp { until_s } => *until_s,
         Factor::Table(points) => points.last().map_or(0.0, |[time_s, _]| *time_s),
     };
-    let of_walls = state.walls.iter().map(|wall| match &wall.motion {
+    let of_walls = state.walls.iter().map(|wall| match &wall.model.motion {
         WallMotion::Fixed => 0.0,
         WallMotion::Displacement { factor, .. } | WallMotion::Servo { factor, .. } => end(factor),
         WallMotion::Velocity { factor, .. } => match factor {

@@ -60,7 +60,7 @@ pub(super) struct Seen {
 impl Seen {
     /// Takes down that bonds have broken in this step, and how they were strained.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
-        for broken in &state.events.broken {
+        for broken in &state.scratch.events.broken {
             self.last_break_s = Some(state.time_s);
             let at = broken.bond as usize;
             self.note_strain(
@@ -117,6 +117,7 @@ impl Seen {
             }
         }
         for partition in contacts
+            .scratch
             .partitions
             .iter()
             .filter(|partition| partition.computed > 0)
@@ -135,7 +136,7 @@ impl Seen {
         if let Some((ratio, a, other)) = deepest {
             let between = if ratio > LARGEST_OVERLAP {
                 let other = match other {
-                    Ok(wall) => format!("the wall '{}'", state.walls[wall].name),
+                    Ok(wall) => format!("the wall '{}'", state.walls[wall].model.name),
                     Err(b) => called(bodies, &state.clumps, b),
                 };
                 format!("{} and {other}", called(bodies, &state.clumps, a))
@@ -323,7 +324,7 @@ impl Seen {
     /// Whether inlets could have fed a body and did not.
     fn never_came(&self, state: &State, name: &str) -> bool {
         let is_own = |(t, _): &(u32, f64)| state.clumps.templates[*t as usize].body == name;
-        let mut inlets = state.rules.inlets.iter();
+        let mut inlets = state.model.rules.inlets.iter();
         !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
@@ -331,6 +332,7 @@ impl Seen {
     fn not_over(&self, state: &State, scene: &Scene, fragments: &[Fragment]) -> Vec<String> {
         let mut warnings = Vec::new();
         let is_fed = state
+            .model
             .rules
             .inlets
             .iter()
@@ -383,7 +385,7 @@ fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
         format!(
             "it is {} from the wall '{}' and",
             show_length(gap_m),
-            wall.name
+            wall.model.name
         )
     });
     match flyer.first_meeting(&state.walls, flying) {
@@ -448,13 +450,10 @@ fn kinetic_apart_j(fragments: &[&Fragment]) -> f64 {
 
 /// Triggers, inlets and outlets that did nothing.
 fn unused_rules(state: &State) -> Vec<String> {
-    let rules = &state.rules;
+    let rules = &state.model.rules;
     let mut warnings = Vec::new();
-    for inlet in rules
-        .inlets
-        .iter()
-        .filter(|inlet| inlet.progress.bodies == 0)
-    {
+    let inlets = rules.inlets.iter().zip(&state.population.inlets);
+    for (inlet, _) in inlets.filter(|(_, come)| come.bodies == 0) {
         let start_s = inlet.between_s[0];
         let why = if start_s >= state.time_s {
             format!("it starts at {} s", significant(start_s, 4))
@@ -467,8 +466,8 @@ fn unused_rules(state: &State) -> Vec<String> {
             significant(state.time_s, 4)
         ));
     }
-    for outlet in &rules.outlets {
-        if outlet.removed.bodies == 0 && !outlet.removes_outside {
+    for (outlet, removed) in rules.outlets.iter().zip(&state.population.outlets) {
+        if removed.bodies == 0 && !outlet.removes_outside {
             warnings.push(format!(
                 "the outlet '{}' removed nothing: no body reached its region",
                 outlet.name

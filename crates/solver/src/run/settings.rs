@@ -13,7 +13,7 @@ pub struct RunSettings<'a> {
     /// Where results go. None: nowhere.
     pub folder: Option<&'a ResultsFolder>,
     /// Where to go on from. None: from the start.
-    pub resume: Option<Snapshot>,
+    pub resume: Option<Snapshot<'static>>,
     /// Threads, as said in the summary.
     pub threads: usize,
     /// Set when the run is to stop.

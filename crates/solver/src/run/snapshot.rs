@@ -1,122 +1,56 @@
-//! What a checkpoint holds: all that changes while a run steps. What the scene and the bodies say
-//! is read again when it goes on.
+//! A checkpoint: what moves of a state, as it stands, and where the output stands. What the scene
+//! and the bodies say is read again when a run goes on.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use dem_io::body::files::body_files;
+use dem_io::hash::fnv1a;
 use dem_io::{Diagnostic, Result};
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use crate::measure;
-use crate::physics::bond::failure::CauseCounts;
-use crate::physics::bond::incremental::History;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
-use crate::state::ledger::EnergyLedger;
-use crate::state::particles::Motion;
-use crate::state::partitions::divide_anew;
-use crate::state::watches::Seen;
-
-mod meetings;
-mod population;
-
-use self::meetings::Meetings;
-use self::population::Population;
-
-/// Position x, y, z, orientation x, y, z, w, velocity x, y, z, spin x, y, z of a particle.
-type PlaceAndMotion = ([f64; 3], [f64; 4], [f64; 3], [f64; 3]);
 
 /// A run between two steps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Snapshot {
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Snapshot<'a> {
     /// The scene, as [`dem_io::Scene::describe`] tells it.
     scene: String,
+    /// See [`fingerprint`].
     fingerprint: u64,
-    steps: u64,
-    time_s: f64,
-    time_step_s: f64,
-    previous_time_step_s: f64,
-    broken_count: u64,
-    broken_by_cause: CauseCounts,
-    particles: Vec<PlaceAndMotion>,
-    broken: Vec<u32>,
-    histories: Vec<[f64; 6]>,
-    ledger: EnergyLedger,
-    meetings: Meetings,
-    /// None: bodies neither come nor go, and what stands above is enough.
-    population: Option<Population>,
-    /// What has been seen of forces and contacts in every step.
-    watches: Vec<Seen>,
+    /// The state, without its model and without what can be rebuilt.
+    state: Cow<'a, State>,
+    /// Which particles and bonds belong to which body.
+    bodies: Cow<'a, [PlacedBody]>,
     /// What the probes have shown.
     pub measures: Vec<measure::History>,
     /// Where the output stands.
     pub progress: Progress,
 }
 
-impl Snapshot {
+impl<'a> Snapshot<'a> {
     /// Of a run between two steps.
     pub fn taken(
-        state: &State,
-        bodies: &[PlacedBody],
+        state: &'a State,
+        bodies: &'a [PlacedBody],
         scene: String,
         fingerprint: u64,
         measures: Vec<measure::History>,
         progress: Progress,
     ) -> Self {
-        let p = &state.particles;
-        let population = Population::taken(state, bodies);
-        let is_planned = population.is_none();
         Self {
             scene,
             fingerprint,
-            steps: state.steps,
-            time_s: state.time_s,
-            time_step_s: state.time_step_s,
-            previous_time_step_s: state.previous_time_step_s,
-            broken_count: state.broken_count,
-            broken_by_cause: state.broken_by_cause,
-            particles: p
-                .poses
-                .iter()
-                .zip(&p.motions)
-                .filter(|_| is_planned)
-                .map(|(pose, motion)| {
-                    let [x, y, z, _] = pose.position_m;
-                    (
-                        [x, y, z],
-                        pose.turned,
-                        motion.velocity_m_s,
-                        motion.spin_rad_s,
-                    )
-                })
-                .collect(),
-            broken: (0..state.bonds.len())
-                .filter(|&at| is_planned && state.bonds.is_broken(at))
-                .map(|at| at as u32)
-                .collect(),
-            histories: state
-                .bonds
-                .histories
-                .iter()
-                .filter(|_| is_planned)
-                .map(|h| {
-                    let [fx, fy, fz]: [f64; 3] = h.shear_force.into();
-                    let [mx, my, mz]: [f64; 3] = h.moment.into();
-                    [fx, fy, fz, mx, my, mz]
-                })
-                .collect(),
-            ledger: state.ledger,
-            meetings: Meetings::taken(state),
-            population,
-            watches: state.watches.iter().map(|watch| watch.seen).collect(),
+            state: Cow::Borrowed(state),
+            bodies: Cow::Borrowed(bodies),
             measures,
             progress,
         }
     }
-
     /// The files of bodies, walls and regions that its scene names.
     pub fn files_of_scene(&self) -> Vec<PathBuf> {
         let of_line = |line: &str| {
@@ -138,13 +72,7 @@ impl Snapshot {
     /// # Errors
     /// None in practice (exit code 1).
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        postcard::to_stdvec(self).map_err(|error| {
-            Diagnostic::failed(
-                "checkpoint",
-                error.to_string(),
-                "this is a fault of the program",
-            )
-        })
+        postcard::to_stdvec(self).map_err(|error| fault(&error))
     }
 
     /// From the bytes of a checkpoint.
@@ -211,60 +139,12 @@ impl Snapshot {
     /// # Errors
     /// The scene's bodies or bonds are others than those of the run.
     pub fn restore(&self, state: &mut State, bodies: &mut Vec<PlacedBody>) -> Result<()> {
-        if let Some(population) = &self.population {
-            if self.fingerprint != fingerprint(state) {
-                return Err(other_bodies());
-            }
-            population.restore(state, bodies)?;
-        } else {
-            self.restore_planned(state)?;
-        }
-        state.ledger = self.ledger;
-        self.meetings.restore(state)?;
-        for (watch, seen) in state.watches.iter_mut().zip(&self.watches) {
-            watch.seen = *seen;
-        }
-        state.steps = self.steps;
-        state.time_s = self.time_s;
-        state.time_step_s = self.time_step_s;
-        state.previous_time_step_s = self.previous_time_step_s;
-        state.broken_count = self.broken_count;
-        state.broken_by_cause = self.broken_by_cause;
-        let there = (0..state.bonds.len()).filter(|&at| state.bonds.is_broken(at));
-        state.broken_gone = self.broken_count.saturating_sub(there.count() as u64);
-        Ok(())
-    }
-
-    /// Puts the particles and bonds where they stood.
-    fn restore_planned(&self, state: &mut State) -> Result<()> {
-        let bonds = state.bonds.len();
-        if self.fingerprint != fingerprint(state)
-            || self.particles.len() != state.particles.len()
-            || self.histories.len() != state.bonds.histories.len()
-            || self.broken.iter().any(|&at| at as usize >= bonds)
-        {
-            return Err(other_bodies());
-        }
-        let p = &mut state.particles;
-        for (i, &([x, y, z], turned, velocity_m_s, spin_rad_s)) in self.particles.iter().enumerate()
-        {
-            p.poses[i].put_at([x, y, z]);
-            p.poses[i].turned = turned;
-            p.motions[i] = Motion {
-                velocity_m_s,
-                spin_rad_s,
-                ..p.motions[i]
-            };
-        }
-        for &at in &self.broken {
-            state.bonds.set_broken(at as usize);
-        }
-        divide_anew(&state.bonds, &mut state.partitions, &[]);
-        let history = |&[fx, fy, fz, mx, my, mz]: &[f64; 6]| History {
-            shear_force: Vector3::new(fx, fy, fz),
-            moment: Vector3::new(mx, my, mz),
-        };
-        state.bonds.histories = self.histories.iter().map(history).collect();
+        let is_same = self.fingerprint == fingerprint(state)?;
+        let planned = std::mem::take(&mut state.model);
+        let restored = self.state.clone().into_owned();
+        let restored = restored.rebuilt(planned, state.scratch.threads);
+        *state = restored.filter(|_| is_same).ok_or_else(other_bodies)?;
+        *bodies = self.bodies.to_vec();
         Ok(())
     }
 }
@@ -272,53 +152,25 @@ impl Snapshot {
 fn other_bodies() -> Diagnostic {
     Diagnostic::input(
         "",
-        "this checkpoint belongs to a run with other bodies or bonds than the scene has now",
+        "this checkpoint belongs to a run with other bodies, bonds or walls than the scene has now",
         "give the scene and the bodies that the run began with, or start again without --resume",
     )
 }
 
-/// A hash (FNV-1a) of what a state is made of: particles and bonds as planned, before the first
-/// step.
-pub fn fingerprint(state: &State) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |word: u64| {
-        for byte in word.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    };
-    let (p, b) = (&state.particles, &state.bonds);
-    let inverse_masses = p.motions.iter().map(|motion| motion.inverse_mass).collect();
-    for numbers in [&inverse_masses, &b.torsion_per_bending, &b.strength_factors] {
-        add(numbers.len() as u64);
-        numbers.iter().for_each(|n| add(n.to_bits()));
-    }
-    for block in &b.blocks {
-        let [x, y, z] = &block.direction;
-        let [lever_a, lever_b] = &block.levers_m;
-        let (normal, shear, radii) = (&block.normal, &block.shear, &block.radii_m);
-        for column in [x, y, z, lever_a, lever_b, normal, shear, radii] {
-            column.iter().for_each(|n| add(n.to_bits()));
-        }
-    }
-    for pose in &p.poses {
-        pose.position_m.iter().for_each(|x| add(x.to_bits()));
-    }
-    for &(end, rule) in &b.rule_runs {
-        add(end as u64);
-        add(u64::from(b.rules[rule].incremental));
-    }
-    for &[a, c] in &b.ends {
-        add(u64::from(a) << 32 | u64::from(c));
-    }
-    for template in &state.clumps.templates {
-        for sphere in &template.spheres {
-            let numbers = sphere.place_m.into_iter();
-            let numbers = numbers.chain([sphere.radius_m, sphere.mass_kg]);
-            numbers.for_each(|x| add(x.to_bits()));
-        }
-        for &[a, c] in &template.bonds.ends {
-            add(u64::from(a) << 32 | u64::from(c));
-        }
-    }
-    hash
+/// A hash of what the plan fixed, and of the particles and bonds before the first step.
+///
+/// # Errors
+/// None in practice (exit code 1).
+pub fn fingerprint(planned: &State) -> Result<u64> {
+    let parts = (&planned.model, &planned.particles, &planned.bonds);
+    let bytes = postcard::to_stdvec(&parts).map_err(|error| fault(&error))?;
+    Ok(fnv1a(&bytes))
+}
+
+fn fault(error: &postcard::Error) -> Diagnostic {
+    Diagnostic::failed(
+        "checkpoint",
+        error.to_string(),
+        "this is a fault of the program",
+    )
 }

@@ -179,7 +179,7 @@ fn moments(state: &State) -> [f64; 3] {
 fn balance(state: &State, start_moments: [f64; 3]) -> Balance {
     let elastic = elastic_energy(state);
     let now = moments(state);
-    let fallen = |k: usize| state.gravity_m_s2[k] * (now[k] - start_moments[k]);
+    let fallen = |k: usize| state.model.gravity_m_s2[k] * (now[k] - start_moments[k]);
     Balance {
         elastic_normal_j: elastic.normal,
         elastic_shear_j: elastic.shear,

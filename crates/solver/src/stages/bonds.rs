@@ -37,6 +37,7 @@ pub const BONDS: Stage = Stage {
     },
     bytes: |state| {
         let batches = state
+            .scratch
             .partitions
             .iter()
             .flat_map(|partition| &partition.batches);
@@ -63,8 +64,8 @@ fn bonds_of_clumps(state: &State) -> usize {
 
 /// Bonds of all templates if clumps can become clusters, 0 if not.
 pub(super) fn bonds_to_come(state: &State) -> usize {
-    let can_bond = !state.rules.triggers.iter().all(Option::is_none)
-        || state.rules.starts.iter().any(|start| start.bonded);
+    let can_bond = !state.model.rules.triggers.iter().all(Option::is_none)
+        || state.model.rules.starts.iter().any(|start| start.bonded);
     if can_bond { bonds_of_clumps(state) } else { 0 }
 }
 
@@ -80,7 +81,7 @@ pub fn clear_wrenches(state: &mut State) -> usize {
         bond_wrenches(
             &state.bonds,
             &p.poses,
-            &mut state.partitions,
+            &mut state.scratch.partitions,
             &mut p.wrenches,
         );
     }
@@ -96,10 +97,11 @@ pub fn compute_bonds(state: &mut State) -> usize {
     bond_wrenches(
         &state.bonds,
         &p.poses,
-        &mut state.partitions,
+        &mut state.scratch.partitions,
         &mut p.wrenches,
     );
     state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.computed.total)
@@ -361,6 +363,8 @@ fn list_failing(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::physics::bond::failure::{Criteria, Factors, stresses, utilisation};
     use crate::state::bonds::BondRule;
@@ -389,13 +393,13 @@ mod tests {
             particles.poses[i as usize].turned = q.map(|x| x / norm);
         }
         let mut bonds = Bonds {
-            rules: vec![BondRule {
+            rules: Arc::new([BondRule {
                 incremental: false,
                 damped: false,
                 criteria: Some(criteria),
                 strengthening_from_1_s: None,
                 rate_of: dem_io::scene::RateOf::Elongation,
-            }],
+            }]),
             ..Bonds::default()
         };
         for (a, b) in (0..39).map(|a| (a, a + 1)).chain([(37, 39)]) {

@@ -73,15 +73,16 @@ pub const SCATTER: Stage = Stage {
 /// Breaks the bonds that have reached their strength. Returns how many were compared with it.
 pub fn break_failed_bonds(state: &mut State) -> usize {
     let compared = state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.computed.compared)
         .sum();
-    let broken = &mut state.events.broken;
-    state.events.work.rates = break_bonds(
+    let broken = &mut state.scratch.events.broken;
+    state.scratch.events.work.rates = break_bonds(
         &mut state.bonds,
         &mut state.particles,
-        &state.partitions,
+        &state.scratch.partitions,
         0.5 * state.previous_time_step_s,
         broken,
     );
@@ -97,7 +98,7 @@ pub fn break_failed_bonds(state: &mut State) -> usize {
 
 /// How many bonds were looked at whose strength depends on the rate of strain.
 pub fn count_rates(state: &mut State) -> usize {
-    state.events.work.rates
+    state.scratch.events.work.rates
 }
 
 /// How many bonds with a strength of their own were compared with it.
@@ -106,6 +107,7 @@ pub fn count_scattered(state: &mut State) -> usize {
         return 0;
     }
     state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.computed.compared)
@@ -114,12 +116,21 @@ pub fn count_scattered(state: &mut State) -> usize {
 
 /// Divides the work anew once enough bonds have broken since it was divided last.
 fn leave_out_broken(state: &mut State) {
-    let computed: usize = state.partitions.iter().map(Partition::own_bonds).sum();
+    let computed: usize = state
+        .scratch
+        .partitions
+        .iter()
+        .map(Partition::own_bonds)
+        .sum();
     let broken = state.broken_count - state.broken_gone;
     let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
     let whole = state.bonds.len() as u64 - broken - asleep;
     if (computed as u64 - whole) * STALE >= computed as u64 {
-        divide_anew(&state.bonds, &mut state.partitions, &state.particles.asleep);
+        divide_anew(
+            &state.bonds,
+            &mut state.scratch.partitions,
+            &state.particles.asleep,
+        );
     }
 }
 

@@ -62,7 +62,7 @@ pub fn gather_clumps(state: &mut State) -> usize {
 /// Changes the velocities of clumps. Returns how many there are that do not sleep.
 pub fn kick_clumps(state: &mut State) -> usize {
     let kick_s = state.kick_s();
-    kick(&mut state.clumps, state.gravity_m_s2, kick_s);
+    kick(&mut state.clumps, state.model.gravity_m_s2, kick_s);
     awake(&state.clumps)
 }
 

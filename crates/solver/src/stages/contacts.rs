@@ -46,7 +46,7 @@ pub const CONTACTS: Stage = Stage {
     },
     bytes: |state| {
         state.contacts.as_ref().map_or(0, |c| {
-            let of_partitions = c.partitions.iter().map(|partition| {
+            let of_partitions = c.scratch.partitions.iter().map(|partition| {
                 size_of_val(&partition.border[..])
                     + size_of_val(&partition.border_histories[..])
                     + partition.was_close.len()
@@ -65,7 +65,7 @@ pub const RELAXATION: Stage = Stage {
         let relaxes = state
             .contacts
             .as_ref()
-            .is_some_and(|contacts| contacts.relaxes);
+            .is_some_and(|contacts| contacts.model.relaxes);
         let why_not = if scene.relaxation.enabled {
             "no pieces part"
         } else {
@@ -103,7 +103,7 @@ fn can_meet(state: &State) -> bool {
     state
         .contacts
         .as_ref()
-        .is_some_and(|contacts| !contacts.alone)
+        .is_some_and(|contacts| !contacts.model.alone)
 }
 
 fn can_break(state: &State) -> bool {
@@ -113,9 +113,10 @@ fn can_break(state: &State) -> bool {
 /// Adds the forces of contacts between particles to the wrenches. Returns how many touch.
 pub fn compute_contacts(state: &mut State) -> usize {
     match &mut state.contacts {
-        Some(contacts) if !contacts.alone => {
+        Some(contacts) if !contacts.model.alone => {
             contact_wrenches(contacts, &mut state.particles, state.previous_time_step_s);
             contacts
+                .scratch
                 .partitions
                 .iter()
                 .map(|partition| partition.computed)
@@ -127,7 +128,7 @@ pub fn compute_contacts(state: &mut State) -> usize {
 
 /// How many pairs that were listed in this step begin their law at an overlap.
 pub fn count_relaxing(state: &mut State) -> usize {
-    state.events.work.relaxing
+    state.scratch.events.work.relaxing
 }
 
 /// How many contacts with rolling friction touch.
@@ -135,7 +136,7 @@ pub fn count_rolling(state: &mut State) -> usize {
     let partitions = state
         .contacts
         .iter()
-        .flat_map(|contacts| &contacts.partitions);
+        .flat_map(|contacts| &contacts.scratch.partitions);
     partitions.map(|partition| partition.rolled).sum()
 }
 
@@ -147,12 +148,12 @@ const SOON: usize = 16;
 /// down what each contact remembers: after a step of `dt`, s, in which the particles moved as their
 /// motions say.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
-    let checks_all = contacts.close_skin_left_m <= 0.0;
+    let checks_all = contacts.scratch.close_skin_left_m <= 0.0;
     if checks_all {
-        contacts.close_m = close_m(contacts);
-        contacts.close_skin_left_m = 0.45 * contacts.close_m;
+        contacts.scratch.close_m = close_m(contacts);
+        contacts.scratch.close_skin_left_m = 0.45 * contacts.scratch.close_m;
     }
-    let mut partitions = std::mem::take(&mut contacts.partitions);
+    let mut partitions = std::mem::take(&mut contacts.scratch.partitions);
     let mut histories = std::mem::take(&mut contacts.histories);
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
     for partition in &mut partitions {
@@ -183,11 +184,11 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         lost_j: &mut lost_j,
     };
     for_each(&mut partitions, books, &scene);
-    contacts.excessive_overlap = partitions
+    contacts.scratch.excessive_overlap = partitions
         .iter()
         .filter_map(|partition| partition.excessive_overlap)
         .min();
-    contacts.partitions = partitions;
+    contacts.scratch.partitions = partitions;
     contacts.histories = histories;
     contacts.lost_j = lost_j;
 }
@@ -202,14 +203,14 @@ pub fn list_contacts(
 ) {
     let poses = &particles.poses;
     let pairs = near_pairs(poses, clusters, skin_m);
-    let relaxes = contacts.relaxes;
+    let relaxes = contacts.model.relaxes;
     contacts.relist(
         pairs,
         |pair| {
             if relaxes { overlap_m(poses, pair) } else { 0.0 }
         },
     );
-    contacts.divide(particles.len(), contacts.wanted_partitions.max(1));
+    contacts.divide(particles.len(), contacts.scratch.wanted_partitions.max(1));
     contacts.skin_left_m = 0.5 * skin_m;
 }
 
@@ -281,16 +282,16 @@ impl LaneWork for PartitionWork<'_> {
             look::<T>(proof, self.partition, self.scene);
         }
         (self.partition.computed, self.partition.rolled) = (0, 0);
-        for kind in 0..self.scene.contacts.kinds.len() {
+        for kind in 0..self.scene.contacts.model.kinds.len() {
             let before = self.partition.computed;
-            let contact = self.scene.contacts.kinds[kind];
+            let contact = self.scene.contacts.model.kinds[kind];
             let work = KindWork::<T> {
                 work: &mut self,
                 proof,
                 kind,
             };
             contact.with(|number| T::all(proof, number), work);
-            if self.scene.contacts.kinds[kind].rolling != Rolling::Free {
+            if self.scene.contacts.model.kinds[kind].rolling != Rolling::Free {
                 self.partition.rolled += self.partition.computed - before;
             }
         }
@@ -496,7 +497,7 @@ impl StepInput<'_> {
             },
             origin_m,
         };
-        let least_overlap = self.contacts.least_overlap;
+        let least_overlap = self.contacts.model.least_overlap;
         let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
         let Remembered {
             springs,

@@ -27,7 +27,9 @@ pub const BOND_DAMPING: Stage = Stage {
             "no bond is damped: no relative velocities",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.damping[..]) + size_of_val(&state.bond_resistance[..]),
+    bytes: |state| {
+        size_of_val(&state.bonds.damping[..]) + size_of_val(&state.scratch.bond_resistance[..])
+    },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
         Some(Saving {
@@ -39,18 +41,19 @@ pub const BOND_DAMPING: Stage = Stage {
 
 /// Sets the damping forces of bonds. Returns how many were computed.
 pub fn compute_bond_damping(state: &mut State) -> usize {
-    if !state.bond_resistance.is_empty() {
+    if !state.scratch.bond_resistance.is_empty() {
         let p = &state.particles;
-        let resisting = &mut state.bond_resistance;
+        let resisting = &mut state.scratch.bond_resistance;
         damping_wrenches(
             &state.bonds,
             &p.poses,
             &p.motions,
-            &mut state.partitions,
+            &mut state.scratch.partitions,
             resisting,
         );
     }
     state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.computed.damped)

@@ -12,7 +12,10 @@ pub const FLOW: Stage = Stage {
     name: "inlets and outlets",
     within: None,
     need: |state, _| {
-        let (inlets, outlets) = (state.rules.inlets.len(), state.rules.outlets.len());
+        let (inlets, outlets) = (
+            state.model.rules.inlets.len(),
+            state.model.rules.outlets.len(),
+        );
         Need::of(
             inlets + outlets > 0,
             || format!("{inlets} and {outlets}"),
@@ -35,18 +38,18 @@ pub fn let_bodies_come_and_go(state: &mut State) -> usize {
             ..TopologyChange::default()
         };
         let renumbering = apply_topology_change(state, changes);
-        state.events.renumberings.push(renumbering);
+        state.scratch.events.renumberings.push(renumbering);
     }
-    state.rules.inlets.len() + state.rules.outlets.len()
+    state.model.rules.inlets.len() + state.model.rules.outlets.len()
 }
 
 /// Counts the bonds that are there, and those that are left out because their bodies are clumps.
 pub fn count_bond_steps(state: &mut State) -> usize {
-    if !state.rules.are_none() {
+    if !state.model.rules.are_none() {
         let clumps = state.clumps.all.iter();
         let left_out = clumps.map(|clump| state.clumps.template(clump).bonds.len() as u64);
-        state.rules.bond_steps[1] += left_out.sum::<u64>();
-        state.rules.bond_steps[0] += state.bonds.len() as u64;
+        state.population.bond_steps[1] += left_out.sum::<u64>();
+        state.population.bond_steps[0] += state.bonds.len() as u64;
     }
     0
 }

@@ -48,11 +48,12 @@ pub fn compute_incremental_bonds(state: &mut State) -> usize {
         add_incremental_wrenches(
             &state.bonds,
             &p.poses,
-            &mut state.partitions,
+            &mut state.scratch.partitions,
             &mut p.wrenches,
         );
     }
     state
+        .scratch
         .partitions
         .iter()
         .map(|partition| partition.computed.incremental)

@@ -8,6 +8,7 @@ use crate::physics::rotation::rotation;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
 use crate::state::events::PopulationEvent;
+use crate::state::population::InletProgress;
 use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;
 
@@ -19,23 +20,31 @@ const WAIT: u64 = 50;
 /// Bodies that come through inlets in this step; books what they bring.
 pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     let mut coming: Vec<Clump> = Vec::new();
+    let (steps, time_s) = (state.steps, state.time_s);
     let asks =
-        |inlet: &Inlet| state.steps >= inlet.progress.next_try && is_due(inlet, state.time_s);
-    if !state.rules.inlets.iter().any(asks) {
+        |inlet: &Inlet, come: &InletProgress| steps >= come.next_try && is_due(inlet, come, time_s);
+    let mut both = state
+        .model
+        .rules
+        .inlets
+        .iter()
+        .zip(&state.population.inlets);
+    if !both.any(|(inlet, come)| asks(inlet, come)) {
         return coming;
     }
-    let mut inlets = std::mem::take(&mut state.rules.inlets);
+    let inlets = std::mem::take(&mut state.model.rules.inlets);
     let mut next_cluster = state
         .clusters
         .as_ref()
         .map_or(0, |c| c.history.len() as u32);
-    for (n, inlet) in inlets.iter_mut().enumerate() {
-        while is_due(inlet, state.time_s) && state.steps >= inlet.progress.next_try {
-            let Some(clump) = next_body(n, inlet, state, &coming) else {
-                if inlet.progress.tries <= TRIES {
-                    inlet.progress.delayed += 1;
+    for (n, inlet) in inlets.iter().enumerate() {
+        let mut come = state.population.inlets[n];
+        while asks(inlet, &come) {
+            let Some(clump) = next_body(n, inlet, &mut come, state, &coming) else {
+                if come.tries <= TRIES {
+                    come.delayed += 1;
                 }
-                inlet.progress.next_try = state.steps + WAIT;
+                come.next_try = steps + WAIT;
                 break;
             };
             let template = state.clumps.template(&clump);
@@ -47,13 +56,13 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
                 1.0,
                 [template.mass_kg, now.kinetic_j(template)],
                 [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
-                state.gravity_m_s2,
+                state.model.gravity_m_s2,
             );
-            inlet.progress.bodies += 1;
-            inlet.progress.mass_kg += template.mass_kg;
-            inlet.progress.tries = 0;
-            state.rules.instances += 1;
-            state.events.population.push(PopulationEvent::Came {
+            come.bodies += 1;
+            come.mass_kg += template.mass_kg;
+            come.tries = 0;
+            state.population.instances += 1;
+            state.scratch.events.population.push(PopulationEvent::Came {
                 cluster: next_cluster,
                 body: template.body.clone(),
                 inlet: inlet.name.clone(),
@@ -62,34 +71,41 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
             next_cluster += 1;
             coming.push(clump);
         }
+        state.population.inlets[n] = come;
     }
-    state.rules.inlets = inlets;
+    state.model.rules.inlets = inlets;
     coming
 }
 
 /// What gravity adds to a velocity from the moment of the places to the half step after it, m/s.
 fn half_kick(state: &State) -> Vector3<f64> {
-    Vector3::from(state.gravity_m_s2) * (0.5 * state.time_step_s)
+    Vector3::from(state.model.gravity_m_s2) * (0.5 * state.time_step_s)
 }
 
 /// Whether an inlet owes a body.
-fn is_due(inlet: &Inlet, time_s: f64) -> bool {
+fn is_due(inlet: &Inlet, come: &InletProgress, time_s: f64) -> bool {
     let [start_s, end_s] = inlet.between_s;
-    if inlet.progress.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
+    if come.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
         return false;
     }
     let since_s = time_s - start_s;
     match inlet.feed {
-        Feed::Number(per_s) => since_s * per_s >= f64::from(inlet.progress.bodies),
-        Feed::Mass(kg_s) => since_s * kg_s >= inlet.progress.mass_kg,
+        Feed::Number(per_s) => since_s * per_s >= f64::from(come.bodies),
+        Feed::Mass(kg_s) => since_s * kg_s >= come.mass_kg,
     }
 }
 
 /// The next body of an inlet, where there is place for it: a random place of the region at which
 /// the sphere around it touches no sphere of another body, and none of its spheres a wall.
-fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Option<Clump> {
-    let seed = state.rules.seed;
-    let number = u64::from(inlet.progress.bodies);
+fn next_body(
+    n: usize,
+    inlet: &Inlet,
+    come: &mut InletProgress,
+    state: &State,
+    coming: &[Clump],
+) -> Option<Clump> {
+    let seed = state.model.rules.seed;
+    let number = u64::from(come.bodies);
     let random = |of: u64, attempt: u32| uniform(seed, &[n as u64, number, of, u64::from(attempt)]);
     let which = {
         let share = random(0, 0);
@@ -101,11 +117,11 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
         chosen.or(inlet.templates.last())?.0
     };
     let template = &state.clumps.templates[which as usize];
-    let region = &state.rules.regions[inlet.region];
+    let region = &state.model.rules.regions[inlet.region];
     let reach_m = template.reach_m * template.scale.max(1.0);
     for _ in 0..TRIES {
-        inlet.progress.tries += 1;
-        let attempt = inlet.progress.tries;
+        come.tries += 1;
+        let attempt = come.tries;
         let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
             continue;
         };
@@ -115,13 +131,13 @@ fn next_body(n: usize, inlet: &mut Inlet, state: &State, coming: &[Clump]) -> Op
         let as_file = if inlet.random_orientation {
             any_rotation([4, 5, 6].map(|of| random(of, attempt)))
         } else {
-            rotation(state.rules.starts[which as usize].turned)
+            rotation(state.model.rules.starts[which as usize].turned)
         };
         let turned = numbers(&(as_file * rotation(template.axes)));
         let velocity = Vector3::from(inlet.velocity_m_s) + half_kick(state);
         let clump = Clump {
             template: which,
-            instance: state.rules.instances + 1,
+            instance: state.population.instances + 1,
             place_m,
             turned,
             velocity_m_s: velocity.into(),
@@ -150,7 +166,7 @@ fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
         let pose = template.pose(sphere as usize, clump);
         let centre = wall.frame.to_wall(pose.place().into());
         let radius_m = template.scale * pose.radius_m();
-        wall.shape.touches(centre, radius_m, &mut touches);
+        wall.model.shape.touches(centre, radius_m, &mut touches);
         touches.iter().any(|touch| touch.distance_m < radius_m)
     })
 }

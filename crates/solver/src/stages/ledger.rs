@@ -64,8 +64,8 @@ fn pressed_by_a_millionth_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
-    let of_walls = state.walls.iter().flat_map(|wall| &wall.kinds);
-    let kinds: Vec<&ContactKind> = contacts.kinds.iter().chain(of_walls).collect();
+    let of_walls = state.walls.iter().flat_map(|wall| &wall.model.kinds);
+    let kinds: Vec<&ContactKind> = contacts.model.kinds.iter().chain(of_walls).collect();
     let poses = &state.particles.poses;
     ordered_sum(poses.len(), |i| {
         let radius_m = poses[i].radius_m();
@@ -108,7 +108,12 @@ pub fn opened(state: &State) -> EnergyLedger {
     ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
     let pressed = state.contacts.as_ref();
     let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
-    let pressed = pressed + state.walls.iter().map(|wall| wall.elastic_j).sum::<f64>();
+    let pressed = pressed
+        + state
+            .walls
+            .iter()
+            .map(|wall| wall.scratch.elastic_j)
+            .sum::<f64>();
     let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
     ledger.opening_j = kinetic + elastic + pressed;
     ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
@@ -198,8 +203,8 @@ fn powers(state: &State) -> Work {
             &particles.motions,
         ),
         supports: 0.0,
-        bond_damping: -power_w(&state.bond_resistance, particles),
-        particle_damping: -power_w(&state.particle_resistance, particles),
+        bond_damping: -power_w(&state.scratch.bond_resistance, particles),
+        particle_damping: -power_w(&state.scratch.particle_resistance, particles),
     }
 }
 
@@ -236,10 +241,12 @@ pub fn after_kick(state: &mut State) {
     ledger.work.supports += supported[0];
     ledger.pending.add(&pending, 0.5 * after_s);
     ledger.pending.supports = supported[1];
-    for broken in &state.events.broken {
+    for broken in &state.scratch.events.broken {
         ledger.released_j += broken.released_j;
     }
-    ledger.fallen_j = ledger.fallen_j.max(ledger.fallen_now_j(state.gravity_m_s2));
+    ledger.fallen_j = ledger
+        .fallen_j
+        .max(ledger.fallen_now_j(state.model.gravity_m_s2));
 
     let about = ledger.about_m;
     let mut total = loads_resultant(loads, state.time_s, steps_s, &particles.poses, about);
@@ -261,8 +268,8 @@ pub fn after_kick(state: &mut State) {
             total[1][k] += torque[k] + moved[k];
         }
     }
-    let resisted = resultant(&state.particle_resistance, &particles.poses, about);
-    let g = state.gravity_m_s2;
+    let resisted = resultant(&state.scratch.particle_resistance, &particles.poses, about);
+    let g = state.model.gravity_m_s2;
     let [sx, sy, sz] = [0, 1, 2].map(|k| ledger.first_moment[k] - ledger.asleep_moment[k]);
     let awake_kg = ledger.mass_kg - ledger.asleep_kg;
     let fall = [
@@ -294,7 +301,7 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions(state);
     let p = &state.particles;
-    let clumps = synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s);
+    let clumps = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
     let of_clumps = clumps.iter();
     let of_clumps: f64 = of_clumps
         .map(|clump| clump.kinetic_j(state.clumps.template(clump)))
@@ -307,13 +314,13 @@ pub fn balance(state: &mut State) -> Balance {
         None => (0.0, [0.0; 2]),
     };
     for wall in &state.walls {
-        contact_elastic += wall.elastic_j;
+        contact_elastic += wall.scratch.elastic_j;
         friction += wall.friction_j;
         contact_damping += wall.damping_j;
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
-    let g = state.gravity_m_s2;
+    let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 

@@ -37,7 +37,7 @@ pub fn use_up_skin(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         let moved_m = state.fastest_m_s * state.time_step_s;
         contacts.moved_m = moved_m;
-        contacts.close_skin_left_m -= moved_m;
+        contacts.scratch.close_skin_left_m -= moved_m;
         contacts.skin_left_m -= moved_m;
         if contacts.skin_left_m < moved_m {
             // After one more such step, who is not listed could overlap.
@@ -50,8 +50,6 @@ pub fn use_up_skin(state: &mut State) -> usize {
 /// Makes the lists anew if something may have come near since they were made. Returns how many
 /// particles were gone through.
 pub fn renew_lists(state: &mut State) -> usize {
-    let sleep = state.sleep.as_mut();
-    let resumed = sleep.is_some_and(|sleep| std::mem::take(&mut sleep.is_resumed));
     let Some(contacts) = &mut state.contacts else {
         return 0;
     };
@@ -62,8 +60,7 @@ pub fn renew_lists(state: &mut State) -> usize {
     ) {
         contacts.skin_left_m = -1.0;
     }
-    let skin_left_m = contacts.skin_left_m;
-    if skin_left_m >= 0.0 && !resumed {
+    if contacts.skin_left_m >= 0.0 {
         return 0;
     }
     let mut listed = 0;
@@ -72,15 +69,6 @@ pub fn renew_lists(state: &mut State) -> usize {
     loop {
         list_awake(state);
         listed += state.particles.len();
-        if skin_left_m >= 0.0 {
-            // The run from which this one goes on woke nobody here, and makes its next lists when
-            // this room is used up.
-            leave_out_sleepers(state);
-            if let Some(contacts) = &mut state.contacts {
-                contacts.skin_left_m = skin_left_m;
-            }
-            break;
-        }
         let near = disturbed(state);
         if near.is_empty() {
             break;
@@ -106,7 +94,7 @@ fn list_awake(state: &mut State) {
     // the piece of a body, and relax.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
     list_near(&mut state.walls, p, skin_m);
-    if contacts.alone {
+    if contacts.model.alone {
         contacts.skin_left_m = 0.5 * skin_m;
         return;
     }
@@ -121,23 +109,7 @@ fn list_awake(state: &mut State) {
         let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();
         list_contacts(contacts, &numbers, p, skin_m);
     }
-    if contacts.relaxes {
-        state.events.work.relaxing += contacts.relaxing();
+    if contacts.model.relaxes {
+        state.scratch.events.work.relaxing += contacts.relaxing();
     }
-}
-
-/// Takes the pairs of an awake particle and one that sleeps from the list.
-fn leave_out_sleepers(state: &mut State) {
-    let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
-        return;
-    };
-    let is_awake = |pair: &[u32; 2]| pair.iter().all(|&i| !p.sleeps(i as usize));
-    (contacts.pairs, contacts.histories) = contacts
-        .pairs
-        .iter()
-        .zip(&contacts.histories)
-        .filter(|(pair, _)| is_awake(pair))
-        .map(|(pair, history)| (*pair, *history))
-        .unzip();
-    contacts.divide(p.len(), contacts.wanted_partitions.max(1));
 }

@@ -20,10 +20,10 @@ pub const PARTICLE_DAMPING: Stage = Stage {
     name: "particle damping",
     within: None,
     need: |state, _| {
-        let gamma = state.particle_damping;
+        let gamma = state.model.particle_damping;
         Need::of(gamma > 0.0, || format!("gamma {gamma}"), "not asked for")
     },
-    bytes: |state| size_of_val(&state.particle_resistance[..]),
+    bytes: |state| size_of_val(&state.scratch.particle_resistance[..]),
     saving: |state| {
         Saving::of(
             state.particles.free,
@@ -50,9 +50,9 @@ pub const GRAVITY: Stage = Stage {
     name: "gravity",
     within: Some(MOTION.name),
     need: |state, _| {
-        let [x, y, z] = state.gravity_m_s2;
+        let [x, y, z] = state.model.gravity_m_s2;
         Need::of(
-            state.gravity_m_s2 != [0.0; 3],
+            state.model.gravity_m_s2 != [0.0; 3],
             || format!("[{x}, {y}, {z}] m/s2"),
             "no gravity",
         )
@@ -63,15 +63,15 @@ pub const GRAVITY: Stage = Stage {
 
 /// Sets the damping forces on particles. Returns on how many they act.
 pub fn compute_particle_damping(state: &mut State) -> usize {
-    if state.particle_resistance.is_empty() {
+    if state.scratch.particle_resistance.is_empty() {
         return 0;
     }
-    state.particle_resistance.fill(Wrench::default());
+    state.scratch.particle_resistance.fill(Wrench::default());
     add_particle_damping(
         &state.particles,
-        state.gravity_m_s2,
-        state.particle_damping,
-        &mut state.particle_resistance,
+        state.model.gravity_m_s2,
+        state.model.particle_damping,
+        &mut state.scratch.particle_resistance,
     );
     state.particles.free
 }
@@ -79,14 +79,22 @@ pub fn compute_particle_damping(state: &mut State) -> usize {
 /// Changes the velocities of particles. Returns of how many.
 pub fn kick_particles(state: &mut State) -> usize {
     let kick_s = state.kick_s();
-    let resistance = [&state.bond_resistance[..], &state.particle_resistance];
-    kick(&mut state.particles, resistance, state.gravity_m_s2, kick_s);
+    let resistance = [
+        &state.scratch.bond_resistance[..],
+        &state.scratch.particle_resistance,
+    ];
+    kick(
+        &mut state.particles,
+        resistance,
+        state.model.gravity_m_s2,
+        kick_s,
+    );
     state.particles.free
 }
 
 /// On how many particles and clumps gravity acts.
 pub fn count_falling(state: &mut State) -> usize {
-    if state.gravity_m_s2 == [0.0; 3] {
+    if state.model.gravity_m_s2 == [0.0; 3] {
         return 0;
     }
     state.particles.free + awake(&state.clumps)

@@ -12,13 +12,13 @@ const OUTLET_EVERY: u64 = 50;
 /// Clusters that have come to an outlet, and books that they go. Their numbers, rising.
 pub(super) fn leaving(state: &mut State) -> Vec<u32> {
     let mut leaving = Vec::new();
-    if state.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
+    if state.model.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
         return leaving;
     }
     let Some(clusters) = &state.clusters else {
         return leaving;
     };
-    let mut outlets = std::mem::take(&mut state.rules.outlets);
+    let outlets = &state.model.rules.outlets;
     for id in clusters.living() {
         let members = clusters.members(id);
         let carrier = members
@@ -34,24 +34,24 @@ pub(super) fn leaving(state: &mut State) -> Vec<u32> {
                 (mass_kg, centre.into())
             }
         };
-        let goes = outlets.iter_mut().find(|outlet| {
-            let inside = state.rules.regions[outlet.region].contains(place_m);
+        let goes = outlets.iter().position(|outlet| {
+            let inside = state.model.rules.regions[outlet.region].contains(place_m);
             inside != outlet.removes_outside
         });
-        let Some(outlet) = goes else {
+        let Some(n) = goes else {
             continue;
         };
-        outlet.removed.bodies += 1;
-        outlet.removed.mass_kg += mass_kg;
+        let removed = &mut state.population.outlets[n];
+        removed.bodies += 1;
+        removed.mass_kg += mass_kg;
         leaving.push(id);
-        state.events.population.push(PopulationEvent::Left {
+        state.scratch.events.population.push(PopulationEvent::Left {
             cluster: id,
-            outlet: outlet.name.clone(),
+            outlet: outlets[n].name.clone(),
             mass_kg,
             place_m,
         });
     }
-    state.rules.outlets = outlets;
     if !leaving.is_empty() {
         book_leaving(state, &leaving);
     }
@@ -61,7 +61,7 @@ pub(super) fn leaving(state: &mut State) -> Vec<u32> {
 /// Books mass, momenta and energy of what leaves: kinetic energy at the moment of the places, and
 /// elastic energy of bonds.
 fn book_leaving(state: &mut State, leaving: &[u32]) {
-    let gravity = state.gravity_m_s2;
+    let gravity = state.model.gravity_m_s2;
     let leaves = |id: u32| leaving.binary_search(&id).is_ok();
     let motions = synchronous_motions(state);
     let ids = state.clusters.as_ref().map(|c| c.of_particle.clone());

@@ -14,7 +14,7 @@ pub const CLUSTERS: Stage = Stage {
             || {
                 format!(
                     "every {} steps, if bonds have broken",
-                    state.triggers.interval
+                    state.model.search.interval
                 )
             },
             "no bond can break",
@@ -30,10 +30,10 @@ pub fn find_pieces(state: &mut State) -> usize {
     if state.clusters.is_none() {
         return 0;
     }
-    let broken = state.events.broken.iter().map(|broken| broken.bond);
+    let broken = state.scratch.events.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
     let unsearched = state.unsearched.len() as u64;
-    if !state.triggers.due(state.steps, unsearched) {
+    if !state.model.search.due(state.steps, unsearched) {
         return 0;
     }
     find_pieces_now(state)
@@ -45,9 +45,9 @@ pub fn find_pieces_now(state: &mut State) -> usize {
         return 0;
     };
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
-    state.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
+    state.scratch.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
     state.unsearched.clear();
-    if let (Some(contacts), false) = (&mut state.contacts, state.events.splits.is_empty()) {
+    if let (Some(contacts), false) = (&mut state.contacts, state.scratch.events.splits.is_empty()) {
         contacts.skin_left_m = -1.0;
     }
     damaged.len()

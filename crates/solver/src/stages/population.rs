@@ -73,12 +73,9 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
     count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
-        let visited = clusters.visited;
-        // The two are made to belong together above.
-        if let Some(resumed) = Clusters::resumed(ids, history, &state.bonds) {
-            *clusters = resumed;
-        }
-        clusters.visited = visited;
+        (clusters.of_particle, clusters.history) = (ids, history);
+        // They are made to belong together above.
+        let _ = clusters.rebuild(&state.bonds);
     }
     for born in &born {
         state.ledger.gain(strain_of(born, state));
@@ -337,7 +334,7 @@ fn count_anew(
     let count = state.particles.len();
     // The next step computes them before it needs them.
     if state.bonds.rules.iter().any(|rule| rule.damped) {
-        state.bond_resistance = vec![Wrench::default(); state.particles.free];
+        state.scratch.bond_resistance = vec![Wrench::default(); state.particles.free];
     }
     renumber(&mut state.unsearched, bonds);
     for support in &mut state.supports {
@@ -349,7 +346,7 @@ fn count_anew(
     for load in &mut state.loads {
         renumber(&mut load.particles, particles);
     }
-    state.partitions = divide(&state.bonds, state.particles.free, state.threads);
+    state.scratch.partitions = divide(&state.bonds, state.particles.free, state.scratch.threads);
     for wall in &mut state.walls {
         wall.near.clear();
         wall.touching.retain_mut(|touch| {
@@ -409,7 +406,7 @@ fn count_anew(
             .collect();
     remembered.sort_unstable_by_key(|(pair, _)| *pair);
     (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
-    contacts.divide(count, state.threads);
+    contacts.divide(count, state.scratch.threads);
     // The next step looks for near pairs again.
     contacts.skin_left_m = -1.0;
 }

@@ -15,7 +15,7 @@ pub const REPLACEMENT: Stage = Stage {
     name: "replacement",
     within: None,
     need: |state, _| {
-        let rules = &state.rules;
+        let rules = &state.model.rules;
         let starts_bonded = rules.starts.iter().any(|start| start.bonded);
         Need::of(
             starts_bonded || rules.triggers.iter().any(Option::is_some),
@@ -30,7 +30,7 @@ pub const REPLACEMENT: Stage = Stage {
 /// Replaces the clumps whose trigger has fired, between a kick and the drift after it. Returns how
 /// many clumps were looked at.
 pub fn replace_clumps(state: &mut State) -> usize {
-    if state.rules.are_none() {
+    if state.model.rules.are_none() {
         return 0;
     }
     let clumps = state.clumps.all.len();
@@ -38,20 +38,26 @@ pub fn replace_clumps(state: &mut State) -> usize {
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }
-    let can_fire = state.rules.triggers.iter().any(Option::is_some);
+    let can_fire = state.model.rules.triggers.iter().any(Option::is_some);
     if can_fire { clumps } else { 0 }
 }
 
 /// Clumps that become clusters: their numbers, and why.
 fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
-    let rules = &state.rules;
+    let rules = &state.model.rules;
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
         let template = clump.template as usize;
-        if rules.starts.get(template)?.bonded {
+        if rules.starts.get(template).is_some_and(|start| start.bonded) {
             return Some((n, STARTS_BONDED));
         }
-        let trigger = rules.triggers.get(template)?.as_ref()?;
-        Some((n, met(trigger, clump, state)?))
+        let cause = match rules.triggers.get(template) {
+            Some(trigger) => met(trigger.as_ref()?, clump, state)?,
+            None => {
+                let base = state.base_of(clump.template) as usize;
+                met(&rules.trigger_of_fragment(base)?, clump, state)?
+            }
+        };
+        Some((n, cause))
     })
 }
 
@@ -59,7 +65,7 @@ fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
 fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> {
     let enters = trigger
         .enters
-        .map(|region| state.rules.regions[region].contains(clump.place_m));
+        .map(|region| state.model.rules.regions[region].contains(clump.place_m));
     let force = trigger
         .force_n
         .map(|limit| Vector3::from(clump.force_n).norm() > limit);
@@ -67,7 +73,10 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
         .impact_energy_j
         .map(|limit| clump.impact_energy_j > limit);
     // The time has come for good: what has become rigid again waits for something else.
-    let is_again = state.rules.base_of_cluster.contains_key(&clump.cluster);
+    let is_again = state
+        .population
+        .base_of_cluster
+        .contains_key(&clump.cluster);
     let time = trigger.time_s.filter(|_| !is_again);
     let time = time.map(|from| state.time_s >= from);
     let all = [
@@ -91,17 +100,17 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
 fn swap(state: &mut State, to_clusters: Vec<usize>, causes: &[&'static str]) {
     // A body that an inlet feeds as bonded starts so.
     let fired = causes.iter().filter(|cause| **cause != STARTS_BONDED);
-    state.rules.replaced += fired.count() as u32;
+    state.population.replaced += fired.count() as u32;
     let changes = TopologyChange {
         to_clusters,
         ..TopologyChange::default()
     };
     let renumbered = apply_topology_change(state, changes);
     for born in &renumbered.born {
-        let base = state.rules.base(born.clump.template);
+        let base = state.base_of(born.clump.template);
         let of_scene = (base, born.clump.instance);
         state
-            .rules
+            .population
             .base_of_cluster
             .insert(born.clump.cluster, of_scene);
     }
@@ -115,18 +124,22 @@ fn swap(state: &mut State, to_clusters: Vec<usize>, causes: &[&'static str]) {
             momentum += Vector3::from(motion.velocity_m_s) / motion.inverse_mass;
             kinetic += p.kinetic_j(i, motion);
         }
-        state.events.population.push(PopulationEvent::Replaced {
-            cluster: clump.cluster,
-            body: template.body.clone(),
-            cause,
-            mass_kg: [template.mass_kg, mass],
-            momentum_n_s: [
-                template.mass_kg * Vector3::from(clump.velocity_m_s).norm(),
-                momentum.norm(),
-            ],
-            kinetic_j: [clump.kinetic_j(template), kinetic],
-            place_m: clump.place_m,
-        });
+        state
+            .scratch
+            .events
+            .population
+            .push(PopulationEvent::Replaced {
+                cluster: clump.cluster,
+                body: template.body.clone(),
+                cause,
+                mass_kg: [template.mass_kg, mass],
+                momentum_n_s: [
+                    template.mass_kg * Vector3::from(clump.velocity_m_s).norm(),
+                    momentum.norm(),
+                ],
+                kinetic_j: [clump.kinetic_j(template), kinetic],
+                place_m: clump.place_m,
+            });
     }
-    state.events.renumberings.push(renumbered);
+    state.scratch.events.renumberings.push(renumbered);
 }

@@ -22,6 +22,7 @@ use crate::state::events::PopulationEvent;
 use crate::state::events::Renumbering;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Motion;
+use crate::state::population::FragmentTemplate;
 
 /// Clusters are looked at once in so many steps.
 const EVERY: u64 = 200;
@@ -29,7 +30,7 @@ const EVERY: u64 = 200;
 /// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it.
 /// Returns 1 if it has looked for them.
 pub fn restore_clumps(state: &mut State) -> usize {
-    let rules = &state.rules;
+    let rules = &state.model.rules;
     if rules.are_none()
         || rules.restores.iter().all(Option::is_none)
         || !state.steps.is_multiple_of(EVERY)
@@ -37,9 +38,9 @@ pub fn restore_clumps(state: &mut State) -> usize {
         return 0;
     }
     if let Some((renumbering, restored)) = restore(state) {
-        state.rules.restored += restored.len() as u32;
-        state.events.renumberings.push(renumbering);
-        state.events.population.extend(restored);
+        state.population.restored += restored.len() as u32;
+        state.scratch.events.renumberings.push(renumbering);
+        state.scratch.events.population.extend(restored);
     }
     1
 }
@@ -60,7 +61,7 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let mut happened = Vec::new();
     let mut gained_j = 0.0;
     for (id, base, instance) in outside {
-        let Some(rule) = &state.rules.restores[base] else {
+        let Some(rule) = &state.model.rules.restores[base] else {
             continue;
         };
         let fragment = fragment(id, clusters, &state.particles, &motions);
@@ -114,7 +115,7 @@ fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
     let history = &state.clusters.as_ref()?.history;
     let mut id = id;
     loop {
-        if let Some(&(base, instance)) = state.rules.base_of_cluster.get(&id) {
+        if let Some(&(base, instance)) = state.population.base_of_cluster.get(&id) {
             return Some((base as usize, instance));
         }
         id = history[id as usize].parent?;
@@ -130,12 +131,12 @@ fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
         return None;
     }
     let (base, instance) = base_of(id, state)?;
-    let rule = state.rules.restores[base].as_ref()?;
+    let rule = state.model.rules.restores[base].as_ref()?;
     if members.len() < rule.min_particles as usize {
         return None;
     }
     let (_, centre) = mass_and_centre(members, p);
-    let has_left = !state.rules.regions[rule.leaves].contains(centre.into());
+    let has_left = !state.model.rules.regions[rule.leaves].contains(centre.into());
     has_left.then_some((base, instance))
 }
 
@@ -193,8 +194,13 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
         (base as u32, best_rotation(&from, &arms, &masses))
     } else {
         let template = fragment_template(&whole, members, &bonds, &properties, state);
-        state.clumps.templates.push(Arc::new(template));
-        state.rules.add_fragment(base);
+        let template = Arc::new(template);
+        state.clumps.templates.push(Arc::clone(&template));
+        let base = base as u32;
+        state
+            .population
+            .fragments
+            .push(FragmentTemplate { base, template });
         (state.clumps.templates.len() as u32 - 1, properties.axes)
     };
     Clump {
@@ -251,7 +257,7 @@ fn fragment_template(
         axes: [0.0, 0.0, 0.0, 1.0],
         centre_m: [0.0; 3],
         reach_m: reach_m(&spheres),
-        outer: outer_layer(&centres, &radii, HIDDEN, state.clumps.ball_m),
+        outer: outer_layer(&centres, &radii, HIDDEN, state.model.ball_m),
         scale: 1.0,
         material: whole.material,
         file_number: (0..spheres.len() as u32).collect(),

@@ -27,7 +27,7 @@ use dem_io::units::significant;
 pub const SLEEP: Stage = Stage {
     name: "sleep",
     within: None,
-    need: |state, scene| match (&state.sleep, &scene.sleep) {
+    need: |state, scene| match (&state.model.sleep, &scene.sleep) {
         (Some(sleep), _) => Need::Needed(format!(
             "bodies slower than {} mm/s for {} ms are not stepped until something comes near",
             significant(1e3 * sleep.speed_m_s, 4),
@@ -62,17 +62,19 @@ pub fn update_sleep(state: &mut State) -> usize {
         return 0;
     }
     let speeds_m_s = speeds_m_s(state);
-    let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
+    let (Some(rule), Some(sleep), Some(clusters)) =
+        (state.model.sleep, &mut state.sleep, &state.clusters)
+    else {
         return 0;
     };
     sleep
         .of_cluster
         .resize(clusters.history.len(), ClusterSleep::AWAKE);
     let slow_for =
-        |body: &ClusterSleep| !body.asleep && state.time_s - body.slow_since_s >= sleep.after_s;
+        |body: &ClusterSleep| !body.asleep && state.time_s - body.slow_since_s >= rule.after_s;
     for (body, speed_m_s) in sleep.of_cluster.iter_mut().zip(speeds_m_s) {
         body.slow_since_s = match speed_m_s {
-            Some(speed_m_s) if speed_m_s < sleep.speed_m_s => body.slow_since_s.min(state.time_s),
+            Some(speed_m_s) if speed_m_s < rule.speed_m_s => body.slow_since_s.min(state.time_s),
             _ => f64::INFINITY,
         };
     }
@@ -197,7 +199,7 @@ pub fn begins_to_move(
 /// Puts clusters to sleep: takes their motion, and books it.
 fn fall_asleep(state: &mut State, falling: &[u32]) {
     let motions = synchronous_motions(state);
-    let now = synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s);
+    let now = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
     let (Some(clusters), Some(sleep)) = (&state.clusters, &mut state.sleep) else {
         return;
     };
@@ -213,7 +215,10 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 [1.0 / motion.inverse_mass, kinetic_j],
                 [p.poses[i].place().into(), motion.velocity_m_s, own],
             );
-            let resisting = [&mut state.bond_resistance, &mut state.particle_resistance];
+            let resisting = [
+                &mut state.scratch.bond_resistance,
+                &mut state.scratch.particle_resistance,
+            ];
             for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {
                 // What damping would have taken in the half step to come has been booked.
                 let power_w = power_w(wrench, &motion.velocity_m_s, &motion.spin_rad_s);
@@ -244,7 +249,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
     for &id in falling {
         sleep.of_cluster[id as usize].asleep = true;
     }
-    state.events.sleep.push(SleepEvent {
+    state.scratch.events.sleep.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "asleep",
@@ -319,7 +324,7 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
             bodies += 1;
         }
     }
-    state.events.sleep.push(SleepEvent {
+    state.scratch.events.sleep.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
         kind: "awake",
@@ -464,7 +469,7 @@ pub fn count_sleepers(state: &mut State) {
         0 => 0,
         _ => (0..bonds.len()).filter(rests).count() as u64,
     };
-    state.partitions = divide_awake(bonds, p.free, state.threads, &p.asleep);
+    state.scratch.partitions = divide_awake(bonds, p.free, state.scratch.threads, &p.asleep);
     for clump in &mut state.clumps.all {
         clump.asleep = sleep.is_asleep(clump.cluster);
     }

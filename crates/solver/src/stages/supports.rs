@@ -39,7 +39,7 @@ pub fn remember_held(state: &mut State) -> usize {
 /// Gives held freedoms the velocities that are prescribed. Returns of how many particles.
 pub fn hold_supports(state: &mut State) -> usize {
     let steps_s = state.steps_s();
-    let broken = &state.events.broken;
+    let broken = &state.scratch.events.broken;
     hold(
         &mut state.supports,
         &mut state.particles,

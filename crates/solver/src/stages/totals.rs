@@ -18,7 +18,7 @@ use rayon::prelude::*;
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
     let half_s = 0.5 * state.time_step_s;
-    let resistances = state.resistances();
+    let resistances = state.scratch.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
         if p.sleeps(i) {
@@ -38,7 +38,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
             }
         }
         for k in 0..3 {
-            motion.velocity_m_s[k] -= half_s * state.gravity_m_s2[k];
+            motion.velocity_m_s[k] -= half_s * state.model.gravity_m_s2[k];
         }
         motion
     };
@@ -47,7 +47,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         .with_min_len(CHUNK)
         .map(back)
         .collect();
-    for clump in synchronous(&state.clumps, state.gravity_m_s2, state.time_step_s) {
+    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
         let template = state.clumps.template(&clump);
         let spheres = &p.poses[state.clumps.spheres_of(&clump)];
         motions.extend(

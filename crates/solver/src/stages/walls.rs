@@ -84,7 +84,7 @@ pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
 
 /// Says of spheres whether their surface is less than `skin_m` from a wall.
 pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
-    let bounds = wall.shape.bounds();
+    let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
     let to_wall = wall.frame.all_to_wall();
     move |pose| {
@@ -95,7 +95,7 @@ pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
         let centre = to_wall(pose.place().into());
         let mut found = Vec::new();
         if bounds.is_near(&centre, reach) {
-            wall.shape.touches(centre, reach, &mut found);
+            wall.model.shape.touches(centre, reach, &mut found);
         }
         !found.is_empty()
     }
@@ -110,15 +110,14 @@ pub fn wall_wrenches(
     dt: f64,
 ) {
     let Contacts {
-        materials,
-        least_overlap,
-        ..
+        model, materials, ..
     } = contacts;
+    let least_overlap = &model.least_overlap;
     for wall in walls {
         let known = &*particles;
         let to_wall = wall.frame.all_to_wall();
-        let bounds = wall.shape.bounds();
-        let is_solid = matches!(wall.shape, Shape::Box(_) | Shape::Cylinder(_));
+        let bounds = wall.model.shape.bounds();
+        let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
         let of_chunk = |some: &[u32]| {
             let (mut found, mut touches) = (Vec::new(), Vec::new());
             let first = some.first().copied().unwrap_or(0);
@@ -133,7 +132,9 @@ pub fn wall_wrenches(
                 let centre = to_wall(pose.place().into());
                 touches.clear();
                 if bounds.is_near(&centre, pose.radius_m()) {
-                    wall.shape.touches(centre, pose.radius_m(), &mut touches);
+                    wall.model
+                        .shape
+                        .touches(centre, pose.radius_m(), &mut touches);
                 }
                 if !touches.is_empty() || !before.is_empty() {
                     let kind = wall.kind(materials[particle as usize]);
@@ -153,8 +154,8 @@ pub fn wall_wrenches(
         };
         let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(of_chunk).collect();
         wall.push = Push::default();
-        wall.damping = Push::default();
-        wall.elastic_j = 0.0;
+        wall.scratch.damping = Push::default();
+        wall.scratch.elastic_j = 0.0;
         wall.stiffness_n_m = 0.0;
         wall.touching.clear();
         for met in met.into_iter().flatten() {
@@ -191,17 +192,17 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     let i = met.touch.particle as usize;
     particles.wrenches[i].add(&met.forces[0], &met.torque);
     let arm = met.point - Vector3::from(wall.frame.position_m);
-    let pushes = [&mut wall.push, &mut wall.damping];
+    let pushes = [&mut wall.push, &mut wall.scratch.damping];
     for ((push, force), moment) in pushes.into_iter().zip(met.forces).zip(met.moments) {
         let about_pivot = arm.cross(&force) + moment;
         push.add(force.into(), about_pivot.into(), force.dot(&met.belt));
     }
-    wall.elastic_j += met.elastic_j;
+    wall.scratch.elastic_j += met.elastic_j;
     wall.stiffness_n_m += met.stiffness_n_m;
     wall.friction_j += met.lost_j[0];
     wall.damping_j += met.lost_j[1];
     if met.crossed {
-        wall.crossed = Some(met.touch.particle);
+        wall.scratch.crossed = Some(met.touch.particle);
     }
     if met.touch.history != ContactHistory::default() {
         wall.touching.push(met.touch);
@@ -285,7 +286,7 @@ fn meet_at(
     let arm = point - Vector3::from(wall.frame.position_m);
     let [velocity, _] = wall.velocities_m_s.map(Vector3::from);
     let [spin, _] = wall.spins_rad_s.map(Vector3::from);
-    let belt = Vector3::from(wall.surface_velocity_m_s);
+    let belt = Vector3::from(wall.model.surface_velocity_m_s);
     let belt = belt - normal * belt.dot(&normal);
     let foot = WallPoint {
         normal: normal.into(),
@@ -377,7 +378,7 @@ pub fn push_at_rest(
         old.particle,
         &there,
         Some(old),
-        contacts.least_overlap,
+        contacts.model.least_overlap,
         0.0,
     );
     let arm = met.point - Vector3::from(wall.frame.position_m);
@@ -438,7 +439,7 @@ pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     let centre = wall.frame.to_wall(pose.place().into());
     let mut touches = Vec::new();
     let reach_m = 2.0 * pose.radius_m();
-    wall.shape.touches(centre, reach_m, &mut touches);
+    wall.model.shape.touches(centre, reach_m, &mut touches);
     let gaps = touches
         .iter()
         .map(|touch| touch.distance_m - pose.radius_m());
@@ -456,7 +457,7 @@ pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
 
 /// Velocity, m/s, and spin, rad/s, of a wall in the step of `dt`, s, that begins at `time_s`.
 fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
-    match &wall.motion {
+    match &wall.model.motion {
         WallMotion::Fixed => [[0.0; 3]; 2],
         WallMotion::Velocity {
             velocity_m_s,
@@ -488,7 +489,7 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
         } => {
             // Without damping, which follows from the wall's own velocity: in a circle the two
             // would drive each other.
-            let elastic = |k: usize| wall.push.force_n[k] - wall.damping.force_n[k];
+            let elastic = |k: usize| wall.push.force_n[k] - wall.scratch.damping.force_n[k];
             let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
             let missing = factor_at(factor, time_s) * force_n - pushed;
             // Without contact there is nothing to go by: as fast as it may.
@@ -508,9 +509,9 @@ pub fn has_moved(wall: &Wall) -> bool {
     let moving = [
         wall.velocities_m_s[0],
         wall.spins_rad_s[0],
-        wall.surface_velocity_m_s,
+        wall.model.surface_velocity_m_s,
     ];
-    matches!(wall.motion, WallMotion::Servo { .. }) || moving != [[0.0; 3]; 3]
+    matches!(wall.model.motion, WallMotion::Servo { .. }) || moving != [[0.0; 3]; 3]
 }
 
 /// Whether a wall moves in the step of `dt`, s, that begins at `time_s`.

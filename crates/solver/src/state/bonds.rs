@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use dem_io::scene::RateOf;
 use nalgebra::Vector3;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::failure::Criteria;
@@ -17,7 +19,7 @@ use crate::physics::number::Number;
 use super::particles::Pose;
 
 /// What the bonds of a kind have in common.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BondRule {
     /// Forces are summed step by step instead of following from the present place.
     pub incremental: bool,
@@ -106,9 +108,9 @@ pub struct Bonds {
     /// What incremental bonds carry. Empty: none is incremental.
     #[serde(with = "histories")]
     pub histories: Vec<History>,
-    /// Kinds of bonds.
+    /// Those of the model.
     #[serde(skip)]
-    pub rules: Vec<BondRule>,
+    pub rules: Arc<[BondRule]>,
     /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the
     /// material only.
     pub torsion_per_bending: Vec<f64>,

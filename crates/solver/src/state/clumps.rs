@@ -127,17 +127,16 @@ pub struct Clump {
 }
 
 /// All clumps. Their spheres are the last of the particles, in the same order.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Clumps {
-    /// Shapes.
+    /// Shapes: those of the model, then those of fragments.
+    #[serde(skip)]
     pub templates: Vec<Arc<Template>>,
     /// Those that are there.
     pub all: Vec<Clump>,
     /// Their spheres that are near a wall or a particle, rising, as particles are counted: only
     /// these follow in every step. The others do when somebody asks.
     pub near: Vec<u32>,
-    /// What their outer spheres are for, m: see [`crate::shape::outer_layer::outer_layer`].
-    pub ball_m: f64,
 }
 
 impl Template {

@@ -47,19 +47,23 @@ pub struct Split {
 /// A number stands for the same particles as long as the run lasts and is never used again: a
 /// cluster found whole keeps its number, one found in pieces ends, and every piece, the largest as
 /// well, gets a new one.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clusters {
     /// The cluster of each particle.
     pub of_particle: Vec<u32>,
     /// All clusters, by number.
     pub history: Vec<Cluster>,
     /// Particles, those of a cluster together, in order.
+    #[serde(skip)]
     members: Vec<u32>,
     /// Where in `members` those of each cluster begin.
+    #[serde(skip)]
     starts: Vec<u32>,
     /// The bonds that particle i is the first end of are `first_bonds[i]..first_bonds[i + 1]`.
+    #[serde(skip)]
     first_bonds: Vec<usize>,
     /// Sets that are being joined; between searches, each particle names itself.
+    #[serde(skip)]
     names: Vec<u32>,
     /// Particles looked at in all searches so far.
     pub visited: u64,
@@ -97,11 +101,12 @@ impl Clusters {
         self.number(None, time_s, known..particles);
     }
 
-    /// The clusters as they were when these two were taken from them, with the same bonds. None if
-    /// the two do not belong together.
-    pub fn resumed(of_particle: Vec<u32>, history: Vec<Cluster>, bonds: &Bonds) -> Option<Self> {
+    /// Rebuilds from the cluster of each particle, all clusters and these bonds what else is known.
+    /// None if the three do not belong together.
+    pub fn rebuild(&mut self, bonds: &Bonds) -> Option<()> {
+        let (of_particle, history) = (&self.of_particle, &self.history);
         let mut counts = vec![0_u32; history.len()];
-        for id in &of_particle {
+        for id in of_particle {
             *counts.get_mut(*id as usize)? += 1;
         }
         let mut starts = Vec::with_capacity(history.len());
@@ -121,15 +126,11 @@ impl Clusters {
         let mut members: Vec<u32> = (0..of_particle.len() as u32).collect();
         members.sort_by_key(|p| of_particle[*p as usize]);
         let particles = of_particle.len();
-        Some(Self {
-            of_particle,
-            history,
-            members,
-            starts,
-            first_bonds: first_bonds(bonds, particles),
-            names: (0..particles as u32).collect(),
-            visited: 0,
-        })
+        self.members = members;
+        self.starts = starts;
+        self.first_bonds = first_bonds(bonds, particles);
+        self.names = (0..particles as u32).collect();
+        Some(())
     }
 
     /// Particles of a cluster, in order. Empty for one that has ended.

@@ -1,10 +1,12 @@
 //! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of
 //! contacts are.
 
-use crate::physics::contact::law::ContactKind;
 use std::ops::Range;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+
+use crate::physics::contact::law::ContactKind;
 
 /// What a contact remembers. Two cache lines, of which contacts without rolling friction use the
 /// first.
@@ -63,34 +65,14 @@ impl ContactHistory {
     }
 }
 
-/// Contacts of all particles. None where the scene has one body and no other can come.
-#[derive(Debug, Clone, Default)]
-pub struct Contacts {
+/// How particles meet.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct ContactModel {
     /// Kinds of contacts.
     pub kinds: Vec<ContactKind>,
     /// For each material and each other the number of the kind: row by row, length materials
     /// squared.
     pub kind_of: Vec<u8>,
-    /// Material of each particle.
-    pub materials: Vec<u8>,
-    /// Pairs that touch or are near, the smaller index first, sorted.
-    pub pairs: Vec<[u32; 2]>,
-    /// What each remembers. Length as `pairs`.
-    pub histories: Vec<ContactHistory>,
-    /// Who works on what.
-    pub partitions: Vec<ContactPartition>,
-    /// Number of partitions that was asked for: few contacts make fewer.
-    pub wanted_partitions: usize,
-    /// Surfaces closer than this were near when pairs were looked for, m.
-    pub skin_m: f64,
-    /// What every particle may move before pairs have to be looked for again, m.
-    pub skin_left_m: f64,
-    /// What the fastest particle moved in the last step, m.
-    pub moved_m: f64,
-    /// Of the near pairs those that were closer than this when all were looked at are computed, m.
-    pub close_m: f64,
-    /// What every particle may move before all are looked at again, m: that is due at 0.
-    pub close_skin_left_m: f64,
     /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No
     /// pairs are looked for.
     pub alone: bool,
@@ -98,11 +80,47 @@ pub struct Contacts {
     pub relaxes: bool,
     /// A pair that parted overlapping is ordinary below this share of its reduced radius.
     pub least_overlap: f64,
+}
+
+/// Contacts of all particles. None where the scene has one body and no other can come.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Contacts {
+    /// How particles meet: that of the model.
+    #[serde(skip)]
+    pub model: Arc<ContactModel>,
+    /// Material of each particle.
+    pub materials: Vec<u8>,
+    /// Pairs that touch or are near, the smaller index first, sorted.
+    pub pairs: Vec<[u32; 2]>,
+    /// What each remembers. Length as `pairs`.
+    pub histories: Vec<ContactHistory>,
+    /// Surfaces closer than this were near when pairs were looked for, m.
+    pub skin_m: f64,
+    /// What every particle may move before pairs have to be looked for again, m.
+    pub skin_left_m: f64,
+    /// What the fastest particle moved in the last step, m.
+    pub moved_m: f64,
     /// Energy that friction and that damping took so far, booked at the first particle of each
     /// pair, J.
     pub lost_j: Vec<[f64; 2]>,
     /// The same of particles that are no more, J.
     pub lost_by_gone_j: [f64; 2],
+    /// What can be rebuilt.
+    #[serde(skip)]
+    pub scratch: ContactScratch,
+}
+
+/// What can be rebuilt of contacts, or holds for one step only.
+#[derive(Debug, Clone, Default)]
+pub struct ContactScratch {
+    /// Who works on what.
+    pub partitions: Vec<ContactPartition>,
+    /// Number of partitions that was asked for: few contacts make fewer.
+    pub wanted_partitions: usize,
+    /// Of the near pairs those that were closer than this when all were looked at are computed, m.
+    pub close_m: f64,
+    /// What every particle may move before all are looked at again, m: that is due at 0.
+    pub close_skin_left_m: f64,
     /// The first pair that is pressed into each other by more than the radius of the smaller one,
     /// of this step.
     pub excessive_overlap: Option<[u32; 2]>,
@@ -129,7 +147,7 @@ pub struct ContactPartition {
     pub computed: usize,
     /// How many of those with rolling friction.
     pub rolled: usize,
-    /// See [`Contacts::excessive_overlap`].
+    /// See [`ContactScratch::excessive_overlap`].
     pub excessive_overlap: Option<[u32; 2]>,
 }
 
@@ -137,12 +155,12 @@ impl Contacts {
     /// The kind of a contact between two particles.
     #[inline(always)]
     pub fn kind(&self, [a, b]: [u32; 2]) -> usize {
-        if self.kinds.len() == 1 {
+        if self.model.kinds.len() == 1 {
             return 0;
         }
-        let count = self.kind_of.len().isqrt();
+        let count = self.model.kind_of.len().isqrt();
         let [a, b] = [a, b].map(|i| usize::from(self.materials[i as usize]));
-        usize::from(self.kind_of[a * count + b])
+        usize::from(self.model.kind_of[a * count + b])
     }
 
     /// Takes a new list of pairs; pairs that were listed before keep what they remember. The
@@ -172,8 +190,8 @@ impl Contacts {
 
     /// Divides the contacts into `count` partitions of about the same number each.
     pub fn divide(&mut self, particles: usize, count: usize) {
-        self.wanted_partitions = count;
-        self.close_skin_left_m = 0.0;
+        self.scratch.wanted_partitions = count;
+        self.scratch.close_skin_left_m = 0.0;
         let wanted = self.pairs.len().div_ceil(count).max(1);
         let mut starts = vec![0];
         for k in 1..count {
@@ -186,7 +204,7 @@ impl Contacts {
         }
         starts.push(particles);
         starts.dedup();
-        self.partitions = starts
+        self.scratch.partitions = starts
             .windows(2)
             .map(|w| {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
@@ -204,20 +222,21 @@ impl Contacts {
                     border: Vec::new(),
                     border_histories: Vec::new(),
                     excessive_overlap: None,
-                    close: vec![Default::default(); self.kinds.len()],
+                    close: vec![Default::default(); self.model.kinds.len()],
                     computed: 0,
                     rolled: 0,
                 }
             })
             .collect();
-        for s in 0..self.partitions.len() {
-            for at in self.partitions[s].own.clone() {
+        for s in 0..self.scratch.partitions.len() {
+            for at in self.scratch.partitions[s].own.clone() {
                 let b = self.pairs[at][1] as usize;
-                if b >= self.partitions[s].particles.end {
+                if b >= self.scratch.partitions[s].particles.end {
                     let of_b = self
+                        .scratch
                         .partitions
                         .partition_point(|partition| partition.particles.end <= b);
-                    self.partitions[of_b].border.push(at as u32);
+                    self.scratch.partitions[of_b].border.push(at as u32);
                 }
             }
         }

@@ -1,11 +1,11 @@
 //! Loads, and the course of loads and motions over time.
 
-use dem_io::scene::Factor;
-
 use dem_io::interpolation::interpolated;
+use dem_io::scene::Factor;
+use serde::{Deserialize, Serialize};
 
 /// A load on some particles, the same on each.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SetLoad {
     /// The particles.
     pub particles: Vec<u32>,

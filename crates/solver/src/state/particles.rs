@@ -107,13 +107,14 @@ impl Wrench {
 
 /// All particles of a scene. Those of a body stand together, near ones near each other; those that
 /// clumps carry come last.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Particles {
     /// Where they are.
     pub poses: Vec<Pose>,
     /// How they move, and how easily that changes.
     pub motions: Vec<Motion>,
     /// What acts on them in this step.
+    #[serde(skip)]
     pub wrenches: Vec<Wrench>,
     /// Number of those that move by themselves.
     pub free: usize,

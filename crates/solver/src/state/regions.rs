@@ -1,11 +1,12 @@
 //! Regions of space in which something is done.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use crate::geometry::Bounds;
 
 /// A region of space.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Region {
     /// A box along the axes, m.
     Box(Bounds),

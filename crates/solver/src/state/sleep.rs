@@ -5,13 +5,18 @@ use serde::{Deserialize, Serialize};
 use super::contacts::ContactHistory;
 use super::walls::{Push, WallContact};
 
-/// Bodies that sleep, by the numbers of their clusters: clumps as well as clusters.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sleep {
-    /// No point of a body that falls asleep is faster, m/s.
+/// When a body falls asleep.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct SleepRule {
+    /// No point of it is faster, m/s.
     pub speed_m_s: f64,
     /// It has been as slow for so long, s.
     pub after_s: f64,
+}
+
+/// Bodies that sleep, by the numbers of their clusters: clumps as well as clusters.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sleep {
     /// For each cluster whether it sleeps, and since when it has been slow, s (infinite: it is
     /// not). Clusters beyond the end are awake and not slow.
     pub of_cluster: Vec<ClusterSleep>,
@@ -27,8 +32,6 @@ pub struct Sleep {
     pub bonds: u64,
     /// Particles times steps that were done, and that were left out.
     pub particle_steps: [u64; 2],
-    /// Lists are to be made from what a checkpoint holds: nobody wakes of it.
-    pub is_resumed: bool,
 }
 
 /// What is known of a cluster.
@@ -49,7 +52,7 @@ impl ClusterSleep {
 }
 
 /// A contact between two particles that sleep.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrozenContact {
     /// The smaller number first.
     pub pair: [u32; 2],
@@ -60,7 +63,7 @@ pub struct FrozenContact {
 }
 
 /// A contact between a particle that sleeps and a wall at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrozenWallContact {
     /// Which wall.
     pub wall: usize,
@@ -73,15 +76,6 @@ pub struct FrozenWallContact {
 }
 
 impl Sleep {
-    /// Nobody sleeps yet.
-    pub fn new(speed_m_s: f64, after_s: f64) -> Self {
-        Self {
-            speed_m_s,
-            after_s,
-            ..Self::default()
-        }
-    }
-
     /// Whether a cluster sleeps.
     pub fn is_asleep(&self, cluster: u32) -> bool {
         let body = self.of_cluster.get(cluster as usize);

@@ -1,9 +1,10 @@
 //! Supports: degrees of freedom that are held or moved as prescribed.
 
 use dem_io::scene::{Factor, Hold};
+use serde::{Deserialize, Serialize};
 
 /// A support on some particles.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SetSupport {
     /// Along x, y, z, then about x, y, z; None: free. Length 6.
     pub holds: [Option<Hold>; 6],
@@ -41,7 +42,7 @@ impl SetSupport {
 }
 
 /// A particle that is held, in the step that was kicked last.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Held {
     /// Which.
     pub particle: u32,

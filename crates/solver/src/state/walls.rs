@@ -1,5 +1,7 @@
 //! Walls: where they stand, how they move, what touches them and what that does to them.
 
+use std::sync::Arc;
+
 use dem_io::scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
@@ -7,15 +9,13 @@ use super::contacts::ContactHistory;
 use crate::geometry::{Bounds, Frame, Shape};
 use crate::physics::contact::law::ContactKind;
 
-/// A wall of the scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Wall {
+/// What the scene says of a wall.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct WallModel {
     /// Its name in the scene.
     pub name: String,
     /// In its own frame, whose origin is the pivot.
     pub shape: Shape,
-    /// Where it stands now.
-    pub frame: Frame,
     /// How it moves.
     pub motion: WallMotion,
     /// Velocity of a belt, m/s. Length 3.
@@ -24,6 +24,16 @@ pub struct Wall {
     pub kind_of: Vec<u8>,
     /// Kinds of contacts.
     pub kinds: Vec<ContactKind>,
+}
+
+/// A wall of the scene, as it stands and moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wall {
+    /// What the scene says of it: that of the model.
+    #[serde(skip)]
+    pub model: Arc<WallModel>,
+    /// Where it stands now.
+    pub frame: Frame,
     /// Velocity of the pivot in the step just made and in the one to come, m/s.
     pub velocities_m_s: [[f64; 3]; 2],
     /// Spin in the step just made and in the one to come, rad/s.
@@ -34,60 +44,70 @@ pub struct Wall {
     pub touching: Vec<WallContact>,
     /// What it does to the particles that touch it.
     pub push: Push,
-    /// The part of that which is damping.
-    pub damping: Push,
     /// What it does to the particles that touch it and sleep, which are not among those.
     pub slept_on: Push,
     /// Stiffness of its contacts along their normals, together, N/m.
     pub stiffness_n_m: f64,
-    /// Elastic energy of its contacts, J.
-    pub elastic_j: f64,
     /// Energy that friction took so far, J.
     pub friction_j: f64,
     /// Energy that damping took so far, J.
     pub damping_j: f64,
-    /// A particle whose centre has gone through its surface.
-    pub crossed: Option<u32>,
     /// Work that it did on the particles up to the present, and in the half step to come, J.
     pub work_j: f64,
     /// See `work_j`.
     pub pending_j: f64,
+    /// What holds for one step only.
+    #[serde(skip)]
+    pub scratch: WallScratch,
+}
+
+/// What holds of a wall for one step only.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct WallScratch {
+    /// The part of its push which is damping.
+    pub damping: Push,
+    /// Elastic energy of its contacts, J.
+    pub elastic_j: f64,
+    /// A particle whose centre has gone through its surface.
+    pub crossed: Option<u32>,
 }
 
 impl Wall {
-    /// A wall that stands still and that nothing touches, of no material.
-    pub fn standing(shape: Shape, frame: Frame) -> Self {
+    /// A wall that nothing touches yet.
+    pub fn new(model: Arc<WallModel>, frame: Frame) -> Self {
         Self {
-            name: String::new(),
-            shape,
+            model,
             frame,
-            motion: WallMotion::Fixed,
-            surface_velocity_m_s: [0.0; 3],
-            kind_of: Vec::new(),
-            kinds: Vec::new(),
             velocities_m_s: [[0.0; 3]; 2],
             spins_rad_s: [[0.0; 3]; 2],
             near: Vec::new(),
             touching: Vec::new(),
             push: Push::default(),
-            damping: Push::default(),
             slept_on: Push::default(),
             stiffness_n_m: 0.0,
-            elastic_j: 0.0,
             friction_j: 0.0,
             damping_j: 0.0,
-            crossed: None,
             work_j: 0.0,
             pending_j: 0.0,
+            scratch: WallScratch::default(),
         }
+    }
+
+    /// A wall that stands still and that nothing touches, of no material.
+    pub fn standing(shape: Shape, frame: Frame) -> Self {
+        let model = WallModel {
+            shape,
+            ..WallModel::default()
+        };
+        Self::new(Arc::new(model), frame)
     }
 
     /// Box around it in space, m: without end for a plane.
     pub fn bounds_in_space(&self) -> Bounds {
-        if matches!(self.shape, Shape::Plane(_)) {
-            return self.shape.bounds();
+        if matches!(self.model.shape, Shape::Plane(_)) {
+            return self.model.shape.bounds();
         }
-        let corners = self.shape.bounds().corners();
+        let corners = self.model.shape.bounds().corners();
         Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
     }
 
@@ -104,7 +124,7 @@ impl Wall {
 
     /// How it meets a material of this number, which it is known to meet.
     pub fn kind(&self, material: u8) -> &ContactKind {
-        &self.kinds[usize::from(self.kind_of[usize::from(material)])]
+        &self.model.kinds[usize::from(self.model.kind_of[usize::from(material)])]
     }
 }
 

@@ -4,7 +4,7 @@ use dem_io::scene::Quantity;
 use serde::{Deserialize, Serialize};
 
 /// A measure that is read in every step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
     /// What it is of.
     pub quantity: Quantity,
@@ -15,7 +15,7 @@ pub struct Watch {
 }
 
 /// Whose forces and contacts are followed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Watched {
     /// A wall, by number, with all that touches it.
     Wall(usize),

@@ -25,8 +25,8 @@ fn busy(threads: usize) -> Plan {
     let mut plan = planned(&text);
     let state = &mut plan.state;
     // So few particles are not worth a second thread but for this test.
-    state.threads = threads;
-    state.partitions = divide(&state.bonds, state.particles.free, threads);
+    state.scratch.threads = threads;
+    state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
     if let Some(contacts) = &mut state.contacts {
         contacts.divide(count, threads);
@@ -38,19 +38,12 @@ fn busy(threads: usize) -> Plan {
 /// All that a run goes on from or tells.
 pub(crate) fn same(a: &State, b: &State) -> bool {
     let rules = |s: &State| {
-        let come: Vec<_> = s.rules.inlets.iter().map(|inlet| inlet.progress).collect();
-        let gone: Vec<_> = s
-            .rules
-            .outlets
-            .iter()
-            .map(|outlet| outlet.removed)
-            .collect();
         (
-            come,
-            gone,
-            s.rules.instances,
-            s.rules.replaced,
-            s.rules.bond_steps,
+            s.population.inlets.clone(),
+            s.population.outlets.clone(),
+            s.population.instances,
+            s.population.replaced,
+            s.population.bond_steps,
         )
     };
     let contacts = |s: &State| {
@@ -108,16 +101,16 @@ fn one_thread_and_more_give_the_same_bits() {
         (state, bodies)
     });
     let (one, bodies) = &all[0];
-    let waited = one.rules.inlets[0].progress.delayed;
+    let waited = one.population.inlets[0].delayed;
     eprintln!(
         "{} came, {waited} waited, {} replaced, {} bonds broken, {:?} gone",
-        one.rules.inlets[0].progress.bodies,
-        one.rules.replaced,
+        one.population.inlets[0].bodies,
+        one.population.replaced,
         one.broken_count,
-        one.rules.outlets[0].removed
+        one.population.outlets[0]
     );
-    assert!(waited > 0 && one.rules.replaced > 5 && one.broken_count > 10);
-    assert!(one.rules.outlets[0].removed.bodies > 5);
+    assert!(waited > 0 && one.population.replaced > 5 && one.broken_count > 10);
+    assert!(one.population.outlets[0].bodies > 5);
     for (other, other_bodies) in &all[1..] {
         assert!(same(one, other) && bodies == other_bodies);
         assert_eq!(one.ledger, other.ledger);
@@ -141,7 +134,7 @@ fn taken(state: &State, bodies: &[PlacedBody], fingerprint: u64) -> Vec<u8> {
 #[test]
 fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
     let plan = busy(2);
-    let number = fingerprint(&plan.state);
+    let number = fingerprint(&plan.state).unwrap();
     let Plan {
         mut state,
         mut bodies,
@@ -152,25 +145,28 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
     let mut kept: Vec<State> = Vec::new();
     let (mut waiting, mut swaps, mut gone) = (false, 0, 0);
     while state.time_s < 0.08 {
-        let before = (state.rules.replaced, state.rules.outlets[0].removed.bodies);
+        let before = (
+            state.population.replaced,
+            state.population.outlets[0].bodies,
+        );
         let early = taken_before_swap(&state, &bodies, number, swaps);
         go(&mut state, &mut bodies);
         if state.steps.is_multiple_of(500) {
             kept.push(state.clone());
         }
-        let come = &state.rules.inlets[0].progress;
+        let come = &state.population.inlets[0];
         let mut take = |why| moments.push((state.steps, taken(&state, &bodies, number), why));
         if come.tries > 0 && !waiting {
             waiting = true;
             take("an inlet waits");
         }
-        if state.rules.replaced > before.0 {
+        if state.population.replaced > before.0 {
             swaps += 1;
             if [1, 4, 8].contains(&swaps) {
                 take("after a swap");
                 moments.extend(early.map(|bytes| (state.steps - 1, bytes, "before a swap")));
             }
-        } else if state.rules.outlets[0].removed.bodies > before.1 {
+        } else if state.population.outlets[0].bodies > before.1 {
             gone += 1;
             if gone == 2 {
                 take("after something has gone");

@@ -63,7 +63,9 @@ pub(crate) fn booked(text: &str, time_step_s: f64, end_s: f64) -> Books {
             books.last = balance;
         }
         advance(&mut state);
-        books.happened.extend(state.events.population.clone());
+        books
+            .happened
+            .extend(state.scratch.events.population.clone());
     }
     books.state = state;
     books
@@ -82,12 +84,9 @@ fn counted(books: &Books) -> [usize; 3] {
     let came = count(|h| matches!(h, PopulationEvent::Came { .. }));
     let replaced = count(|h| matches!(h, PopulationEvent::Replaced { .. }));
     let left = count(|h| matches!(h, PopulationEvent::Left { .. }));
-    let (come, gone) = (
-        state.rules.inlets[0].progress,
-        state.rules.outlets[0].removed,
-    );
+    let (come, gone) = (state.population.inlets[0], state.population.outlets[0]);
     assert_eq!((come.bodies as usize, gone.bodies as usize), (came, left));
-    assert_eq!(state.rules.replaced as usize, replaced);
+    assert_eq!(state.population.replaced as usize, replaced);
     let inside = mass_inside_kg(state);
     let wanted = come.bodies as f64 * state.clumps.templates[0].mass_kg;
     assert!((come.mass_kg / wanted - 1.0).abs() < 1e-13);
@@ -205,24 +204,21 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
         mut bodies,
         ..
     } = planned(&text);
-    state.triggers = dem_run::state::clusters::Triggers::every_step();
+    state.model.search = dem_run::state::clusters::Triggers::every_step();
     let mut broken = 0;
     while state.time_s < 0.25 {
         super::go(&mut state, &mut bodies);
-        broken += state.events.broken.len() as u64;
+        broken += state.scratch.events.broken.len() as u64;
     }
     assert_eq!(state.broken_count, broken);
     let left = state.bonds.len() as u64;
     eprintln!(
         "{broken} bonds broken, {left} there, {:?}",
-        state.rules.outlets[0].removed
+        state.population.outlets[0]
     );
     assert!(broken > left, "{broken} {left}");
     let inside = mass_inside_kg(&state);
-    let (come, gone) = (
-        state.rules.inlets[0].progress,
-        state.rules.outlets[0].removed,
-    );
+    let (come, gone) = (state.population.inlets[0], state.population.outlets[0]);
     assert!(((inside + gone.mass_kg) / come.mass_kg - 1.0).abs() < 1e-12);
     let there = (0..state.bonds.len()).filter(|at| state.bonds.is_broken(*at));
     assert_eq!(state.broken_count - state.broken_gone, there.count() as u64);

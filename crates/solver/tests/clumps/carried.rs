@@ -75,7 +75,7 @@ fn after_swap(top: &str, under: Option<&str>) {
         .clone();
     let body = bodies.iter().find(|body| body.name == top).unwrap().clone();
     let weight_n = template.mass_kg * GRAVITY_M_S2;
-    let wanted_n = -Vector3::from(state.gravity_m_s2) * template.mass_kg;
+    let wanted_n = -Vector3::from(state.model.gravity_m_s2) * template.mass_kg;
     // It rested, and stuck: far below the friction that there could be.
     assert!(
         (Vector3::from(clump.force_n) - wanted_n).norm() < 1e-6 * weight_n,

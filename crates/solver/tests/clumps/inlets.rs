@@ -44,19 +44,19 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
         };
         let exact = (since_s / 2e-3).round();
         let is_edge = (since_s / 2e-3 - exact).abs() < 1e-6;
-        let come = f64::from(state.rules.inlets[0].progress.bodies);
+        let come = f64::from(state.population.inlets[0].bodies);
         assert!(
             come == due || (is_edge && (come - due).abs() < 1.5),
             "{now_s}: {come} {due}"
         );
     }
-    assert_eq!(state.rules.inlets[0].progress.bodies, 20);
+    assert_eq!(state.population.inlets[0].bodies, 20);
     assert_eq!(state.clumps.all.len(), 20);
-    assert_eq!(state.rules.inlets[0].progress.delayed, 0);
+    assert_eq!(state.population.inlets[0].delayed, 0);
     // No more than so many.
     let mut state = fed(&format!("{BALL}{WIDE}"), &format!("{inlet}count = 7\n"));
     run_to(&mut state, 0.08);
-    assert_eq!(state.rules.inlets[0].progress.bodies, 7);
+    assert_eq!(state.population.inlets[0].bodies, 7);
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_rate_by_mass_is_kept_to_a_body() {
     for _ in 0..2000 {
         let now_s = state.time_s;
         happens(&mut state);
-        let come_kg = state.rules.inlets[0].progress.mass_kg;
+        let come_kg = state.population.inlets[0].mass_kg;
         assert!(come_kg > 0.05 * now_s && come_kg <= 0.05 * now_s + heaviest * (1.0 + 1e-12));
         let there: f64 = state.clumps.mass_kg();
         assert!((there / come_kg - 1.0).abs() < 1e-12);
@@ -206,7 +206,7 @@ fn who_finds_no_place_waits_and_is_counted_once() {
         happens(&mut state);
         assert!(none_overlap(&state));
     }
-    let come = &state.rules.inlets[0].progress;
+    let come = &state.population.inlets[0];
     assert_eq!(
         (come.bodies, come.delayed, state.clumps.all.len()),
         (10, 9, 10)
@@ -252,8 +252,8 @@ fn nothing_comes_into_the_middle_of_a_clump() {
     state.time_step_s = 1e-5;
     assert!(state.particles.len() < 512);
     run_to(&mut state, 1e-3);
-    assert_eq!(state.rules.inlets[0].progress.bodies, 0);
-    assert_eq!(state.rules.inlets[0].progress.delayed, 1);
+    assert_eq!(state.population.inlets[0].bodies, 0);
+    assert_eq!(state.population.inlets[0].delayed, 1);
 }
 
 /// The region lies half in a floor, and a lump needs room above it.
@@ -280,7 +280,7 @@ fn nothing_comes_into_a_wall() {
     });
     eprintln!(
         "{left} and {right}, {} wait",
-        state.rules.inlets[0].owed(state.time_s)
+        state.model.rules.inlets[0].owed(&state.population.inlets[0], state.time_s)
     );
     assert!(left > 3 && right > 3);
     assert!(state.clumps.all.iter().all(|clump| clump.place_m[2] > 1e-3));
@@ -310,8 +310,9 @@ fn who_is_due_and_has_not_come_is_counted() {
         while plan.state.time_s < time_s + 1e-5 {
             go(&mut plan.state, &mut plan.bodies);
         }
-        let inlet = &plan.state.rules.inlets[0];
-        assert_eq!(inlet.progress.bodies, 1, "{rest}");
-        assert_eq!(inlet.owed(time_s), waiting, "{rest} at {time_s} s");
+        let inlet = &plan.state.model.rules.inlets[0];
+        let come = &plan.state.population.inlets[0];
+        assert_eq!(come.bodies, 1, "{rest}");
+        assert_eq!(inlet.owed(come, time_s), waiting, "{rest} at {time_s} s");
     }
 }

@@ -152,7 +152,7 @@ fn an_inlet_feeds_by_that_mass() {
         happens(&mut plan.state);
     }
     // One at once, and one every 25 ms.
-    let come = &plan.state.rules.inlets[0].progress;
+    let come = &plan.state.population.inlets[0];
     assert_eq!(come.bodies, 9);
     assert!((come.mass_kg / (9.0 * 0.25) - 1.0).abs() < 1e-12);
 }

@@ -10,7 +10,11 @@ use crate::helpers::Random;
 /// The regions of a scene, by name.
 fn regions(text: &str) -> Vec<Region> {
     let ball = "[bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-3]]\n";
-    planned(&format!("{HEAD}{ball}{text}")).state.rules.regions
+    planned(&format!("{HEAD}{ball}{text}"))
+        .state
+        .model
+        .rules
+        .regions
 }
 
 /// Whether points are inside, and that points asked for are inside and spread over all of it: the

@@ -27,7 +27,7 @@ fn flying() -> State {
     .state;
     interact(&mut state);
     exchange(&mut state);
-    assert!(!state.events.population.is_empty());
+    assert!(!state.scratch.events.population.is_empty());
     state.steps = 200;
     state
 }
@@ -42,10 +42,10 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
     let start = whole(&state);
     let mut first = None;
     for _ in 0..10 {
-        state.events.population.clear();
+        state.scratch.events.population.clear();
         assert_eq!(restore_clumps(&mut state), 1);
         assert!(
-            matches!(&state.events.population[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
+            matches!(&state.scratch.events.population[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
         );
         let clump = state.clumps.all[0];
         // The template of the scene serves again.
@@ -97,9 +97,9 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let places: Vec<Vector3<f64>> = state.particles.poses.iter().map(|p| p.place()).collect();
     let bonds = state.bonds.len();
     assert!(strain_j > 0.0);
-    state.events.population.clear();
+    state.scratch.events.population.clear();
     restore_clumps(&mut state);
-    let happened = state.events.population.clone();
+    let happened = state.scratch.events.population.clone();
     let [PopulationEvent::Restored { lost_j, .. }] = &happened[..] else {
         panic!("{happened:?}");
     };
@@ -139,7 +139,10 @@ fn a_time_does_not_ask_twice() {
     for _ in 0..300 {
         step(&mut state);
     }
-    assert_eq!((state.rules.replaced, state.rules.restored), (1, 1));
+    assert_eq!(
+        (state.population.replaced, state.population.restored),
+        (1, 1)
+    );
     assert_eq!(state.clumps.all.len(), 1);
 }
 

@@ -39,7 +39,10 @@ fn swapped(far_m: f64, seed: u64) {
     let before = *clump;
     interact(&mut state);
     exchange(&mut state);
-    let (renumbered, happened) = (&state.events.renumberings, &state.events.population);
+    let (renumbered, happened) = (
+        &state.scratch.events.renumberings,
+        &state.scratch.events.population,
+    );
     let count = template.spheres.len();
     assert_eq!((renumbered.len(), happened.len()), (1, 1));
     assert_eq!(
@@ -152,7 +155,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
         .collect();
     let wanted = ["a", "b", "g"].map(|name| (name, clump_of(&start, name).cluster));
     assert_eq!(replaced, wanted);
-    assert_eq!((state.rules.replaced, state.clumps.all.len()), (3, 2));
+    assert_eq!((state.population.replaced, state.clumps.all.len()), (3, 2));
     assert_eq!(state.particles.free, 11 + 2 + 11 + 2 + 11);
     let clusters = state.clusters.as_ref().unwrap();
     assert_eq!(clusters.history.len(), 7);
@@ -206,7 +209,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
     while state.time_s < 2e-5 {
         go(&mut state, &mut bodies);
     }
-    assert_eq!((state.rules.replaced, state.clumps.all.len()), (4, 1));
+    assert_eq!((state.population.replaced, state.clumps.all.len()), (4, 1));
 }
 
 /// How the path of a body that is replaced on the way differs from that of one that never is.

@@ -1,5 +1,7 @@
 //! What a break says of itself, and that nothing comes after it.
 
+use std::sync::Arc;
+
 use dem_run::physics::bond::failure::Cause;
 use dem_run::stages::totals::synchronous_motions;
 use dem_run::state::State;
@@ -33,14 +35,14 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
             let first = loop {
                 let before = state.clone();
                 interact(&mut state);
-                if let Some(&first) = state.events.broken.first() {
-                    assert_eq!(state.events.broken.len(), 1);
+                if let Some(&first) = state.scratch.events.broken.first() {
+                    assert_eq!(state.scratch.events.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
                     assert_eq!(state.broken_by_cause.tension, 1);
                     // The bond as it was: with the increments of this step, which need the forces
                     // to be found once more without strength.
                     let mut whole = before;
-                    whole.bonds.rules[0].criteria = None;
+                    Arc::make_mut(&mut whole.bonds.rules)[0].criteria = None;
                     interact(&mut whole);
                     let forces = whole.bonds.forces(0, &whole.particles.poses);
                     assert_eq!(first.released_j, forces.energy.total());
@@ -60,7 +62,10 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
             );
             advance(&mut state);
             interact(&mut state);
-            assert!(state.events.broken.is_empty(), "an event is told twice");
+            assert!(
+                state.scratch.events.broken.is_empty(),
+                "an event is told twice"
+            );
             assert_eq!(state.broken_count, 1);
         }
     });
@@ -89,7 +94,7 @@ fn a_broken_bond_never_acts_again() {
                     interact(&mut state);
                     assert_eq!(state.particles.wrenches, [Wrench::default(); 2]);
                     assert_eq!(state.particles.motions, motions);
-                    assert!(state.events.broken.is_empty());
+                    assert!(state.scratch.events.broken.is_empty());
                     advance(&mut state);
                 }
             }
@@ -106,7 +111,7 @@ fn the_break_comes_in_the_middle_of_the_kick() {
         for incremental in [false, true] {
             let mut state = flying_apart(incremental);
             let mut whole = state.clone();
-            whole.bonds.rules[0].criteria = None;
+            Arc::make_mut(&mut whole.bonds.rules)[0].criteria = None;
             loop {
                 interact(&mut state);
                 interact(&mut whole);

@@ -1,5 +1,7 @@
 //! Rods that the tests break.
 
+use std::sync::Arc;
+
 use std::f64::consts::PI;
 
 use dem_io::scene::{Factor, Hold};
@@ -85,13 +87,13 @@ pub(crate) fn bonded(
     incremental: bool,
 ) -> State {
     let mut bonds = Bonds {
-        rules: vec![BondRule {
+        rules: Arc::new([BondRule {
             incremental,
             damped: false,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             rate_of: dem_io::scene::RateOf::Elongation,
-        }],
+        }]),
         ..Bonds::default()
     };
     for &[a, b] in pairs {
@@ -158,8 +160,8 @@ pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n
 
 /// Damps all particles by gamma.
 pub(crate) fn damp(state: &mut State, gamma: f64) {
-    state.particle_damping = gamma;
-    state.particle_resistance = vec![Wrench::default(); state.particles.len()];
+    state.model.particle_damping = gamma;
+    state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
 }
 
 /// Runs on one worker thread: handing each step of a small body to another thread takes longer than

@@ -74,7 +74,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     while beyond(state) < 100.0 {
         let whole = state.bonds.clone();
         interact(state);
-        if let Some(&first) = state.events.broken.first() {
+        if let Some(&first) = state.scratch.events.broken.first() {
             let at = first.bond as usize;
             let bonds = std::mem::replace(&mut state.bonds, whole);
             // Increments are those of this step, which the bonds had before they broke.

@@ -1,5 +1,7 @@
 //! Bonds pulled at a constant rate break at their strength times the dynamic increase factor.
 
+use std::sync::Arc;
+
 use dem_io::scene::RateOf;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{advance, interact};
@@ -37,15 +39,15 @@ fn pulled_by(
     rate_of: RateOf,
 ) -> Option<(f64, Cause)> {
     let mut state = rod(1, criteria, incremental);
-    state.bonds.rules[0].strengthening_from_1_s = from_1_s;
-    state.bonds.rules[0].rate_of = rate_of;
+    Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = from_1_s;
+    Arc::make_mut(&mut state.bonds.rules)[0].rate_of = rate_of;
     let half = 0.5 * rate_1_s * LENGTH_M;
     hold(&mut state, std::iter::once(0), -half);
     hold(&mut state, std::iter::once(1), half);
     state.time_step_s = STRENGTH_PA / YOUNG_PA / rate_1_s.abs() / STEPS;
     while (state.steps as f64) < 8.0 * STEPS {
         interact(&mut state);
-        if let Some(first) = state.events.broken.first() {
+        if let Some(first) = state.scratch.events.broken.first() {
             return Some((state.steps as f64 / STEPS, first.cause));
         }
         advance(&mut state);
@@ -137,14 +139,14 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
     on_one_thread(|| {
         for incremental in [false, true] {
             let mut state = rod(2, NORMAL, incremental);
-            state.bonds.rules[0].strengthening_from_1_s = Some(0.0);
+            Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(0.0);
             let rate = 1.0;
             hold(&mut state, std::iter::once(0), -rate * LENGTH_M);
             hold(&mut state, std::iter::once(2), rate * LENGTH_M);
             let mut count = 0;
             while count == 0 && state.steps < 1_000_000 {
                 interact(&mut state);
-                count = state.events.broken.len();
+                count = state.scratch.events.broken.len();
                 advance(&mut state);
             }
             assert_eq!(count, 2);
@@ -159,8 +161,8 @@ fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {
         let breaks = |rate_of: RateOf| {
             let mut state = rod(1, NORMAL, false);
-            state.bonds.rules[0].strengthening_from_1_s = Some(1.0);
-            state.bonds.rules[0].rate_of = rate_of;
+            Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(1.0);
+            Arc::make_mut(&mut state.bonds.rules)[0].rate_of = rate_of;
             // 40/s: a factor of 5.46; the turning pulls at twice the strength.
             let spin_1_s = 40.0;
             let half_m = 0.5 * LENGTH_M;
@@ -168,7 +170,10 @@ fn turning_strengthens_by_the_printed_rate_alone() {
             let area_m2 = std::f64::consts::PI * 1e-6;
             let pull_n = half_m * spin_1_s * spin_1_s / per_mass;
             let strength_pa = 0.5 * pull_n / area_m2;
-            let criteria = state.bonds.rules[0].criteria.as_mut().unwrap();
+            let criteria = Arc::make_mut(&mut state.bonds.rules)[0]
+                .criteria
+                .as_mut()
+                .unwrap();
             criteria.tension_pa = strength_pa;
             for (motion, side) in state.particles.motions.iter_mut().zip([-1.0, 1.0]) {
                 motion.velocity_m_s = [0.0, side * half_m * spin_1_s, 0.0];
@@ -176,7 +181,7 @@ fn turning_strengthens_by_the_printed_rate_alone() {
             }
             for _ in 0..20_000 {
                 interact(&mut state);
-                if !state.events.broken.is_empty() {
+                if !state.scratch.events.broken.is_empty() {
                     return true;
                 }
                 advance(&mut state);

@@ -46,8 +46,8 @@ fn the_weakest_bond_of_a_chain_breaks_first() {
                         "does not break"
                     );
                 }
-                assert_eq!(state.events.broken.len(), 1);
-                assert_eq!(state.events.broken[0].bond as usize, weakest);
+                assert_eq!(state.scratch.events.broken.len(), 1);
+                assert_eq!(state.scratch.events.broken[0].bond as usize, weakest);
                 let load = factor_at(&state.loads[0].factor, state.time_s);
                 let late = (load - 1.0) / LOAD_STEP;
                 assert!((-0.1..1.1).contains(&late), "{late} steps late");
@@ -84,7 +84,7 @@ fn strengths_are_those_of_weibull() {
     let mut strengths = Vec::new();
     while strengths.len() < COUNT {
         interact(&mut state);
-        for broken in &state.events.broken {
+        for broken in &state.scratch.events.broken {
             let strength = state.steps as f64 / STEPS;
             let given = state.bonds.strength_factor(broken.bond as usize);
             let late = (strength - given) * STEPS;
@@ -93,6 +93,7 @@ fn strengths_are_those_of_weibull() {
         }
         assert!(
             state
+                .scratch
                 .events
                 .broken
                 .windows(2)
@@ -186,7 +187,7 @@ fn planned_strengths(text: &str, body: &Body) -> BTreeMap<[u32; 2], f64> {
     }
     interact(&mut state);
     exchange(&mut state);
-    let body = PlacedBody::born(&state.events.renumberings[0].born[0]);
+    let body = PlacedBody::born(&state.scratch.events.renumberings[0].born[0]);
     strengths(&state, &body)
 }
 

@@ -26,7 +26,7 @@ fn assert_same(one: &State, other: &State) {
     let (a, b) = (&one.particles, &other.particles);
     assert!(a.poses == b.poses && a.motions == b.motions);
     assert_eq!(one.clumps.all, other.clumps.all);
-    assert_eq!(one.rules.bond_steps, other.rules.bond_steps);
+    assert_eq!(one.population.bond_steps, other.population.bond_steps);
     assert_eq!(one.fastest_m_s.to_bits(), other.fastest_m_s.to_bits());
 }
 
@@ -42,7 +42,7 @@ bodies.b = { particles = [[4e-3, 0, 0, 1e-3]], material = \"m\" }
 ",
     );
     let (mut state, mut all_stages) = (plan.state.clone(), plan.state);
-    all_stages.clock = StageClock::default();
+    all_stages.scratch.clock = StageClock::default();
     while state.time_s < 3e-3 {
         step(&mut state);
         step(&mut all_stages);
@@ -77,14 +77,14 @@ fn what_is_said_to_be_left_out_does_nothing_and_takes_no_memory() {
             400
         };
         let mut all_stages = plan.state.clone();
-        all_stages.clock = StageClock::default();
+        all_stages.scratch.clock = StageClock::default();
         go(&mut plan.state, steps);
         go(&mut all_stages, steps);
         assert_same(&plan.state, &all_stages);
         for stage in plan.stages.iter().filter(|stage| !stage.needed) {
             let (stage, place) = (stage.stage, path.display());
             assert_eq!(
-                plan.state.clock.done(number_of(stage)),
+                plan.state.scratch.clock.done(number_of(stage)),
                 0,
                 "{place}: {}",
                 stage.name

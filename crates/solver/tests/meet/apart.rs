@@ -1,6 +1,8 @@
 //! Overlapping bodies whose bonds vanish, all at once or one by one, with second neighbours
 //! overlapping as well: they part without gaining energy.
 
+use std::sync::Arc;
+
 use std::fmt::Write;
 
 use dem_run::measure::bond_utilisation;
@@ -121,7 +123,7 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
             tension_pa,
             ..strong
         };
-        state.bonds.rules[0].criteria = Some(weaker);
+        Arc::make_mut(&mut state.bonds.rules)[0].criteria = Some(weaker);
         interact(&mut state);
         let balance = balance(&mut state);
         worst = worst.max(balance.energy_error);
@@ -263,7 +265,7 @@ fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search
     let mut looks = 0;
     while state.time_s < 8e-3 {
         step(&mut state);
-        if !state.events.broken.is_empty() {
+        if !state.scratch.events.broken.is_empty() {
             looks += 1;
             let wanted = breadth_first(&state);
             let clusters = &state.clusters.as_ref().unwrap().of_particle;

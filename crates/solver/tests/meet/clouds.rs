@@ -1,6 +1,8 @@
 //! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however
 //! often near pairs are looked for.
 
+use std::sync::Arc;
+
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::law::ContactKind;
 use dem_run::physics::contact::law::Law;
@@ -14,7 +16,7 @@ use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
-use dem_run::state::contacts::Contacts;
+use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, interact, step};
 
@@ -78,17 +80,21 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
     let mut state = State::new(particles, Bonds::default(), time_step_s, 1);
     let [one, mixed, other] = kinds();
     let mut contacts = Contacts {
-        kinds: vec![one, mixed, other],
-        kind_of: vec![0, 1, 1, 2],
+        model: Arc::new(ContactModel {
+            kinds: vec![one, mixed, other],
+            kind_of: vec![0, 1, 1, 2],
+            relaxes: true,
+            least_overlap: 1e-3,
+            ..ContactModel::default()
+        }),
         materials: (0..count).map(|i| u8::from(i % 3 == 0)).collect(),
         skin_m,
         skin_left_m: -1.0,
-        relaxes: true,
-        least_overlap: 1e-3,
         lost_j: vec![[0.0; 2]; count],
         ..Contacts::default()
     };
     contacts.divide(count, shares);
+    state.model.contacts = Some(Arc::clone(&contacts.model));
     state.contacts = Some(contacts);
     state.clusters = Some(Clusters::new(count, &state.bonds));
     state.ledger = opened(&state);
@@ -136,9 +142,9 @@ fn to_look_at_all_pairs_in_each_step_changes_no_bit() {
             let contacts = state.contacts.as_mut().unwrap();
             if always {
                 // Nothing seems to move: who is close now is not computed longer than now.
-                (contacts.moved_m, contacts.close_skin_left_m) = (0.0, 0.0);
+                (contacts.moved_m, contacts.scratch.close_skin_left_m) = (0.0, 0.0);
             }
-            looks += usize::from(contacts.close_skin_left_m <= 0.0);
+            looks += usize::from(contacts.scratch.close_skin_left_m <= 0.0);
             step(&mut state);
         }
         let contacts = state.contacts.unwrap();
@@ -177,7 +183,7 @@ fn shares_and_skins_change_no_bit() {
 #[test]
 fn a_cloud_taken_up_again_at_any_step_goes_on_to_the_same_bits() {
     let start = cloud(0.1e-3, 2, 2e-7);
-    let fingerprint = fingerprint(&start);
+    let fingerprint = fingerprint(&start).unwrap();
     let mut state = start.clone();
     while state.steps < 2000 {
         step(&mut state);

@@ -144,11 +144,11 @@ fn a_particle_that_is_pushed_through_a_wall_is_caught() {
     let Plan { mut state, .. } = planned(&text);
     for _ in 0..200_000 {
         step(&mut state);
-        if state.walls[0].crossed.is_some() {
+        if state.walls[0].scratch.crossed.is_some() {
             break;
         }
     }
-    assert_eq!(state.walls[0].crossed, Some(0));
+    assert_eq!(state.walls[0].scratch.crossed, Some(0));
 }
 
 /// What is thinner than the particle has two sides at once: the far one pushed it out behind, with
@@ -166,11 +166,12 @@ fn a_particle_that_is_shot_through_a_thin_wall_is_caught() {
             "bodies.ball = { velocity = [0, 0, -200], ",
         );
         let Plan { mut state, .. } = planned(&text);
-        while state.walls[0].crossed.is_none() && state.particles.poses[0].place().z > -0.1 {
+        while state.walls[0].scratch.crossed.is_none() && state.particles.poses[0].place().z > -0.1
+        {
             step(&mut state);
             assert!(state.time_s < 1e-2, "{wall}: it came back");
         }
-        assert_eq!(state.walls[0].crossed, Some(0), "{wall}");
+        assert_eq!(state.walls[0].scratch.crossed, Some(0), "{wall}");
     }
 }
 

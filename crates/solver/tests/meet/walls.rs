@@ -1,24 +1,28 @@
 //! Clouds of spheres that fall on walls: fixed, turning, on a belt, pressed by a servo.
 
+use std::sync::Arc;
+
 use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::limit::{Bound, limit};
 use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
-use dem_run::state::walls::Wall;
+use dem_run::state::walls::{Wall, WallModel};
 use dem_run::step::{advance, interact};
 
 use super::clouds::{cloud, kinds};
 
 fn wall(shape: Shape, motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
-    Wall {
+    let model = WallModel {
+        name: String::new(),
+        shape,
         motion,
         surface_velocity_m_s: belt_m_s,
         kind_of: vec![0, 2],
         kinds: kinds().to_vec(),
-        ..Wall::standing(shape, Frame::default())
-    }
+    };
+    Wall::new(Arc::new(model), Frame::default())
 }
 
 fn floor(motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
@@ -29,7 +33,7 @@ fn floor(motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
 /// The cloud falls on these walls.
 fn falling(walls: Vec<Wall>, time_step_s: f64) -> State {
     let mut state = cloud(0.1e-3, 2, time_step_s);
-    state.gravity_m_s2 = [0.0, 0.0, -9.81];
+    state.model.gravity_m_s2 = [0.0, 0.0, -9.81];
     for motion in &mut state.particles.motions {
         motion.velocity_m_s[2] -= 1.0;
     }

@@ -22,8 +22,8 @@ fn pile(threads: usize) -> Plan {
     ));
     let state = &mut plan.state;
     // So few particles are not worth a second thread but for this test.
-    state.threads = threads;
-    state.partitions = divide(&state.bonds, state.particles.free, threads);
+    state.scratch.threads = threads;
+    state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
     if let Some(contacts) = &mut state.contacts {
         contacts.divide(count, threads);
@@ -104,13 +104,23 @@ fn an_interruption_changes_nothing() {
     let mut state = pile(1).state;
     let mut shots = Vec::new();
     let bodies = pile(1).bodies;
-    let print = fingerprint(&pile(1).state);
+    let print = fingerprint(&pile(1).state).unwrap();
     let (mut awake, mut next) = (0, 0);
     while state.time_s < END_S {
         go(&mut state);
-        let woke = state.events.sleep.iter().any(|news| news.kind == "awake");
+        let woke = state
+            .scratch
+            .events
+            .sleep
+            .iter()
+            .any(|news| news.kind == "awake");
         awake += usize::from(woke);
-        let fell = state.events.sleep.iter().any(|news| news.kind == "asleep");
+        let fell = state
+            .scratch
+            .events
+            .sleep
+            .iter()
+            .any(|news| news.kind == "asleep");
         if state.steps >= next || woke || fell {
             next = state.steps + 1 + state.steps % 37 + (END_S / state.time_step_s / 20.0) as u64;
             let shot = Snapshot::taken(

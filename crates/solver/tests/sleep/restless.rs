@@ -105,7 +105,7 @@ fn a_clump_that_is_replaced_wakes_and_its_island_with_it() {
     assert!(state.time_s < 0.05);
     go_until(&mut state, 0.049);
     assert_eq!(sleep(&state).bodies, 2);
-    while state.rules.replaced == 0 {
+    while state.population.replaced == 0 {
         go(&mut state);
     }
     assert_eq!((sleep(&state).bodies, state.particles.free), (0, 4));
@@ -132,7 +132,7 @@ fn sleepers_leave_and_keep_their_place_against_those_who_come() {
     go_until(&mut state, 0.05);
     // No place is free within the slab.
     assert_eq!((state.clumps.all.len(), sleep(&state).bodies), (1, 1));
-    assert_eq!(state.rules.inlets[0].progress.bodies, 0);
+    assert_eq!(state.population.inlets[0].bodies, 0);
 }
 
 #[test]
@@ -146,9 +146,9 @@ fn what_lies_on_a_sleeper_that_leaves_falls() {
     );
     let mut state = planned(&format!("{text}{SLEEP}"));
     // As if the hole were opened when both sleep.
-    let outlets = std::mem::take(&mut state.rules.outlets);
+    let outlets = std::mem::take(&mut state.model.rules.outlets);
     go_until_asleep(&mut state, 2);
-    state.rules.outlets = outlets;
+    state.model.rules.outlets = outlets;
     while state.clumps.all.len() == 2 {
         go(&mut state);
     }

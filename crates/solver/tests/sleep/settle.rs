@@ -80,7 +80,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
     let mut seen = Vec::new();
     while state.time_s < 0.3 {
         go(&mut state);
-        for news in &state.events.sleep {
+        for news in &state.scratch.events.sleep {
             seen.push((news.kind, news.bodies));
         }
     }

@@ -81,7 +81,7 @@ fn on_a_slope_friction_holds_as_before() {
     }
     assert!((state.time_s - 0.1).abs() < 2.0 * state.time_step_s);
     // In the first step after it, everything acts as when it fell asleep, and that is the weight.
-    let weight_n = -slab_kg() * Vector3::from(state.gravity_m_s2);
+    let weight_n = -slab_kg() * Vector3::from(state.model.gravity_m_s2);
     let off = (force_on_clump(&state, 0) - weight_n).norm() / weight_n.norm();
     assert!(off < 1e-3, "{off:e}");
     for (touch, kept) in state.walls[0].touching.iter().zip(&springs) {
@@ -131,7 +131,7 @@ fn a_pile_wakes_as_one() {
     while sleep(&state).bodies == 4 {
         go(&mut state);
     }
-    let news = &state.events.sleep;
+    let news = &state.scratch.events.sleep;
     assert_eq!((news.len(), news[0].kind, news[0].bodies), (1, "awake", 3));
     let asleep: Vec<bool> = state.clumps.all.iter().map(|clump| clump.asleep).collect();
     assert_eq!(asleep, [true, false, false, false]);

@@ -34,7 +34,7 @@ fn an_impact_on_a_rigid_wall_is_that_of_hertz() {
         ..
     } = dropped("rigid = true");
     let e_star_pa = 50e6 / (1.0 - 0.25 * 0.25);
-    let Law::HertzMindlin(law) = state.contacts.as_ref().unwrap().kinds[0].law else {
+    let Law::HertzMindlin(law) = state.contacts.as_ref().unwrap().model.kinds[0].law else {
         panic!("another law");
     };
     assert_near(law.young_modulus_pa, e_star_pa, 1e-14);

@@ -59,7 +59,7 @@ fn random(model: BondModel, threads: usize) -> State {
     let (left, right) = (order[..40].to_vec(), order[460..].to_vec());
     fix(&mut state, &left);
     load(&mut state, &right, [0.0, 1e-3, -2e-3], [0.0; 3]);
-    state.gravity_m_s2 = [0.0, 0.0, -9.81];
+    state.model.gravity_m_s2 = [0.0, 0.0, -9.81];
     state
 }
 
@@ -69,7 +69,7 @@ fn bits_are_the_same_for_any_number_of_threads() {
         with_threads(threads, || {
             let mut state = random(BondModel::Timoshenko, threads);
             let found = rest(&mut state);
-            assert_eq!(state.partitions.len(), threads);
+            assert_eq!(state.scratch.partitions.len(), threads);
             (found, state)
         })
     };

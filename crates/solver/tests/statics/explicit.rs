@@ -94,6 +94,6 @@ fn a_random_body_with_weight_and_torque() {
     let (left, right) = (among(0.0, 0.1), among(0.9, 1.0));
     fix(&mut state, &left);
     load(&mut state, &right, [0.0, 2e-3, -1e-3], [1e-7, 0.0, 2e-7]);
-    state.gravity_m_s2 = [0.0, 3.0, -9.81];
+    state.model.gravity_m_s2 = [0.0, 3.0, -9.81];
     assert_same(&state, high - low);
 }

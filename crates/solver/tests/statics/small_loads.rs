@@ -83,7 +83,7 @@ fn weight_hangs_on_the_support() {
     for (model, _) in MODELS {
         let mut state = bar(model, BONDS, 1.0);
         fix(&mut state, &[0]);
-        state.gravity_m_s2 = [9.81, 0.0, 0.0];
+        state.model.gravity_m_s2 = [9.81, 0.0, 0.0];
         rest(&mut state);
         let weight_n = 9.81 / state.particles.motions[1].inverse_mass;
         // Bond n carries what hangs below it.

@@ -52,7 +52,7 @@ fn left(mut state: State, steps: u64) -> Left {
     let mut before = 0.0;
     for _ in 0..steps {
         let b = step_and_balance(&mut state);
-        if !state.events.broken.is_empty() {
+        if !state.scratch.events.broken.is_empty() {
             jumps += (b.energy_error_j - before).abs();
         }
         before = b.energy_error_j;

@@ -71,13 +71,13 @@ fn smooth() -> Vec<(&'static str, Change)> {
         ("ramp", |s| s.loads = vec![load(10, UNTIL)]),
         ("table", |s| s.loads = vec![load(10, table())]),
         ("gravity", |s| {
-            s.gravity_m_s2 = [30.0, -2000.0, 500.0];
+            s.model.gravity_m_s2 = [30.0, -2000.0, 500.0];
             swing(s);
         }),
         ("clamp, load and gravity", |s| {
             s.supports = vec![support(0, CLAMP, Factor::One)];
             s.loads = vec![load(10, Factor::One)];
-            s.gravity_m_s2 = [0.0, -2000.0, 0.0];
+            s.model.gravity_m_s2 = [0.0, -2000.0, 0.0];
         }),
         ("clamp of a bar that moves", |s| {
             swing(s);
@@ -102,7 +102,7 @@ fn smooth() -> Vec<(&'static str, Change)> {
             holds[1] = Some(Hold::Velocity(3.0));
             holds[5] = Some(Hold::Velocity(-5.0));
             s.supports = vec![support(0, holds, UNTIL)];
-            s.gravity_m_s2 = [0.0, -100.0, 300.0];
+            s.model.gravity_m_s2 = [0.0, -100.0, 300.0];
         }),
         ("displacement, ramp", |s| {
             let mut holds = CLAMP;
@@ -133,7 +133,7 @@ fn smooth() -> Vec<(&'static str, Change)> {
             damp_particles(s, 0.3);
         }),
         ("all", |s| {
-            s.gravity_m_s2 = [30.0, -200.0, 50.0];
+            s.model.gravity_m_s2 = [30.0, -200.0, 50.0];
             swing(s);
             let mut holds = [None; 6];
             holds[1] = Some(Hold::Displacement(0.02));

@@ -37,7 +37,7 @@ fn a_body_moved_as_a_whole_feels_no_force() {
             bond_wrenches(
                 &state.bonds,
                 &p.poses,
-                &mut state.partitions,
+                &mut state.scratch.partitions,
                 &mut p.wrenches,
             );
             let of_all = |f: fn(&dem_run::state::particles::Wrench) -> [f64; 4]| {
@@ -74,7 +74,7 @@ fn scene(
     );
     let mut state = body(particles, pairs, &bonding, 1e-6);
     damp(&mut state, BondDamping::ChenByMode(0.05));
-    state.gravity_m_s2 = gravity.into();
+    state.model.gravity_m_s2 = gravity.into();
     state.loads = vec![SetLoad {
         end_s: f64::INFINITY,
         particles: vec![pulled],

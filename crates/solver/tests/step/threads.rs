@@ -65,7 +65,7 @@ fn scene(shares: usize) -> State {
     let mut state = State::new(particles, bonds, 5e-7, shares);
     damp(&mut state, BondDamping::Chen(0.05));
     damp_particles(&mut state, 0.1);
-    state.gravity_m_s2 = [1.0, 2.0, -9.81];
+    state.model.gravity_m_s2 = [1.0, 2.0, -9.81];
     state.loads = vec![SetLoad {
         end_s: f64::INFINITY,
         particles: (100..1400).step_by(7).collect(),
@@ -123,8 +123,8 @@ fn left(shares: usize, threads: usize) -> Left {
         let (mut balances, mut broken) = (Vec::new(), Vec::new());
         for _ in 0..150 {
             balances.push(step_and_balance(&mut state));
-            assert!(state.events.broken.is_sorted_by_key(|b| b.bond));
-            broken.extend(&state.events.broken);
+            assert!(state.scratch.events.broken.is_sorted_by_key(|b| b.bond));
+            broken.extend(&state.scratch.events.broken);
         }
         Left {
             limit,

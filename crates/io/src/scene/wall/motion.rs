@@ -7,11 +7,13 @@ use crate::scene::listing::Listing;
 use crate::scene::schema::{Key, Kind, Schema};
 use crate::scene::table::Table;
 use crate::units::{FORCE, VELOCITY};
+use serde::Serialize;
 
 /// How a wall moves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub enum WallMotion {
     /// Not at all.
+    #[default]
     Fixed,
     /// `velocity` and `angular_velocity`, with `ramp` or `table`.
     Velocity {

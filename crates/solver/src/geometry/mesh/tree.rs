@@ -2,12 +2,13 @@
 //! until few are left.
 
 use super::super::Bounds;
+use serde::Serialize;
 
 /// Triangles that are not divided further.
 const FEW: usize = 4;
 
 /// A box and what is in it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct Node {
     bounds: Bounds,
     /// A leaf: the first of its triangles. Otherwise the second child; the first child is the next
@@ -18,7 +19,7 @@ struct Node {
 }
 
 /// Boxes over triangles in the order of the tree.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
 }

@@ -1,6 +1,7 @@
 //! The nearest point of a triangle.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use super::super::Touch;
 
@@ -9,7 +10,7 @@ use super::super::Touch;
 pub(super) const REGIONS: u32 = 7;
 
 /// A triangle with its normal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Triangle {
     pub(super) corners: [Vector3<f64>; 3],
     /// Unit vector; the corners run counter-clockwise around it.

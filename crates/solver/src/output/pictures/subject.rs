@@ -29,11 +29,11 @@ pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
 /// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where
 /// others begin.
 pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
-    let plane_of = |wall: &Wall| HalfSpace::of_wall(&wall.shape, &wall.frame);
+    let plane_of = |wall: &Wall| HalfSpace::of_wall(&wall.model.shape, &wall.frame);
     let planes: Vec<HalfSpace> = walls.iter().filter_map(plane_of).collect();
     let surface = |wall: &Wall| match plane_of(wall) {
         Some(plane) => Some(Surface::plane(&plane, around, &planes)),
-        None => Surface::of_finite(&wall.shape, &wall.frame),
+        None => Surface::of_finite(&wall.model.shape, &wall.frame),
     };
     walls.iter().filter_map(surface).collect()
 }

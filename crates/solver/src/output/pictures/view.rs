@@ -35,12 +35,12 @@ impl View {
         let mut points_m: Vec<[f64; 3]> = (poses.iter())
             .flat_map(|pose| outermost(pose.place().into(), pose.radius_m()))
             .collect();
-        for inlet in &state.rules.inlets {
-            points_m.extend(state.rules.regions[inlet.region].bounds().corners());
+        for inlet in &state.model.rules.inlets {
+            points_m.extend(state.model.rules.regions[inlet.region].bounds().corners());
         }
         let room = with_room(Bounds::of(points_m.iter().copied()));
-        let finite =
-            (state.walls.iter()).filter_map(|wall| Surface::of_finite(&wall.shape, &wall.frame));
+        let finite = (state.walls.iter())
+            .filter_map(|wall| Surface::of_finite(&wall.model.shape, &wall.frame));
         let around = finite.fold(room, |around, surface| {
             around.with(&Bounds::of(surface.points_m()))
         });

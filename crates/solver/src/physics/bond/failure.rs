@@ -16,7 +16,7 @@ use std::fmt;
 
 /// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any
 /// load takes more than all, and none takes nothing. Several may act together.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Criteria {
     /// Largest stress at the tensile edge: F_n / A + M_ben r / I, tension positive, Pa.
     pub tension_pa: f64,

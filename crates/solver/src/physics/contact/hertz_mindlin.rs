@@ -12,9 +12,10 @@ use super::kinematics::ContactKinematics;
 use super::pair_parameters::{Elastic, PairInput, PairParameters};
 use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
+use serde::Serialize;
 
 /// The law for a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HertzMindlin<T = f64> {
     /// E*, Pa.
     pub young_modulus_pa: T,

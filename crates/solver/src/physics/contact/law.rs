@@ -8,9 +8,10 @@ use super::linear::Linear;
 use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use super::{ImpactLaw, Linearised, NormalLaw, linearised};
 use crate::physics::number::Number;
+use serde::Serialize;
 
 /// Normal law of a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Law {
     /// Hertz and Mindlin.
     HertzMindlin(HertzMindlin),
@@ -19,7 +20,7 @@ pub enum Law {
 }
 
 /// Rolling friction of a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Rolling {
     /// None.
     Free,
@@ -30,7 +31,7 @@ pub enum Rolling {
 }
 
 /// How a pair of materials meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactKind {
     /// Along and across the normal.
     pub law: Law,

@@ -12,9 +12,10 @@ use super::kinematics::ContactKinematics;
 use super::pair_parameters::{PairInput, PairParameters};
 use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
+use serde::Serialize;
 
 /// The law for a pair of materials.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Linear<T = f64> {
     /// k_n, N/m.
     pub normal_n_m: T,

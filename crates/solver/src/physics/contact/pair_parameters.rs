@@ -1,6 +1,7 @@
 //! How a pair of materials damps and rubs: what all normal laws share.
 
 use super::restitution::{damping_ratio, damping_ratio_with_attraction};
+use serde::Serialize;
 
 /// A material, as elastic contact sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +67,7 @@ impl PairInput {
 }
 
 /// How a pair damps and rubs, as the laws need it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PairParameters<T = f64> {
     /// Fraction of critical damping along the normal.
     pub damping_ratio: T,

@@ -17,6 +17,7 @@ use super::NormalResponse;
 use super::kinematics::{ContactKinematics, FrameRotation};
 use super::slider::{TangentialStep, coulomb_return_map};
 use crate::physics::number::{Number, Vec3};
+use serde::Serialize;
 
 /// What becomes of rolling.
 pub trait RollingFriction<T: Number> {
@@ -48,14 +49,14 @@ pub trait RollingFriction<T: Number> {
 pub struct NoRolling;
 
 /// Constant moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ConstantMoment<T = f64> {
     /// mu_r, of R*.
     pub friction: T,
 }
 
 /// Elastic-plastic spring and dashpot.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ElasticPlastic<T = f64> {
     /// mu_r, of R*.
     pub friction: T,

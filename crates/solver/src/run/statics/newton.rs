@@ -278,9 +278,10 @@ impl Search<'_> {
         let State {
             bonds,
             particles,
-            partitions,
+            scratch,
             ..
         } = &mut *self.state;
+        let partitions = &mut scratch.partitions;
         bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
         let unknowns = self.freedoms.unknowns();
         unknowns
@@ -338,7 +339,7 @@ pub(super) fn loads(state: &State, end_s: f64) -> Vec<[f64; 6]> {
     add_loads(&state.loads, end_s, [0.0; 2], &mut wrenches);
     let with_weight = |(wrench, motion): (&Wrench, &Motion)| {
         let mut load = six(wrench);
-        for (k, g) in state.gravity_m_s2.iter().enumerate() {
+        for (k, g) in state.model.gravity_m_s2.iter().enumerate() {
             load[k] += g / motion.inverse_mass;
         }
         load

@@ -46,7 +46,7 @@ fn find_border(partition: &mut ContactPartition, scene: &StepInput<'_>) {
     for (n, &at) in (0..).zip(&partition.border) {
         let pair = contacts.pairs[at as usize];
         let [a, b] = pair.map(|i| &poses[i as usize]);
-        let reach = a.radius_m() + b.radius_m() + contacts.close_m;
+        let reach = a.radius_m() + b.radius_m() + contacts.scratch.close_m;
         if (b.place() - a.place()).norm_squared() < reach * reach {
             partition.close[contacts.kind(pair)][0].push(n);
         }
@@ -60,7 +60,7 @@ fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: 
     let poses = scene.poses;
     let own = partition.own.clone();
     let pairs = &scene.contacts.pairs[..own.end];
-    let close_m = T::all(proof, scene.contacts.close_m);
+    let close_m = T::all(proof, scene.contacts.scratch.close_m);
     let (of_first_kind, of_others) = partition.close.split_at_mut(1);
     let list = &mut of_first_kind[0][1];
     list.resize(own.len() + MOST, 0);

@@ -34,7 +34,7 @@ pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -
     if contacts.histories[at] == ContactHistory::default() {
         return 0.0;
     }
-    let kind = &contacts.kinds[contacts.kind(contacts.pairs[at])];
+    let kind = &contacts.model.kinds[contacts.kind(contacts.pairs[at])];
     let ends = contacts.pairs[at].map(|end| end as usize);
     let history = &contacts.histories[at];
     let [a, b] = ends.map(|i| particles.poses[i].place());
@@ -56,7 +56,7 @@ pub fn pair_force_n(
     let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
     let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
     touch.overlap_m = history.overlap_m();
-    let kind = &contacts.kinds[contacts.kind(pair)];
+    let kind = &contacts.model.kinds[contacts.kind(pair)];
     kind.with(|number| number, StoredForce { touch, history })
 }
 
