@@ -1,8 +1,7 @@
 //! Bodies that the tests run, and what they do with them.
 
-use dem_run::physics::bond::damping::{
-    DampingCoefficients, Reduced, chen, chen_by_mode, platzer, reduced,
-};
+use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, Reduced, reduced};
+use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::direction;
 use dem_run::stages::ledger::{Balance, balance, opened};
@@ -47,11 +46,14 @@ pub(crate) enum BondDamping {
 impl BondDamping {
     fn coefficients(self, k: &Stiffness, ends: &Reduced) -> DampingCoefficients {
         match self {
-            Self::Chen(eta) => chen(k, ends, eta),
-            Self::ChenByMode(eta) => chen_by_mode(k, ends, eta),
+            Self::Chen(damping_ratio) => Chen { damping_ratio }.coefficients(k, ends),
+            Self::ChenByMode(damping_ratio) => ChenByMode { damping_ratio }.coefficients(k, ends),
             Self::Platzer(share, moments) => {
-                let coefficient = 2.0 * share * (k.normal * ends.mass_kg).sqrt();
-                platzer(k, ends, coefficient, moments)
+                let model = Platzer {
+                    coefficient_n_s_m: 2.0 * share * (k.normal * ends.mass_kg).sqrt(),
+                    moment_factor: moments,
+                };
+                model.coefficients(k, ends)
             }
         }
     }

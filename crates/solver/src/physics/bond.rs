@@ -1,6 +1,8 @@
 //! Elastic bonds between two spheres.
 
+pub mod criteria;
 pub mod damping;
+pub mod damping_models;
 pub mod failure;
 pub mod incremental;
 pub mod models;
@@ -9,6 +11,7 @@ pub mod rod;
 pub mod scatter;
 pub mod stiffness;
 pub mod strain_rate;
+pub mod stresses;
 pub mod tangent;
 pub mod total;
 

@@ -13,7 +13,8 @@ use dem_io::scene::{
 use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::bond::damping::{chen, chen_by_mode, platzer, reduced};
+use crate::physics::bond::damping::{DampingModel, reduced};
+use crate::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
@@ -430,11 +431,18 @@ fn damping(
         ends.map(|end| particles.motions[end].inverse_mass),
         ends.map(|end| particles.motions[end].inverse_inertia),
     );
-    let by_chen = if damping.each_mode {
-        chen_by_mode(answer, &reduced, damping.viscous)
+    let damping_ratio = damping.viscous;
+    let by_ratio: &dyn DampingModel = if damping.each_mode {
+        &ChenByMode { damping_ratio }
     } else {
-        chen(answer, &reduced, damping.viscous)
+        &Chen { damping_ratio }
     };
-    let all = by_chen + platzer(answer, &reduced, damping.force_n_s_m, damping.torque);
+    let by_coefficient = Platzer {
+        coefficient_n_s_m: damping.force_n_s_m,
+        moment_factor: damping.torque,
+    };
+    let models = [by_ratio, &by_coefficient];
+    let [one, other] = models.map(|model| model.coefficients(answer, &reduced));
+    let all = one + other;
     [all.normal, all.shear, all.torsion, all.bending]
 }

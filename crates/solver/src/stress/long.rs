@@ -7,7 +7,8 @@ use dem_io::Result;
 
 use super::prediction::{Member, Prediction, Quantity, Shown, Way};
 use super::trial::{Outcome, Trial};
-use crate::physics::bond::damping::{Reduced, chen};
+use crate::physics::bond::damping::{DampingModel, Reduced};
+use crate::physics::bond::damping_models::Chen;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 
@@ -73,7 +74,11 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
             STEPS * step_s,
             if eta > 0.0 { "end" } else { "largest" },
         );
-        let carried = chen(&answer, &reduced, eta).normal * step_s / mass_kg;
+        let carried = Chen { damping_ratio: eta }
+            .coefficients(&answer, &reduced)
+            .normal
+            * step_s
+            / mass_kg;
         let at_rest_j = 0.5 * answer.normal * (stretch_m * (1.0 - carried)).powi(2);
         let stored = if eta > 0.0 {
             Shown::measure(

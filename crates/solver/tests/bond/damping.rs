@@ -3,9 +3,9 @@
 
 use super::vector;
 use dem_run::physics::bond::damping::{
-    DampingCoefficients, DampingForces, EndMotion, Reduced, chen, chen_by_mode, damping_forces,
-    platzer, reduced,
+    DampingCoefficients, DampingForces, DampingModel, EndMotion, Reduced, damping_forces, reduced,
 };
+use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::{End, bond_forces};
 use nalgebra::{DMatrix, UnitQuaternion, Vector3};
@@ -119,7 +119,14 @@ fn the_thesis_damps_with_its_equations_7_and_9() {
     let shear_modulus = YOUNG_PA / 2.6;
     let torsion = (2.0 * shear_modulus * second_moment * 0.5 * INERTIA_KG_M2 / LENGTH_M).sqrt();
     let bending = (YOUNG_PA * second_moment * 0.5 * INERTIA_KG_M2 / LENGTH_M).sqrt();
-    let d = platzer(&k, &pair, 7.0, 1.0) + platzer(&k, &pair, 1.0, 0.5);
+    let platzer = |coefficient_n_s_m, moment_factor| {
+        let model = Platzer {
+            coefficient_n_s_m,
+            moment_factor,
+        };
+        model.coefficients(&k, &pair)
+    };
+    let d = platzer(7.0, 1.0) + platzer(1.0, 0.5);
     assert_eq!((d.normal, d.shear), (8.0, 8.0));
     assert!((d.torsion / (1.5 * torsion) - 1.0).abs() < 1e-14);
     assert!((d.bending / (1.5 * bending) - 1.0).abs() < 1e-14);
@@ -156,7 +163,7 @@ const DEFLECTION: f64 = 1e-6;
 fn two_spheres_swing_with_the_logarithmic_decrement_of_eta() {
     let (k, pair) = (steel(BondModel::Timoshenko), pair_of_steel());
     let eta = 0.05;
-    let d = chen_by_mode(&k, &pair, eta);
+    let d = ChenByMode { damping_ratio: eta }.coefficients(&k, &pair);
     let x = Vector3::x();
     let decrement = TAU * eta / (1.0_f64 - eta * eta).sqrt();
     for turning in [None, Some(x), Some(Vector3::z())] {
@@ -343,8 +350,14 @@ fn a_damped_chain_takes_the_steps_of_the_independent_implementation() {
         assert!((limit / undamped - 1.0).abs() < 1e-12, "{model:?}: {limit}");
         for (case, eta) in ETAS.into_iter().enumerate() {
             for (damping, wanted) in [
-                (chen(&k, &pair, eta), both[case]),
-                (chen_by_mode(&k, &pair, eta), by_mode[case]),
+                (
+                    Chen { damping_ratio: eta }.coefficients(&k, &pair),
+                    both[case],
+                ),
+                (
+                    ChenByMode { damping_ratio: eta }.coefficients(&k, &pair),
+                    by_mode[case],
+                ),
             ] {
                 let damped = matrix_of_chain(&damping, &k.levers_m);
                 let found = exact_limit(&stiff, &damped, 1.01 * limit) / limit;

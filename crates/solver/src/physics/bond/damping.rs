@@ -1,5 +1,5 @@
-//! Viscous damping of bonds: four coefficients, one for each mode, whatever rule they come from.
-//! Rules may be added.
+//! Viscous damping of bonds: four coefficients, one for each mode, whatever model they come from,
+//! and what they do. The models stand in `damping_models`, a file each.
 //!
 //! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
 
@@ -54,50 +54,10 @@ pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced 
     }
 }
 
-/// Chen et al. 2022, eqs. 9 and 10: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2
-/// k_tor I_red) about all axes.
-#[inline(always)]
-pub fn chen(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
-    let force = 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt();
-    let moment = 2.0 * eta * (2.0 * stiffness.torsion * reduced.inertia_kg_m2).sqrt();
-    DampingCoefficients {
-        normal: force,
-        shear: force,
-        torsion: moment,
-        bending: moment,
-    }
-}
-
-/// As [`chen`], but 2 eta sqrt(k m_red), 2 eta sqrt(k I_red) with the stiffness k of each mode, and
-/// without the 2 under the root of eq. 10. eta is then the share of critical damping of each mode
-/// of two particles that is not coupled to another (stretch, torsion).
-#[inline(always)]
-pub fn chen_by_mode(stiffness: &Stiffness, reduced: &Reduced, eta: f64) -> DampingCoefficients {
-    DampingCoefficients {
-        normal: 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt(),
-        shear: 2.0 * eta * (stiffness.shear * reduced.mass_kg).sqrt(),
-        torsion: 2.0 * eta * (stiffness.torsion * reduced.inertia_kg_m2).sqrt(),
-        bending: 2.0 * eta * (stiffness.bending * reduced.inertia_kg_m2).sqrt(),
-    }
-}
-
-/// Platzer 2022, eqs. 7 and 9: `coefficient_n_s_m` times the whole relative velocity, and
-/// `moment_factor` (1 as printed) times sqrt(k_tor I_red), sqrt(k_ben I_red).
-///
-/// Table 1 there gives the coefficient without a unit; eq. 7 needs N s/m.
-#[inline(always)]
-pub fn platzer(
-    stiffness: &Stiffness,
-    reduced: &Reduced,
-    coefficient_n_s_m: f64,
-    moment_factor: f64,
-) -> DampingCoefficients {
-    DampingCoefficients {
-        normal: coefficient_n_s_m,
-        shear: coefficient_n_s_m,
-        torsion: moment_factor * (stiffness.torsion * reduced.inertia_kg_m2).sqrt(),
-        bending: moment_factor * (stiffness.bending * reduced.inertia_kg_m2).sqrt(),
-    }
+/// A rule for how much a bond is damped.
+pub trait DampingModel {
+    /// Coefficients of a bond of this stiffness between ends of these reduced masses.
+    fn coefficients(&self, stiffness: &Stiffness, reduced: &Reduced) -> DampingCoefficients;
 }
 
 /// How an end of a bond moves.

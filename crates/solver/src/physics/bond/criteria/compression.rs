@@ -1,0 +1,23 @@
+//! Strength at the compressive edge.
+
+use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::number::Number;
+
+/// Axial and bending stress where they press most. The rate of strain does not raise its strength.
+pub(super) struct Compression;
+
+impl FailureCriterion for Compression {
+    const CAUSE: Cause = Cause::Compression;
+    const RISES_WITH_RATE: bool = false;
+
+    fn strength_pa(criteria: &Criteria) -> f64 {
+        criteria.compression_pa
+    }
+
+    #[inline(always)]
+    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+        let edge = stresses.pressed_edge_pa();
+        let pressed = edge.if_positive(edge);
+        pressed * pressed
+    }
+}

@@ -1,0 +1,22 @@
+//! MUSEN's shear strength.
+
+use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::number::Number;
+
+/// Shear force and torsion together.
+pub(super) struct Shear;
+
+impl FailureCriterion for Shear {
+    const CAUSE: Cause = Cause::Shear;
+    const RISES_WITH_RATE: bool = true;
+
+    fn strength_pa(criteria: &Criteria) -> f64 {
+        criteria.shear_pa
+    }
+
+    #[inline(always)]
+    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+        let shear = stresses.shear_pa + stresses.torsion_pa;
+        shear * shear
+    }
+}

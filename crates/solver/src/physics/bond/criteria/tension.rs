@@ -1,0 +1,23 @@
+//! Strength at the tensile edge (MUSEN's normal strength, with the sign of the axial force).
+
+use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::number::Number;
+
+/// Axial and bending stress where they pull most.
+pub(super) struct Tension;
+
+impl FailureCriterion for Tension {
+    const CAUSE: Cause = Cause::Tension;
+    const RISES_WITH_RATE: bool = true;
+
+    fn strength_pa(criteria: &Criteria) -> f64 {
+        criteria.tension_pa
+    }
+
+    #[inline(always)]
+    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+        let edge = stresses.tensile_edge_pa();
+        let pulled = edge.if_positive(edge);
+        pulled * pulled
+    }
+}

@@ -1,0 +1,23 @@
+//! Equivalent stress of von Mises (Platzer 2022, eqs. 11-13).
+
+use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::number::Number;
+
+/// Equivalent stress, whose axial part counts only while it pulls.
+pub(super) struct VonMises;
+
+impl FailureCriterion for VonMises {
+    const CAUSE: Cause = Cause::VonMises;
+    const RISES_WITH_RATE: bool = true;
+
+    fn strength_pa(criteria: &Criteria) -> f64 {
+        criteria.von_mises_pa
+    }
+
+    #[inline(always)]
+    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+        let pulled = stresses.axial_pa.if_positive(stresses.axial_pa) + stresses.bending_pa;
+        let shear = stresses.shear_pa + stresses.torsion_pa;
+        pulled * pulled + (shear * shear).scale(3.0)
+    }
+}

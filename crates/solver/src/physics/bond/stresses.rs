@@ -1,0 +1,147 @@
+//! Stresses in the section of a bond, its strengths, and what a failure criterion says of the two.
+//!
+//! A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::BondLoad;
+use crate::physics::number::Number;
+
+/// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any
+/// load takes more than all, and none takes nothing. Several may act together.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Criteria {
+    /// Largest stress at the tensile edge: F_n / A + M_ben r / I, tension positive, Pa.
+    pub tension_pa: f64,
+    /// Largest stress at the pressed edge: -F_n / A + M_ben r / I, Pa.
+    pub compression_pa: f64,
+    /// MUSEN's shear strength: largest shear stress of shear force and torsion, Pa.
+    pub shear_pa: f64,
+    /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only while it pulls, Pa.
+    pub von_mises_pa: f64,
+}
+
+/// Largest stresses in the section of a bond, each from one mode.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Stresses<T = f64> {
+    /// F_n / A, tension positive, Pa.
+    pub axial_pa: T,
+    /// M_ben r / I, Pa. Not negative.
+    pub bending_pa: T,
+    /// F_s / A, Pa. Not negative.
+    pub shear_pa: T,
+    /// M_tor r / J, Pa. Not negative.
+    pub torsion_pa: T,
+}
+
+impl<T: Number> Stresses<T> {
+    /// At the edge that is pulled most; below 0 if the whole section is pressed, Pa.
+    #[inline(always)]
+    pub fn tensile_edge_pa(&self) -> T {
+        self.bending_pa + self.axial_pa
+    }
+
+    /// At the edge that is pressed most; below 0 if the whole section is pulled, Pa.
+    #[inline(always)]
+    pub fn pressed_edge_pa(&self) -> T {
+        self.bending_pa - self.axial_pa
+    }
+}
+
+/// Which criterion a bond failed by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Strength at the tensile edge.
+    Tension,
+    /// Strength at the pressed edge.
+    Compression,
+    /// Shear strength.
+    Shear,
+    /// Equivalent stress.
+    VonMises,
+}
+
+impl Cause {
+    /// Its name in results: `von_mises`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tension => "tension",
+            Self::Compression => "compression",
+            Self::Shear => "shear",
+            Self::VonMises => "von_mises",
+        }
+    }
+}
+
+/// How many bonds failed by each criterion.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CauseCounts {
+    /// At the tensile edge.
+    pub tension: u64,
+    /// At the pressed edge.
+    pub compression: u64,
+    /// By shear strength.
+    pub shear: u64,
+    /// By equivalent stress.
+    pub von_mises: u64,
+}
+
+impl CauseCounts {
+    /// Counts one more bond.
+    pub fn count(&mut self, cause: Cause) {
+        *match cause {
+            Cause::Tension => &mut self.tension,
+            Cause::Compression => &mut self.compression,
+            Cause::Shear => &mut self.shear,
+            Cause::VonMises => &mut self.von_mises,
+        } += 1;
+    }
+}
+
+impl fmt::Display for CauseCounts {
+    /// Those that are not 0: `23 in tension, 2 in shear`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counts = [
+            (self.tension, "in tension"),
+            (self.compression, "in compression"),
+            (self.shear, "in shear"),
+            (self.von_mises, "by equivalent stress"),
+        ];
+        let said = counts.iter().filter(|(count, _)| *count > 0);
+        let said: Vec<String> = said.map(|(count, how)| format!("{count} {how}")).collect();
+        f.write_str(&said.join(", "))
+    }
+}
+
+/// Stresses in a bond of this radius under this load.
+#[inline(always)]
+pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
+    let per_area = 1.0 / (PI * radius_m * radius_m);
+    // 1 / (A r), without a second division.
+    let per_area_radius = PI * radius_m * per_area * per_area;
+    Stresses {
+        axial_pa: load.normal_n * per_area,
+        bending_pa: 4.0 * load.bending_n_m * per_area_radius,
+        shear_pa: load.shear_n * per_area,
+        torsion_pa: 2.0 * load.torsion_n_m * per_area_radius,
+    }
+}
+
+/// A criterion: a stress that is compared with a strength.
+pub trait FailureCriterion {
+    /// Its name in results.
+    const CAUSE: Cause;
+    /// Whether the rate of strain raises its strength.
+    const RISES_WITH_RATE: bool;
+
+    /// Its strength, Pa; infinite: not asked for.
+    fn strength_pa(criteria: &Criteria) -> f64;
+
+    /// Square of the stress that it compares, Pa2: squares need no root while many bonds are looked
+    /// at. Stresses and square may be multiplied by a number above 0 and its square.
+    fn squared<T: Number>(stresses: &Stresses<T>) -> T;
+}
