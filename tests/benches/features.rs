@@ -72,33 +72,33 @@ const CASES: [Case; 12] = [
     Case {
         name: "bond damping",
         stage: BOND_DAMPING,
-        bonds: "damping = { viscous = 0.1 }",
+        bonds: "damping = { damping_ratio = 0.1 }",
         ..CASE
     },
     Case {
         name: "failure",
         stage: FAILURE,
-        bonds: "failure = { von_mises = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12 }",
         ..CASE
     },
     Case {
         name: "scattered strength",
         beside: "failure",
         stage: SCATTER,
-        bonds: "failure = { von_mises = 1e12, weibull_modulus = 5 }",
+        bonds: "failure = { von_mises_strength = 1e12, weibull_modulus = 5 }",
         ..CASE
     },
     Case {
         name: "strength by rate",
         beside: "failure",
         stage: RATES,
-        bonds: "failure = { von_mises = 1e12, rate_strengthening = true }",
+        bonds: "failure = { von_mises_strength = 1e12, rate_strengthening = true }",
         ..CASE
     },
     Case {
         name: "particle damping",
         stage: PARTICLE_DAMPING,
-        run: ", particle_damping = 0.1",
+        run: ", local_damping = 0.1",
         ..CASE
     },
     Case {
@@ -129,7 +129,7 @@ const CASES: [Case; 12] = [
         name: "contacts of particles",
         beside: "failure",
         stage: CONTACTS,
-        bonds: "failure = { von_mises = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12 }",
         tables: MEETS,
         ..CASE
     },

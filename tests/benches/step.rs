@@ -41,7 +41,7 @@ density = "2050 kg/m3"
 young_modulus = "12.05 MPa"
 poisson_ratio = 0.3
 DAMPING
-failure = { von_mises = "185 kPa" }
+failure = { von_mises_strength = "185 kPa" }
 [bodies.cake]
 file = "cake.vtp"
 material = "cake"
@@ -123,7 +123,7 @@ fn steps(criterion: &mut Criterion) {
                     })
                 });
             });
-            let mut damped = state(&body, "damping = { viscous = 0.1 }", threads);
+            let mut damped = state(&body, "damping = { damping_ratio = 0.1 }", threads);
             group.bench_function("damped", |b| {
                 b.iter_custom(|rounds| {
                     timed(rounds, &mut || {

@@ -92,7 +92,7 @@ const LARGER_SPHERES_HEAD: [&str; 9] = [
 ];
 
 const FLAT_HEAD: [&str; 3] = [
-    "`bonds.cake.damping.viscous`",
+    "`bonds.cake.damping.damping_ratio`",
     "rebound",
     "share of the height of the fall",
 ];
@@ -127,7 +127,7 @@ const STRENGTHS: [Strength; 3] = [
     Strength {
         first_cell: "rises with the rate of elongation, `--seed 1`",
         name: "elongation",
-        sets: &["bonds.cake.failure.rate_of=\"elongation\""],
+        sets: &["bonds.cake.failure.strain_rate_measure=\"elongation\""],
         all_packings: false,
     },
     Strength {
@@ -145,7 +145,7 @@ const FALLS: [(&str, &[&str]); 4] = [
     ("25-flat", &[TILT]),
     ("25-upright", &[TILT, UPRIGHT[0], UPRIGHT[1]]),
 ];
-const TILT: &str = "walls.plate.tilt=\"25 deg\"";
+const TILT: &str = "walls.plate.rotation.angle=\"25 deg\"";
 const UPRIGHT: [&str; 2] = [
     "bodies.sample.rotation={axis=[0,1,0],angle=\"-90 deg\"}",
     "bodies.sample.position=[\"17.5 mm\",\"-15 mm\",\"15 mm\"]",
@@ -353,7 +353,7 @@ fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
             format!(
                 "{}, {}",
                 set("bonds.cake.young_modulus"),
-                set("bonds.cake.failure.von_mises")
+                set("bonds.cake.failure.von_mises_strength")
             ),
             format!(
                 "{:.2} kN/m{}",
@@ -395,7 +395,7 @@ fn inclined_table(packings: u32) -> Table {
 }
 
 fn damping_set(damping: &str) -> String {
-    format!("bonds.cake.damping.viscous={damping}")
+    format!("bonds.cake.damping.damping_ratio={damping}")
 }
 
 fn inclined_sets(strength: &[&'static str], fall: &[&'static str]) -> Vec<&'static str> {

@@ -46,7 +46,7 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
                 "the scene says nothing of which the theory of '{name}' follows"
             ));
         }
-        if let MeasureOf::Ledger(_) = measure.of {
+        if let MeasureOf::Balance(_) = measure.of {
             read.closed_form = Some(0.0);
         }
         readings.push(read);
@@ -73,7 +73,7 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         curve: Vec::new(),
     };
     let (entry, name, reference) = match of {
-        MeasureOf::Ledger(key) => {
+        MeasureOf::Balance(key) => {
             let value = summary[*key].as_f64().unwrap_or(f64::NAN);
             return Ok(plain(value));
         }

@@ -218,7 +218,7 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
         return Ok(mass.map(WholeMass::Mass));
     };
     if table.get("mass").is_some() {
-        let problem = format!("{} stands beside mass", field.path);
+        let problem = format!("{} cannot be combined with mass", field.path);
         return Err(field.refuse(
             problem,
             "either says what the body weighs: remove the other",
@@ -239,7 +239,7 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
     let bonds = table.get("bond_list");
     if let Some(file) = table.get("file") {
         if let Some(field) = particles.or(bonds) {
-            let problem = format!("{} stands beside file", field.path);
+            let problem = format!("{} cannot be combined with file", field.path);
             return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
         }
         return Ok(BodySource::File(named_path(&file, folder)?));

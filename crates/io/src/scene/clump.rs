@@ -100,10 +100,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
         return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
     }
     if let Some(field) = body.get("clump") {
-        let problem = format!(
-            "{} stands without start_as = \"clump\", on which it acts",
-            field.path
-        );
+        let problem = format!("{} has no effect without start_as = \"clump\"", field.path);
         return Err(field.refuse(problem, "add start_as = \"clump\", or remove it"));
     }
     Ok(StartAs::Bonded)

@@ -41,7 +41,7 @@ pub(super) static CONTACT: Schema = Schema {
         .positive()
         .sometimes_required("\"100 kN/m\""),
         Key::number(
-            "tangential_ratio",
+            "tangential_stiffness_ratio",
             "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
         )
         .within(Excluded(0.0), Included(1.0))
@@ -70,7 +70,7 @@ pub(super) static CONTACT: Schema = Schema {
         .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
         .sometimes_required("0.05"),
         Key::number(
-            "rolling_damping",
+            "rolling_damping_ratio",
             "Of `spring-dashpot`: share of the critical damping.",
         )
         .within(Included(0.0), Included(1.0))
@@ -104,8 +104,8 @@ pub enum ContactLaw {
     Linear {
         /// `normal_stiffness`, N/m.
         normal_n_m: f64,
-        /// `tangential_ratio`: tangential over normal stiffness, 2/7 unless given; in (0, 1].
-        tangential_ratio: f64,
+        /// `tangential_stiffness_ratio`: tangential over normal stiffness, 2/7 unless given; in (0, 1].
+        tangential_stiffness_ratio: f64,
     },
 }
 
@@ -123,7 +123,7 @@ pub enum Rolling {
     SpringDashpot {
         /// `rolling_friction`, a coefficient of more than 0.
         friction: f64,
-        /// `rolling_damping`: share of the critical damping, 0.3 unless given; in [0, 1].
+        /// `rolling_damping_ratio`: share of the critical damping, 0.3 unless given; in [0, 1].
         damping: f64,
     },
 }
@@ -183,10 +183,10 @@ fn read(
 fn law(table: &Table<'_>) -> Result<ContactLaw> {
     let is_linear = table.read_by("law", |field| field.choice(&LAWS))?;
     if is_linear != Some(true) {
-        let mut of_linear = table.given(&["normal_stiffness", "tangential_ratio"]);
+        let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
         if let Some((_, field)) = of_linear.next() {
             let problem = format!(
-                "{} means nothing to the law \"hertz-mindlin\", whose stiffness is that of the materials",
+                "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
                 field.path
             );
             return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
@@ -195,7 +195,7 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     }
     Ok(ContactLaw::Linear {
         normal_n_m: table.read("normal_stiffness")?,
-        tangential_ratio: table.read("tangential_ratio")?,
+        tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
     })
 }
 
@@ -224,10 +224,10 @@ fn need_moduli(
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
-    let damping = table.read("rolling_damping")?;
-    if let (Some(field), false) = (table.get("rolling_damping"), is_sprung == Some(true)) {
+    let damping = table.read("rolling_damping_ratio")?;
+    if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
         let problem = format!(
-            "{} stands without rolling = \"spring-dashpot\", on which it acts",
+            "{} has no effect without rolling = \"spring-dashpot\"",
             field.path
         );
         return Err(field.refuse(problem, "remove it, or add rolling = \"spring-dashpot\""));
@@ -265,11 +265,11 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
         ContactLaw::HertzMindlin => listing.text("law", "hertz-mindlin"),
         ContactLaw::Linear {
             normal_n_m,
-            tangential_ratio,
+            tangential_stiffness_ratio,
         } => {
             listing.text("law", "linear");
             listing.value("normal_stiffness", &normal_n_m);
-            listing.value("tangential_ratio", &tangential_ratio);
+            listing.value("tangential_stiffness_ratio", &tangential_stiffness_ratio);
         }
     }
     listing.value("restitution", &contact.restitution);
@@ -283,7 +283,7 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
         Rolling::SpringDashpot { friction, damping } => {
             listing.text("rolling", "spring-dashpot");
             listing.value("rolling_friction", &friction);
-            listing.value("rolling_damping", &damping);
+            listing.value("rolling_damping_ratio", &damping);
         }
     }
 }

@@ -172,10 +172,7 @@ fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec
     for item in field.items()? {
         let name = item.reference(bodies.keys(), "bodies")?;
         if shares.iter().any(|(other, _)| *other == name) {
-            let problem = format!(
-                "{} is \"{name}\", which stands in the list already",
-                item.path
-            );
+            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             let remedy = "remove one of them, or give shares, such as { NAME = 2, OTHER = 1 }";
             return Err(item.refuse(problem, remedy));
         }
@@ -194,7 +191,7 @@ fn rate(table: &Table<'_>) -> Result<FeedRate> {
         (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
         (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
         (Some(_), Some(field)) => {
-            let problem = format!("{} stands beside rate", field.path);
+            let problem = format!("{} cannot be combined with rate", field.path);
             Err(field.refuse(problem, "an inlet has one rate: remove one"))
         }
     }

@@ -47,7 +47,7 @@ pub(super) fn read(
         return Err(table.refuse(problem, remedy));
     };
     if let Some((_, second)) = given.next() {
-        let problem = format!("{} stands beside {key}", second.path);
+        let problem = format!("{} cannot be combined with {key}", second.path);
         let remedy = "an outlet has one region: remove one, or make two outlets";
         return Err(second.refuse(problem, remedy));
     }

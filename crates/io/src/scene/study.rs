@@ -3,7 +3,7 @@
 
 mod check;
 mod contents;
-mod keys;
+pub(super) mod keys;
 mod measures;
 mod read;
 mod rewrite;

@@ -117,7 +117,7 @@ fn unstable(
     } else if share_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {
-        "take a smaller run.safety or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
+        "take a smaller run.safety_factor or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
     };
     Diagnostic::unstable("", problem, remedy)
 }

@@ -290,8 +290,8 @@ impl Measured {
 
     fn beam(&mut self, beam: &Beam, nu: f64) {
         self.dimension("span", beam.span_m, "m");
-        if beam.load_distance_m > 0.0 {
-            self.dimension("load distance", beam.load_distance_m, "m");
+        if beam.loading_span_m > 0.0 {
+            self.dimension("load distance", beam.loading_span_m, "m");
         }
         self.dimension("width", beam.width_m, "m");
         self.dimension("height", beam.height_m, "m");
@@ -394,8 +394,8 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
         found.push(Figure::new(name, value, "Pa", None));
     }
     let failure = &bonds.failure;
-    let of_bonds = failure.von_mises_pa.or(failure.tension_pa);
-    let of_bonds = of_bonds.or(failure.compression_pa);
+    let of_bonds = failure.von_mises_strength_pa.or(failure.tensile_strength_pa);
+    let of_bonds = of_bonds.or(failure.compressive_strength_pa);
     let of_bonds = of_bonds.filter(|strength| *strength > 0.0);
     if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
         let factor = strength / of_bonds;

@@ -414,7 +414,7 @@ impl Summary {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
-                "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
+                "the energy is off by {} of the largest energy: take a smaller step (run.safety_factor)",
                 significant(self.energy_error, 2)
             ));
         }

@@ -386,7 +386,7 @@ fn check_bond(
 
 fn model(model: SceneModel) -> BondModel {
     match model {
-        SceneModel::Parallel { kappa } => BondModel::Parallel { kappa },
+        SceneModel::Parallel { stiffness_ratio: kappa } => BondModel::Parallel { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
@@ -397,17 +397,17 @@ fn model(model: SceneModel) -> BondModel {
 fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
     let strengths = [
-        failure.tension_pa,
-        failure.compression_pa,
-        failure.shear_pa,
-        failure.von_mises_pa,
+        failure.tensile_strength_pa,
+        failure.compressive_strength_pa,
+        failure.shear_strength_pa,
+        failure.von_mises_strength_pa,
     ];
     let [tension_pa, compression_pa, shear_pa, von_mises_pa] =
         strengths.map(|s| s.unwrap_or(f64::INFINITY));
     let damping = &kind.damping;
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
-        damped: damping.viscous > 0.0 || damping.force_n_s_m > 0.0 || damping.torque > 0.0,
+        damped: damping.damping_ratio > 0.0 || damping.damping_coefficient_n_s_m > 0.0 || damping.torque_factor > 0.0,
         criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
             tension_pa,
             compression_pa,
@@ -415,7 +415,7 @@ fn rule(kind: &BondKind) -> BondRule {
             von_mises_pa,
         }),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
-        rate_of: failure.rate_of,
+        rate_of: failure.strain_rate_measure,
     }
 }
 
@@ -430,11 +430,11 @@ fn damping(
         ends.map(|end| particles.motions[end].inverse_mass),
         ends.map(|end| particles.motions[end].inverse_inertia),
     );
-    let by_chen = if damping.each_mode {
-        chen_by_mode(answer, &reduced, damping.viscous)
+    let by_chen = if damping.per_mode {
+        chen_by_mode(answer, &reduced, damping.damping_ratio)
     } else {
-        chen(answer, &reduced, damping.viscous)
+        chen(answer, &reduced, damping.damping_ratio)
     };
-    let all = by_chen + platzer(answer, &reduced, damping.force_n_s_m, damping.torque);
+    let all = by_chen + platzer(answer, &reduced, damping.damping_coefficient_n_s_m, damping.torque_factor);
     [all.normal, all.shear, all.torsion, all.bending]
 }

@@ -1,7 +1,9 @@
 //! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of
 //! particles may.
 
-use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
+use dem_io::scene::{
+    Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene,
+};
 use dem_io::{Diagnostic, Result};
 
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
@@ -114,7 +116,7 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
             }
             ContactLaw::Linear {
                 normal_n_m,
-                tangential_ratio,
+                tangential_stiffness_ratio: tangential_ratio,
             } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &pair_input)),
         },
         rolling: match contact.rolling {
@@ -167,7 +169,7 @@ pub(super) fn place_contacts(
         materials,
         skin_m: scene.search.skin.unwrap_or(SKIN[0]) * state.largest_radius_m(),
         least_overlap: scene.relaxation.min_overlap,
-        relaxes: scene.run.start_overlap != StartOverlap::Keep,
+        relaxes: scene.run.initial_overlap != InitialOverlap::Keep,
         lost_j: vec![[0.0; 2]; p.len()],
         ..Contacts::default()
     };
@@ -176,10 +178,10 @@ pub(super) fn place_contacts(
     let skin_m = contacts.skin_m;
     list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
     refuse_same_place(scene, &contacts, bodies, state)?;
-    match scene.run.start_overlap {
-        StartOverlap::Refuse => refuse_overlaps(scene, &contacts, bodies, state)?,
-        StartOverlap::Relax => {}
-        StartOverlap::Keep => {
+    match scene.run.initial_overlap {
+        InitialOverlap::Refuse => refuse_overlaps(scene, &contacts, bodies, state)?,
+        InitialOverlap::Relax => {}
+        InitialOverlap::Keep => {
             refuse_swallowed(scene, &contacts, bodies, state)?;
             keep_overlaps(&mut contacts, state);
         }
@@ -302,7 +304,7 @@ fn refuse_swallowed(
             dem_io::units::show_length(overlap_m(poses, pair)),
             dem_io::units::show_length(smaller_m(pair))
         ),
-        "move the bodies apart: run.start_overlap = \"keep\" is for bodies that rest on each other",
+        "move the bodies apart: run.initial_overlap = \"keep\" is for bodies that rest on each other",
     ))
 }
 
@@ -337,6 +339,6 @@ fn refuse_overlaps(
             "{a} and {b} overlap by {} at the start although no bond joins them{more}",
             dem_io::units::show_length(*overlap)
         ),
-        "move the bodies apart; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it",
+        "move the bodies apart; or run.initial_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it",
     ))
 }

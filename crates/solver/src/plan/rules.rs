@@ -36,16 +36,16 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
             force_n: rule.force_n,
             impact_energy_j: rule.impact_energy_j,
             time_s: rule.time_s,
-            needs_all: rule.needs_all,
+            needs_all: rule.requires_all,
         })
     });
     let restores = templates.iter().map(|template| {
-        let back = scene.replacement.get(&template.body)?.back.as_ref()?;
+        let back = scene.replacement.get(&template.body)?.restore.as_ref()?;
         Some(Restore {
             leaves: number(&back.leaves)?,
             min_particles: back.min_particles,
             strain_energy_j_kg: back.strain_energy_j_kg,
-            inner_speed_m_s: back.inner_speed_m_s,
+            inner_speed_m_s: back.fluctuation_velocity_m_s,
         })
     });
     let starts = templates.iter().map(|template| {

@@ -1,7 +1,7 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use
 //! beside it.
 
-use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
+use dem_io::scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 
 use nalgebra::Vector3;
@@ -88,14 +88,14 @@ impl Outlook {
         };
         // A contact that is pressed now is on its way: an adaptive step must not rise before its
         // end. What is pressed from the start on is followed like an impact, too.
-        let keeps = run.start_overlap == StartOverlap::Keep;
+        let keeps = run.initial_overlap == InitialOverlap::Keep;
         let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
         } else {
             [0.0; 2]
         };
-        let step_s = (run.safety * foreseen_s)
-            .min(share_of_impact(state, run.safety) * safe_step(k.max(pressed_k), c.max(pressed_c)))
+        let step_s = (run.safety_factor * foreseen_s)
+            .min(share_of_impact(state, run.safety_factor) * safe_step(k.max(pressed_k), c.max(pressed_c)))
             .min(run.end_time_s / 100.0)
             .min(across);
         Self {
@@ -168,12 +168,12 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             "check the units of places, radii, density, modulus and damping",
         ));
     }
-    if run.time_step_s.is_none() && run.safety >= 1.0 && !allow_any_step {
+    if run.time_step_s.is_none() && run.safety_factor >= 1.0 && !allow_any_step {
         return Err(Diagnostic::input(
-            format!("{}: run.safety", scene.source),
+            format!("{}: run.safety_factor", scene.source),
             format!(
                 "{} is no share of the largest stable step that is stable",
-                run.safety
+                run.safety_factor
             ),
             "write 0.9, or --force-step to see what happens",
         ));
@@ -380,7 +380,7 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
         }
         WallMotion::Displacement {
             displacement_m,
-            turn_rad,
+            angular_displacement_rad: turn_rad,
             factor,
         } => {
             let steepest_1_s = match factor {
@@ -394,7 +394,7 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             steepest_1_s * speed(displacement_m, turn_rad)
         }
         WallMotion::Servo {
-            largest_velocity_m_s,
+            max_velocity_m_s: largest_velocity_m_s,
             ..
         } => *largest_velocity_m_s,
     }

@@ -1,6 +1,6 @@
 //! Bonds pulled at a constant rate break at their strength times the dynamic increase factor.
 
-use dem_io::scene::RateOf;
+use dem_io::scene::StrainRateMeasure;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{advance, interact};
 
@@ -24,7 +24,7 @@ fn pulled(
         criteria,
         from_1_s,
         incremental,
-        RateOf::Elongation,
+        StrainRateMeasure::Elongation,
     )
 }
 
@@ -34,7 +34,7 @@ fn pulled_by(
     criteria: Criteria,
     from_1_s: Option<f64>,
     incremental: bool,
-    rate_of: RateOf,
+    rate_of: StrainRateMeasure,
 ) -> Option<(f64, Cause)> {
     let mut state = rod(1, criteria, incremental);
     state.bonds.rules[0].strengthening_from_1_s = from_1_s;
@@ -117,7 +117,10 @@ fn below_the_rate_that_is_set_nothing_is_strengthened() {
 fn pressed_bonds_are_not_strengthened() {
     on_one_thread(|| {
         for rate in [-1e-3, -1.0, -10.0] {
-            for rate_of in [RateOf::Elongation, RateOf::RelativeVelocity] {
+            for rate_of in [
+                StrainRateMeasure::Elongation,
+                StrainRateMeasure::RelativeVelocity,
+            ] {
                 for incremental in [false, true] {
                     let found = pulled_by(rate, PRESSED, Some(0.0), incremental, rate_of);
                     let what = format!("{rate}/s, {rate_of:?}");
@@ -157,7 +160,7 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
 #[test]
 fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {
-        let breaks = |rate_of: RateOf| {
+        let breaks = |rate_of: StrainRateMeasure| {
             let mut state = rod(1, NORMAL, false);
             state.bonds.rules[0].strengthening_from_1_s = Some(1.0);
             state.bonds.rules[0].rate_of = rate_of;
@@ -183,7 +186,7 @@ fn turning_strengthens_by_the_printed_rate_alone() {
             }
             false
         };
-        assert!(breaks(RateOf::Elongation));
-        assert!(!breaks(RateOf::RelativeVelocity));
+        assert!(breaks(StrainRateMeasure::Elongation));
+        assert!(!breaks(StrainRateMeasure::RelativeVelocity));
     });
 }

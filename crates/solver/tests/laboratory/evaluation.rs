@@ -11,7 +11,7 @@ use dem_run::plan::test_theory::{Beam, KAPPA};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,
-    load_distance_m: 0.08,
+    loading_span_m: 0.08,
     width_m: 0.03,
     height_m: 0.035,
 };
@@ -26,7 +26,7 @@ pub(crate) fn test(kind: TestKind) -> Test {
     Test {
         kind,
         body: "bar".to_owned(),
-        moves: vec!["pin".to_owned()],
+        crosshead: vec!["pin".to_owned()],
         direction: [0.0, 0.0, -1.0],
         stroke_m: 0.005,
         rate_m_s: Some(0.01),
@@ -35,8 +35,8 @@ pub(crate) fn test(kind: TestKind) -> Test {
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
-        span_m: None,
-        load_distance_m: None,
+        support_span_m: None,
+        loading_span_m: None,
         width_m: None,
         height_m: None,
         length_m: None,
@@ -131,7 +131,7 @@ density = 2000
 [bonds.clay]
 young_modulus = "15 MPa"
 poisson_ratio = 0.3
-failure = { von_mises = "0.185 MPa" }
+failure = { von_mises_strength = "0.185 MPa" }
 [bodies.bar]
 particles = [[0, 0, 0, 1]]
 material = "clay"

@@ -12,7 +12,7 @@ use super::evaluation::{PLACES, evaluated, record, setup, test};
 
 const BEAM: Beam = Beam {
     span_m: 0.17,
-    load_distance_m: 0.08,
+    loading_span_m: 0.08,
     width_m: 0.03,
     height_m: 0.035,
 };

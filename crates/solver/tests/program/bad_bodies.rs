@@ -161,9 +161,9 @@ fn what_a_scene_lacks_for_a_body() {
     // A density in the body's file will do.
     bench.write("sample.vtp", vtp_bytes(&row(5)));
     bench.good(&scene, &["--quiet"]);
-    let said = bench.bad(&scene, &["--set", "sets.one.particles=[5]"], 2);
+    let said = bench.bad(&scene, &["--set", "groups.one.particles=[5]"], 2);
     assert!(
-        said.contains("[sets.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
+        said.contains("[groups.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
         "{said}"
     );
 }

@@ -73,7 +73,7 @@ fn options() {
             &["--set run.end_time=soon", "soon"],
         ),
         (&["--set", "run.end_time=1 parsec"], &["parsec"]),
-        (&["--set", "loads.tip.of=top"], &["top"]),
+        (&["--set", "loads.tip.group=top"], &["top"]),
         (&["--body", "bar="], &["--body bar=", "no file is named"]),
         (&["--body", ""], &["no file is named"]),
         (&["--body", "rod=row.vtp"], &["no body 'rod'", "bar"]),

@@ -87,7 +87,7 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
         &scene_of_data("cantilever.toml"),
         &[
             "--set",
-            "run.rest=1e-300",
+            "run.rest_energy_ratio=1e-300",
             "--set",
             "run.end_time=1000 s",
             "--quiet",
@@ -180,7 +180,7 @@ fn before_a_run_nothing_is_waited_for() {
 #[test]
 fn a_checkpoint_stays_when_the_next_run_is_interrupted_too() {
     let bench = Bench::new();
-    let all = ["--set", "run.safety=0.02", "--out", "out"];
+    let all = ["--set", "run.safety_factor=0.02", "--out", "out"];
     let scene = good("breaking.toml");
     let first = interrupt(bench.command(&scene, &all), "-INT", &bench.path("out"), 5);
     assert!(first.is_some());

@@ -23,22 +23,22 @@ density = 2000
 [bonds.clay]
 young_modulus = "15 MPa"
 poisson_ratio = 0.3
-failure = {{ tension = "0.2 MPa" }}
+failure = {{ tensile_strength = "0.2 MPa" }}
 [bodies.bar]
 particles = [{}]
 bond_list = [{}]
 material = "clay"
 bonds = "clay"
-[sets.foot]
+[groups.foot]
 particles = [0]
-[sets.head]
+[groups.head]
 particles = [10]
 [supports.foot]
-of = "foot"
+group = "foot"
 fixed = true
 [test]
-kind = "tension"
-moves = ["head"]
+type = "tension"
+crosshead = ["head"]
 direction = [0, 0, 1]
 stroke = "1 mm"
 length = "40 mm"
@@ -238,7 +238,7 @@ fn what_a_test_cannot_be_made_of() {
 
     let bent = text
         .replace("kind = \"tension\"", "kind = \"three-point-bending\"")
-        .replace("moves = [\"head\"]", "moves = [\"plate\"]")
+        .replace("crosshead = [\"head\"]", "crosshead = [\"plate\"]")
         .replace("length = \"40 mm\"", "rate_check = false")
         .replace("area = ", "periods = 9 # ")
         .replace(
@@ -282,7 +282,7 @@ fn what_a_test_cannot_be_made_of() {
 
     // A bar is no disc: 180 mm by 35 mm across the load and along it.
     let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
-    let disc = "test.kind='brazilian-disc'";
+    let disc = "test.type='brazilian-disc'";
     let options = ["--body", &body, "--set", disc, "--out", "disc-out"];
     let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);
     let wanted = "the body 'sample' is no disc: 35 mm along the load, 180 mm across it";

@@ -136,7 +136,7 @@ fn a_plate_carries_the_weight() {
 [run]
 end_time = "0.5 s"
 gravity = [0, 0, -10]
-particle_damping = 0.7
+local_damping = 0.7
 [materials.any]
 young_modulus = "10 MPa"
 [contacts.any-any]

@@ -107,7 +107,7 @@ fn events_of_several_bodies_have_each_bodys_numbers() {
     let bench = Bench::new();
     let options = [
         "--set",
-        "bonds.brittle.failure.tension=3 kPa",
+        "bonds.brittle.failure.tensile_strength=3 kPa",
         "--out",
         "out",
     ];

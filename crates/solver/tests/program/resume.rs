@@ -20,12 +20,12 @@ const SCENES: [(&str, &str, &str); 7] = [
 /// Makes a scene take longer, so that a signal meets it half way.
 fn slow(name: &str) -> &'static str {
     match name {
-        "breaking.toml" => "run.safety=0.02",
-        "incremental.toml" => "run.safety=0.03",
-        "bodies.toml" => "run.safety=0.02",
-        "rest.toml" => "run.safety=0.01",
-        "meeting.toml" => "run.safety=0.05",
-        "following.toml" => "run.safety=0.1",
+        "breaking.toml" => "run.safety_factor=0.02",
+        "incremental.toml" => "run.safety_factor=0.03",
+        "bodies.toml" => "run.safety_factor=0.02",
+        "rest.toml" => "run.safety_factor=0.01",
+        "meeting.toml" => "run.safety_factor=0.05",
+        "following.toml" => "run.safety_factor=0.1",
         _ => "run.seed=0",
     }
 }
@@ -125,12 +125,18 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
     let bench = begun("rest.toml", &[]);
     let said = bench.bad(&good("rest.toml"), &["--out", "out", "--resume"], 2);
     assert!(
-        said.contains("come to rest at") && said.contains("set a smaller run.rest"),
+        said.contains("come to rest at") && said.contains("set a smaller run.rest_energy_ratio"),
         "{said}"
     );
     let said = bench.good(
         &good("rest.toml"),
-        &["--out", "out", "--resume", "--set", "run.rest=1e-12"],
+        &[
+            "--out",
+            "out",
+            "--resume",
+            "--set",
+            "run.rest_energy_ratio=1e-12",
+        ],
     );
     assert!(said.contains("ended by rest"), "{said}");
 }
@@ -226,7 +232,7 @@ fn a_scene_that_has_changed_is_not_gone_on_with() {
         "bodies.a.position=[1e-9, 0, 0]",
         "run.seed=1",
         "run.gravity=[0, 0, -1.5]",
-        "run.particle_damping=0.25",
+        "run.local_damping=0.25",
         "measures.energy.quantity=elastic_energy",
     ] {
         let (said, code) = refused(&bench.run(

@@ -221,7 +221,7 @@ poisson_ratio = 0.3
 model = "timoshenko"
 young_modulus = "1 MPa"
 poisson_ratio = 0.3
-damping = { viscous = 10 }
+damping = { damping_ratio = 10 }
 [bodies.a]
 material = "m"
 bonds = "soft"

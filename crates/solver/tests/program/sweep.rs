@@ -19,7 +19,7 @@ const SCENE: &str = r#"version = 1
 
 [run]
 end_time = "4 ms"
-safety = 0.9
+safety_factor = 0.9
 
 [materials.steel]
 density = "7850 kg/m3"
@@ -34,18 +34,18 @@ bonds = "steel"
 particles = [[0, 0, 0, 0.2], [0.4, 0, 0, 0.2]]
 bond_list = [[0, 1]]
 
-[sets.held]
+[groups.held]
 particles = [0]
 
-[sets.tip]
+[groups.tip]
 particles = [1]
 
 [supports.held]
-of = "held"
+group = "held"
 fixed = true
 
 [loads.tip]
-of = "tip"
+group = "tip"
 force = ["1 kN", 0, 0]
 
 [measures.tip]
@@ -62,11 +62,11 @@ scene = "spring.toml"
 repeats = 2
 [vary]
 "bonds.steel.formulation" = ["total", "incremental"]
-"run.safety" = [0.2, 0.1, 0.05, 0.025]
+"run.safety_factor" = [0.2, 0.1, 0.05, 0.025]
 [measures.tip]
-reference = { richardson = "run.safety" }
+reference = { richardson = "run.safety_factor" }
 [measures.energy]
-ledger = "energy"
+balance = "energy"
 "#;
 
 fn bench(study: &str) -> Bench {
@@ -186,7 +186,7 @@ fn tables_and_pages_of_a_sweep() {
         "{said}"
     );
     assert!(
-        said.contains("front        tip: against Richardson extrapolation along run.safety"),
+        said.contains("front        tip: against Richardson extrapolation along run.safety_factor"),
         "{said}"
     );
     let table = json(&bench);
@@ -194,7 +194,7 @@ fn tables_and_pages_of_a_sweep() {
     assert_eq!(rows.len(), 8);
     for (row, run) in rows.iter().zip(table["runs"].as_array().unwrap()) {
         let number = |column: &str| row[column].parse::<f64>().unwrap();
-        assert_eq!(row["run.safety"], run["settings"][1]);
+        assert_eq!(row["run.safety_factor"], run["settings"][1]);
         assert_same_number(number("time_s"), &run["time_s"]);
         // Until half a second has been measured, as the first two let expect.
         let times = run["times_s"].as_array().unwrap();
@@ -416,7 +416,7 @@ fn the_fastest_setting_is_said_and_written() {
 #[test]
 fn a_scene_with_another_body_is_written() {
     let bench = bench(
-        "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"body.bar\" = [\"bar.csv\"]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n",
+        "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"body.bar\" = [\"bar.csv\"]\n\"run.safety_factor\" = [0.1]\n[measures.energy]\nbalance = \"energy\"\n",
     );
     bench.write(
         "bar.particles.csv",
@@ -435,12 +435,12 @@ fn a_scene_with_another_body_is_written() {
 fn what_is_refused() {
     let paths = [
         (
-            "\"run.safety\"",
+            "\"run.safety_factor\"",
             "\"run.safty\"",
             "study.toml:6: --set run.safty=0.2: unknown key run.safty; did you mean 'safety'?",
         ),
         (
-            "reference = { richardson = \"run.safety\" }",
+            "reference = { richardson = \"run.safety_factor\" }",
             "",
             "study.toml:7: measures.tip has no reference: that of the scene says none; add reference",
         ),
@@ -457,10 +457,10 @@ fn what_is_refused() {
         (
             "repeats = 2",
             "combine = \"paired\"",
-            "study.toml:6: run.safety has 4 values, but bonds.steel.formulation has 2; paired axes have equally many",
+            "study.toml:6: run.safety_factor has 4 values, but bonds.steel.formulation has 2; paired axes have equally many",
         ),
         (
-            "{ richardson = \"run.safety\" }",
+            "{ richardson = \"run.safety_factor\" }",
             "{ value = \"2 kg\" }",
             "measures.tip.reference: '2 kg' is not a length",
         ),

@@ -165,7 +165,7 @@ material = "m"
 [measures.z]
 of = "a"
 quantity = "position_z"
-at = "mean"
+statistic = "mean"
 [measures.e]
 of = "a"
 quantity = "kinetic_energy"
@@ -176,7 +176,7 @@ fn where_there_is_next_to_no_energy_nobody_is_stopped() {
     let bench = super::Bench::new();
     for at in ["0.03", "0.0299999999", "0.02999999999999"] {
         let scene = bench.write("touch.toml", TOUCHING.replace("0.03,", &format!("{at},")));
-        let overlaps = ["--set", "run.start_overlap=relax"];
+        let overlaps = ["--set", "run.initial_overlap=relax"];
         assert!(bench.good(&scene, &overlaps).contains("ended by end time"));
     }
     let scene = bench.write("bounce.toml", BOUNCING);

@@ -11,12 +11,12 @@ repeats = 1
 [set]
 "run.adaptive" = false
 [vary]
-"run.safety" = [0.9, 0.45, 0.3]
+"run.safety_factor" = [0.9, 0.45, 0.3]
 [measures.left]
-masses = "left"
+fragment_masses = "discharged"
 reference = "finest"
 [measures.rest]
-masses = "at-end"
+fragment_masses = "remaining"
 reference = "finest"
 "#;
 

@@ -11,7 +11,7 @@ use super::{SCENE, STEPS, bad, bench, good, partly, sweep};
 use crate::program::Bench;
 
 /// A study of one run and no more.
-const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n";
+const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety_factor\" = [0.1]\n[measures.energy]\nbalance = \"energy\"\n";
 
 fn names_in(folder: &Path) -> Vec<String> {
     super::super::names_in(folder)
@@ -27,7 +27,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         ),
         (
             ONE.replace(
-                "\"run.safety\" = [0.1]",
+                "\"run.safety_factor\" = [0.1]",
                 "\"body.bar\" = [\"a\\ntouch pwned\\n.csv\"]",
             ),
             "out",
@@ -86,8 +86,8 @@ fn labels_are_shown_and_not_obeyed() {
         &format!("{{ values = [0.2, 0.1], {names} }}"),
     );
     let bench = bench(&study.replace(
-        "{ richardson = \"run.safety\" }",
-        "{ finest = \"run.safety\" }",
+        "{ richardson = \"run.safety_factor\" }",
+        "{ finest = \"run.safety_factor\" }",
     ));
     let mut said = good(&bench, &[]);
     said += &good(&bench, &["--collect", "--json"]);
@@ -305,12 +305,12 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
     );
     for (vary, options, parts) in [
         (
-            format!("\"run.rest\" = {}\n", range("1000000000000")),
+            format!("\"run.rest_energy_ratio\" = {}\n", range("1000000000000")),
             "",
             "must be from 2 to 100000",
         ),
         (
-            format!("\"run.rest\" = {}\n", range("99999")),
+            format!("\"run.rest_energy_ratio\" = {}\n", range("99999")),
             "",
             "99999 runs, 1 times each, are more than 10000; vary less, or say --yes",
         ),
@@ -335,7 +335,7 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
             "262144 runs with 99 axes each are more than 10000000 values; vary less",
         ),
     ] {
-        let bench = bench(&ONE.replace("\"run.safety\" = [0.1]\n", &vary));
+        let bench = bench(&ONE.replace("\"run.safety_factor\" = [0.1]\n", &vary));
         let mut command = sweep(&bench, &[]);
         if !options.is_empty() {
             command.arg(options);
@@ -382,7 +382,7 @@ fn an_endless_scene_or_study_is_refused() {
     assert!(
         table.is_empty()
             && said.contains(
-                "1 of 2 runs did not come to their end; the first: run 2, run.safety 1.5: "
+                "1 of 2 runs did not come to their end; the first: run 2, run.safety_factor 1.5: "
             ),
         "{said}"
     );
