@@ -259,7 +259,7 @@ fn packed(diameters: &str) -> Body {
             settle: None,
             seed_point_m: None,
         },
-        bonding_radius: 1.1,
+        bond_range: 1.1,
         bonds_per_particle: None,
         bond_radius_factor: 1.0,
         particle_density_kg_m3: None,

@@ -95,7 +95,7 @@ reference = { value = "-8.5 mm" }
 [measures.energy]
 balance = "energy"
 [measures.stiff]
-test_result = "stiffness of the body"
+test_result = "specimen stiffness"
 [measures.fine]
 reference = { finest = "run.time_step" }
 [page]
@@ -287,7 +287,9 @@ fn what_is_no_study() {
         .collect();
     let said = refused(&format!("{HEAD}[vary]\n{axes}[measures.tip]\n"));
     assert!(
-        said.starts_with("study.toml:104: with run.safety_factor100 there are more than 100 axes; join"),
+        said.starts_with(
+            "study.toml:104: with run.safety_factor100 there are more than 100 axes; join"
+        ),
         "{said}"
     );
     assert!(refused("version = 2\n").contains("at most 1"));
@@ -383,7 +385,7 @@ fn a_scene_is_written_with_its_values() {
             "particles",
             "x_m,y_m,z_m,radius_m\n0,0,0,0.1\n0.2,0,0,0.1\n",
         ),
-        ("bonds", "a,b\n0,1\n"),
+        ("bonds", "particle_a,particle_b\n0,1\n"),
     ] {
         std::fs::write(folder.path().join(format!("b.{part}.csv")), text).unwrap();
     }

@@ -96,7 +96,7 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         }
         MeasureOf::Measure(name) => (summary["measures"].get(name), name, "reference"),
         MeasureOf::Figure(name) => {
-            let figures = summary["test"]["figures"].as_array();
+            let figures = summary["test"]["results"].as_array();
             let mut figures = figures.into_iter().flatten();
             let found = figures.find(|entry| entry["name"].as_str() == Some(name));
             (found, name, "theory")

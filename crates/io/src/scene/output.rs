@@ -32,12 +32,12 @@ pub struct Output {
 
 pub(super) static OUTPUT: Schema = Schema {
     title: "[output]",
-    doc: "What is written, and how often, in simulated time. Without it and without `--out` no file is written.",
+    doc: "What is written, and how often, in simulated time. Without it and without `--output` no file is written.",
     keys: &[
         Key::text(
             "folder",
             "a folder",
-            "Results go here, from the folder of the scene; without it and `--out` into the scene's name with -out \
+            "Results go here, from the folder of the scene; without it and `--output` into the scene's name with -out \
              where you stand.",
         )
         .otherwise("the scene's name with -out"),

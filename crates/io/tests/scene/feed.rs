@@ -1,7 +1,7 @@
 //! Clumps, regions, replacement, inlets and outlets.
 
 use dem_io::scene::{
-    Restore, ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, StartAs,
+    ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, Restore, StartAs,
 };
 use dem_io::{read_scene, scene_from_text};
 

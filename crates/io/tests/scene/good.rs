@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
-    Statistic, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
+    BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
     Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling, Scene,
-    Search, StrainRateMeasure, TestKind, Wall, WallMotion, WallShape,
+    Search, Statistic, StrainRateMeasure, TestKind, Wall, WallMotion, WallShape,
 };
 use dem_io::units::DIMENSIONS;
 use dem_io::{read_scene, scene_from_text};
@@ -288,7 +288,12 @@ fn how_contacts_are_found() {
 fn bonds() {
     let scene = good("every-key.toml");
     let parallel = &scene.bonds["parallel"];
-    assert_eq!(parallel.model, BondModel::Parallel { stiffness_ratio: Some(2.5) });
+    assert_eq!(
+        parallel.model,
+        BondModel::Parallel {
+            stiffness_ratio: Some(2.5)
+        }
+    );
     assert_eq!(parallel.formulation, Formulation::Incremental);
     assert_near(parallel.young_modulus_pa, 12.05e6);
     assert_eq!(parallel.poisson_ratio, 0.3);
@@ -458,7 +463,10 @@ fn measures_and_output() {
     assert_near(bending.reference.unwrap(), 0.0015);
     assert_eq!(bending.tolerance, Some(0.02));
     let energy = &scene.measures["energy"];
-    assert_eq!((energy.of.as_str(), energy.statistic), ("all", Statistic::End));
+    assert_eq!(
+        (energy.of.as_str(), energy.statistic),
+        ("all", Statistic::End)
+    );
     assert_eq!((energy.reference, energy.tolerance), (None, None));
     let push = &scene.measures["push"];
     assert_eq!(
@@ -612,7 +620,10 @@ fn what_a_laboratory_test_is_told() {
         (Some(12e6), 0.25)
     );
     assert_eq!(test.strength_pa, Some(2e5));
-    assert_eq!((test.support_span_m, test.loading_span_m), (Some(2.0), Some(1.0)));
+    assert_eq!(
+        (test.support_span_m, test.loading_span_m),
+        (Some(2.0), Some(1.0))
+    );
     assert_eq!((test.width_m, test.height_m), (Some(2.0), Some(2.0)));
     let test = good("compression-test.toml").test.unwrap();
     assert_eq!((test.length_m, test.area_m2), (Some(2.0), Some(3.1)));

@@ -17,7 +17,7 @@ pub struct Report {
     pub bonds: usize,
     /// They are all pairs up to this times the sum of their radii, but for those with surface
     /// between them; 0 if they were chosen otherwise.
-    pub bonding_radius: f64,
+    pub bond_range: f64,
     /// Mean diameter by number, m.
     pub mean_diameter_m: f64,
     /// Overlap of the packing.

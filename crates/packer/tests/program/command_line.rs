@@ -10,16 +10,16 @@ const OPTIONS: [&str; 20] = [
     "--scale",
     "--fill-holes",
     "--diameter",
-    "--by",
+    "--basis",
     "--overlap",
     "--particle-density",
     "--solid-density",
     "--seed",
     "--seed-point",
-    "--settle",
-    "--bonding-radius",
+    "--densify",
+    "--bond-range",
     "--bonds-per-particle",
-    "--bond-radius-factor",
+    "--bond-radius",
     "--threads",
     "--json",
     "--quiet",
@@ -148,7 +148,7 @@ fn the_summary_goes_where_the_body_does_not() {
         let verdict = text.lines().last().unwrap();
         assert_eq!(verdict.contains("sound"), !warned, "{text}");
     }
-    assert!(text.contains(" up to bonding radius 1.1, "), "{text}");
+    assert!(text.contains(" up to bond range 1.1, "), "{text}");
     assert!(
         !other.contains('\u{1b}') && !other.contains('\r'),
         "a progress bar without a terminal"
@@ -188,8 +188,8 @@ fn the_report_as_json_has_its_keys() {
         "/quality/warnings",
         "/history/seed_point_m/2",
         "/history/fronts",
-        "/history/settling_steps",
-        "/bonding_radius",
+        "/history/densify_steps",
+        "/bond_range",
         "/density_search",
         "/repairs/facets_read",
         "/seconds/packing",

@@ -100,7 +100,7 @@ pub fn lowest_in_test_hz(
         Diagnostic::input(
             format!("{}: [test]", scene.source),
             format!("the body '{}' has no bonds, so nothing to test", test.body),
-            "make it with bonds: dem-pack --bonding-radius 1.1",
+            "make it with bonds: dem-pack --bond-range 1.1",
         )
     })?;
     Ok(Some(match test.kind {

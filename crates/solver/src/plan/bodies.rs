@@ -386,7 +386,9 @@ fn check_bond(
 
 fn model(model: SceneModel) -> BondModel {
     match model {
-        SceneModel::Parallel { stiffness_ratio: kappa } => BondModel::Parallel { kappa },
+        SceneModel::Parallel {
+            stiffness_ratio: kappa,
+        } => BondModel::Parallel { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
@@ -407,7 +409,9 @@ fn rule(kind: &BondKind) -> BondRule {
     let damping = &kind.damping;
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
-        damped: damping.damping_ratio > 0.0 || damping.damping_coefficient_n_s_m > 0.0 || damping.torque_factor > 0.0,
+        damped: damping.damping_ratio > 0.0
+            || damping.damping_coefficient_n_s_m > 0.0
+            || damping.torque_factor > 0.0,
         criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
             tension_pa,
             compression_pa,
@@ -435,6 +439,12 @@ fn damping(
     } else {
         chen(answer, &reduced, damping.damping_ratio)
     };
-    let all = by_chen + platzer(answer, &reduced, damping.damping_coefficient_n_s_m, damping.torque_factor);
+    let all = by_chen
+        + platzer(
+            answer,
+            &reduced,
+            damping.damping_coefficient_n_s_m,
+            damping.torque_factor,
+        );
     [all.normal, all.shear, all.torsion, all.bending]
 }

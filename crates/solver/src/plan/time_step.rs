@@ -41,7 +41,7 @@ pub struct StepChoice {
     /// Rayleigh's estimate (Platzer 2022, eq. 14), s; infinite where no modulus is known.
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) (Platzer 2022, eq. 15), s; infinite without bonds.
-    pub thesis_s: f64,
+    pub platzer_eq_15_s: f64,
     /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
     /// by, unless it is adaptive.
     pub replaced: Outlook,
@@ -95,7 +95,10 @@ impl Outlook {
             [0.0; 2]
         };
         let step_s = (run.safety_factor * foreseen_s)
-            .min(share_of_impact(state, run.safety_factor) * safe_step(k.max(pressed_k), c.max(pressed_c)))
+            .min(
+                share_of_impact(state, run.safety_factor)
+                    * safe_step(k.max(pressed_k), c.max(pressed_c)),
+            )
             .min(run.end_time_s / 100.0)
             .min(across);
         Self {
@@ -134,7 +137,7 @@ impl StepChoice {
             impact_speed_m_s: 0.0,
             contact_rate_1_s2: 0.0,
             rayleigh_s: f64::INFINITY,
-            thesis_s: f64::INFINITY,
+            platzer_eq_15_s: f64::INFINITY,
             replaced: nothing,
         }
     }
@@ -209,7 +212,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         impact_speed_m_s: outlook.impact_speed_m_s,
         contact_rate_1_s2: outlook.contact_rate_1_s2,
         rayleigh_s: f64::INFINITY,
-        thesis_s: thesis_s(state),
+        platzer_eq_15_s: platzer_eq_15_s(state),
         replaced,
     })
 }
@@ -319,7 +322,7 @@ pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
 
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all
 /// bonds (Platzer 2022, eq. 15).
-fn thesis_s(state: &State) -> f64 {
+fn platzer_eq_15_s(state: &State) -> f64 {
     let motions = &state.particles.motions;
     let bonds = &state.bonds;
     (0..bonds.len())

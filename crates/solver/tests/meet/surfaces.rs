@@ -241,7 +241,9 @@ fn a_belt_moves_along_its_plane() {
             "write surface_velocity = [3, 0, 0], which is its part along the plane",
         ),
         (
-            format!("{level}\nrotation = {{ axis = [0, 1, 0], angle = \"30 deg\" }}\nsurface_velocity = [1, 0, 0]"),
+            format!(
+                "{level}\nrotation = {{ axis = [0, 1, 0], angle = \"30 deg\" }}\nsurface_velocity = [1, 0, 0]"
+            ),
             "write surface_velocity = [0.75, 0, -0.433012702]",
         ),
     ] {

@@ -29,7 +29,7 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
         summary(
             &bench,
             &good("following.toml"),
-            &["--out", out, "--set", &set],
+            &["--output", out, "--set", &set],
         )
     };
     let (following, falling) = (run("following", "true"), run("falling", "false"));
@@ -88,7 +88,7 @@ fn without_anything_that_vibrates_steps_are_large_and_a_flight_is_the_same() {
     let bench = Bench::new();
     let run = |name: &str, adaptive: &str| {
         let scene = bench.write(name, DUMBBELL.replace("ADAPTIVE", adaptive));
-        summary(&bench, &scene, &["--out", &format!("{name}-out")])
+        summary(&bench, &scene, &["--output", &format!("{name}-out")])
     };
     let (following, falling) = (
         run("a.toml", "adaptive = true"),

@@ -113,7 +113,7 @@ fn options() {
         &["--body a=none.vtp: the body 'a' has its file from --body a=row.vtp already"],
     );
     for option in [
-        &["--out", "x"][..],
+        &["--output", "x"][..],
         &["--set", "a=1"],
         &["--force"],
         &["--resume"],

@@ -27,7 +27,7 @@ fn help_man_page_and_completions_name_every_option() {
             "--body",
             "--set",
             "--force-step",
-            "--out",
+            "--output",
             "--resume",
             "--quiet",
             "--json",

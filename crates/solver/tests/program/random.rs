@@ -120,7 +120,7 @@ prop_compose! {
 fn run(scene: &str, forced: bool) -> Result<i32, TestCaseError> {
     let bench = Bench::new();
     let path = bench.write("scene.toml", scene);
-    let mut command = bench.command(&path, &["--threads", "1", "--out", "out"]);
+    let mut command = bench.command(&path, &["--threads", "1", "--output", "out"]);
     if forced {
         command.arg("--force-step");
     }

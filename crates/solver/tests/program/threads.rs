@@ -12,7 +12,7 @@ fn of_every_good_scene() {
     for scene in corpus("good") {
         let bench = Bench::new();
         for threads in ["1", "2", "3"] {
-            bench.good(&scene, &["--threads", threads, "--out", threads]);
+            bench.good(&scene, &["--threads", threads, "--output", threads]);
         }
         assert_same(&bench.path("1"), &bench.path("2"));
         assert_same(&bench.path("1"), &bench.path("3"));
@@ -79,7 +79,7 @@ fn of_a_body_that_is_divided_among_them() {
         let path = bench.write(&format!("{formulation}.toml"), scene);
         for threads in ["1", "2", "3"] {
             let out = format!("{formulation}-{threads}");
-            let said = bench.good(&path, &["--threads", threads, "--out", &out]);
+            let said = bench.good(&path, &["--threads", threads, "--output", &out]);
             assert!(!said.contains("broken       0 of"), "{said}");
         }
         for other in ["2", "3"] {

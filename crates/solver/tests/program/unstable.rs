@@ -7,7 +7,7 @@ use super::{Bench, good};
 #[test]
 fn a_step_above_the_limit_is_refused_unless_forced() {
     let bench = Bench::new();
-    let step = ["--set", "run.time_step=20 us", "--out", "out"];
+    let step = ["--set", "run.time_step=20 us", "--output", "out"];
     let said = bench.bad(
         &good("bodies.toml"),
         &[&step[..], &["--set", "run.end_time=20 ms"]].concat(),
@@ -109,20 +109,28 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     let scene = bench.write("uneven.toml", uneven());
     let limit = limit_of(&bench, &scene);
     let step = format!("run.time_step={}", 1.05 * limit);
-    let said = bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
+    let said = bench.bad(
+        &scene,
+        &["--set", &step, "--force-step", "--output", "out"],
+        3,
+    );
     assert!(
         said.ends_with("--resume takes it up from 'out/checkpoint.dem' with that step"),
         "{said}"
     );
     assert!(bench.path("out/checkpoint.dem").exists());
     let step = format!("run.time_step={}", 0.2 * limit);
-    let said = bench.good(&scene, &["--set", &step, "--out", "out", "--resume"]);
+    let said = bench.good(&scene, &["--set", &step, "--output", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
     // Or with one that is found.
     fs::remove_dir_all(bench.path("out")).unwrap();
     let step = format!("run.time_step={}", 1.05 * limit);
-    bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
-    let said = bench.good(&scene, &["--out", "out", "--resume"]);
+    bench.bad(
+        &scene,
+        &["--set", &step, "--force-step", "--output", "out"],
+        3,
+    );
+    let said = bench.good(&scene, &["--output", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
 }
 

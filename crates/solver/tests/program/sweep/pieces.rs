@@ -29,7 +29,11 @@ fn distributions_of_masses_are_compared() {
         let text =
             fs::read_to_string(bench.path(&format!("study-sweep/runs/000{run}-1/events.csv")));
         let mut found = Vec::new();
-        for line in text.unwrap().lines().filter(|line| line.contains(",left,")) {
+        for line in text
+            .unwrap()
+            .lines()
+            .filter(|line| line.contains(",discharged,"))
+        {
             found.push(line.rsplit(' ').nth(1).unwrap().parse().unwrap());
         }
         found

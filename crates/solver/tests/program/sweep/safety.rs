@@ -38,7 +38,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         let bench = bench(&study);
         fs::create_dir(bench.path(evil)).unwrap();
         bench.write(&format!("{evil}/spring.toml"), SCENE);
-        let said = bad(&bench, &["--list", "--out", out], 2);
+        let said = bad(&bench, &["--list", "--output", out], 2);
         assert!(
             said.contains("\\u{a}touch pwned\\u{a}")
                 && said.contains(
@@ -59,7 +59,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         bench.write(&study, ONE.replace("spring.toml", "-spring.toml"));
         let mut command = bench.command(
             Path::new("sweep"),
-            &["--list", "--out", &format!("{folder}/out")],
+            &["--list", "--output", &format!("{folder}/out")],
         );
         let listed = command.args(["--force"]).arg(&study).output().unwrap();
         let list = String::from_utf8(listed.stdout).unwrap();
@@ -114,7 +114,7 @@ fn what_is_read_is_not_written_over() {
         "bar.particles.csv",
         "x_m,y_m,z_m,radius_m\n0,0,0,0.2\n0.5,0,0,0.2\n",
     );
-    bench.write("bar.bonds.csv", "a,b\n0,1\n");
+    bench.write("bar.bonds.csv", "particle_a,particle_b\n0,1\n");
     std::os::unix::fs::symlink("spring.toml", bench.path("link.toml")).unwrap();
     fs::hard_link(bench.path("study.toml"), bench.path("hard.toml")).unwrap();
     let before: Vec<_> = [
@@ -133,7 +133,7 @@ fn what_is_read_is_not_written_over() {
         "bar.particles.csv",
         "bar.bonds.csv",
     ] {
-        let said = bad(&bench, &["--want", "error=1", "--write", target], 2);
+        let said = bad(&bench, &["--max-error", "all=1", "--write", target], 2);
         assert!(
             said.starts_with(&format!("error: --write {target}: '"))
                 && said.ends_with("' is read here and would be overwritten; name another file"),
@@ -218,7 +218,7 @@ fn force_removes_what_a_sweep_makes_and_nothing_else() {
     fs::create_dir_all(bench.path("other/runs/0001-1")).unwrap();
     for identity in ["{}", "[1]", "my study", "{ \"scene\": \"a.toml\" }"] {
         bench.write("other/study.json", identity);
-        let said = bad(&bench, &["--force", "--out", "other"], 2);
+        let said = bad(&bench, &["--force", "--output", "other"], 2);
         assert!(
             said.contains("other: this folder holds something else than a sweep"),
             "{said}"
