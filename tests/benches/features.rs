@@ -256,7 +256,7 @@ fn packed(diameters: &str) -> Body {
             sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),
             overlap: 0.25,
             seed: 1,
-            settle: None,
+            densify: None,
             seed_point_m: None,
         },
         bond_range: 1.1,
