@@ -82,21 +82,21 @@ const CASES: [Case; 12] = [
         ..CASE
     },
     Case {
-        name: "scattered strength",
+        name: "strength scatter",
         beside: "failure",
         stage: SCATTER,
         bonds: "failure = { von_mises_strength = 1e12, weibull_modulus = 5 }",
         ..CASE
     },
     Case {
-        name: "strength by rate",
+        name: "rate strengthening",
         beside: "failure",
         stage: RATES,
         bonds: "failure = { von_mises_strength = 1e12, rate_strengthening = true }",
         ..CASE
     },
     Case {
-        name: "particle damping",
+        name: "local damping",
         stage: PARTICLE_DAMPING,
         run: ", local_damping = 0.1",
         ..CASE
@@ -126,7 +126,7 @@ const CASES: [Case; 12] = [
         ..CASE
     },
     Case {
-        name: "contacts of particles",
+        name: "particle contacts",
         beside: "failure",
         stage: CONTACTS,
         bonds: "failure = { von_mises_strength = 1e12 }",
@@ -201,7 +201,7 @@ fn main() {
         median(times[0].clone()) / states[0].bonds.len() as f64,
     );
     println!(
-        "| feature | beside | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
+        "| feature | compared with | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
     );
     println!("|---|---|---|---|---|---|---|");
     for (at, case) in CASES.iter().enumerate().skip(1) {

@@ -49,7 +49,7 @@ bonds = "cake"
 angular_velocity = [1.0, 0.0, 0.0]
 "#;
 
-/// The bending sample with as many bonds per particle as in the thesis.
+/// The bending sample with as many bonds per particle as in Platzer 2022.
 fn packed(diameters: &str) -> Body {
     let bytes = std::fs::read(SHAPE).expect("the shape is in the repository");
     let reading = ReadSettings {

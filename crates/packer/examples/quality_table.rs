@@ -50,7 +50,7 @@ fn quality_table() -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| `--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | taken out | front, s | settling, s | spheres/s |\n\
+        "| `--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | removed | front, s | densification, s | spheres/s |\n\
          |---|---|---|---|---|---|---|---|---|"
     )?;
     for settle in SETTLE {

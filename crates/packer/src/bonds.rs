@@ -1,7 +1,7 @@
 //! Bonds: which pairs of spheres are joined.
 //!
 //! A pair is joined when the distance of its centres is at most `bond_range * (R_a + R_b)`,
-//! true radii (thesis 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
+//! true radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
 //! two.
 
 use crate::spheres::Spheres;
@@ -15,7 +15,7 @@ pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
 /// Beyond this bond range a bond would pass through other spheres.
 pub(crate) const LARGEST_BOND_RANGE: f64 = 2.0;
-/// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres,
+/// Bonds per particle of a body that is well bonded (Platzer 2022: 377,052 bonds of 77,487 spheres,
 /// 4.87).
 pub(crate) const WELL_BONDED: f64 = 5.0;
 /// Spheres whose neighbours are counted to advise a bond range: enough for 1 % of the number of

@@ -140,8 +140,8 @@ pub fn plan(
     if !state.clumps.templates.is_empty() && state.particle_damping > 0.0 {
         return Err(Diagnostic::input(
             format!("{}: run.local_damping", scene.source),
-            "clumps have no particles of their own, which alone are damped so",
-            "leave it out, or start bodies as \"bonded\"",
+            "it has no effect on clumps",
+            "remove it, or start bodies as \"bonded\"",
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;

@@ -43,7 +43,7 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
             (&measure.of, &measure.reference, read.closed_form)
         {
             return Err(format!(
-                "the scene says nothing of which the theory of '{name}' follows"
+                "the scene has no values for the theory of '{name}'"
             ));
         }
         if let MeasureOf::Balance(_) = measure.of {

@@ -25,12 +25,12 @@ const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpo
 
 pub(super) static CONTACT: Schema = Schema {
     title: "[contacts.NAME-NAME]",
-    doc: "How two materials touch, in either order of their names, which may have a - in them.",
+    doc: "Contact law of two materials, in either order of their names, which may contain a -.",
     keys: &[
         Key::new(
             "law",
             Kind::Word(|| words_of(&LAWS)),
-            "Elastic spheres, or a spring and a dashpot.",
+            "Hertz-Mindlin, or a linear spring and dashpot.",
         )
         .or_word("hertz-mindlin"),
         Key::quantity(
@@ -49,32 +49,32 @@ pub(super) static CONTACT: Schema = Schema {
         .or(2.0 / 7.0),
         Key::number(
             "restitution",
-            "Speed after a head-on collision over that before it.",
+            "Coefficient of restitution: speed after a head-on collision over that before it.",
         )
         .within(Included(LEAST_RESTITUTION), Included(1.0))
         .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
         .required("0.5"),
-        Key::number("friction", "Largest tangential force over the normal one.")
+        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal one.")
             .not_negative()
             .or(0.0),
         Key::new(
             "rolling",
             Kind::Word(|| words_of(&ROLLINGS)),
-            "What resists rolling; `constant-torque` where `rolling_friction` alone is given.",
+            "Model of rolling friction; `constant-torque` where only `rolling_friction` is given.",
         ),
         Key::number(
             "rolling_friction",
-            "Coefficient of rolling friction. Needs a `friction` above 0: what slides freely has no grip to roll with.",
+            "Coefficient of rolling friction. Needs a `friction` above 0.",
         )
         .positive()
         .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
         .sometimes_required("0.05"),
         Key::number(
             "rolling_damping_ratio",
-            "Of `spring-dashpot`: share of the critical damping.",
+            "Of `spring-dashpot`: fraction of critical damping.",
         )
         .within(Included(0.0), Included(1.0))
-        .remedy("it is a share of the critical damping: a usual value is 0.3")
+        .remedy("it is a fraction of critical damping: a usual value is 0.3")
         .or(0.3),
     ],
 };
@@ -123,7 +123,7 @@ pub enum Rolling {
     SpringDashpot {
         /// `rolling_friction`, a coefficient of more than 0.
         friction: f64,
-        /// `rolling_damping_ratio`: share of the critical damping, 0.3 unless given; in [0, 1].
+        /// `rolling_damping_ratio`: fraction of critical damping, 0.3 unless given; in [0, 1].
         damping: f64,
     },
 }

@@ -27,7 +27,7 @@ pub enum Factor {
 pub(super) const RAMP: Key = Key::quantity(
     "ramp",
     &TIME,
-    "The factor on it rises evenly from 0 to 1 until this time, and stays.",
+    "The factor on it rises linearly from 0 to 1 until this time, and stays 1.",
 )
 .positive();
 

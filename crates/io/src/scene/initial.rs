@@ -26,7 +26,7 @@ pub struct Initial {
 
 pub(super) static INITIAL: Schema = Schema {
     title: "[initial.NAME]",
-    doc: "How a group starts, on top of what its bodies do.",
+    doc: "Initial state of a group, added to that of its bodies.",
     keys: &[
         GROUP_KEY,
         Key::vector("velocity", &VELOCITY, "Of each particle."),

@@ -33,7 +33,7 @@ pub(super) static LOAD: Schema = Schema {
         Key::vector("torque", &TORQUE, "On the whole group."),
         RAMP,
         TABLE,
-        until("From then on it is zero; not before the last change of `ramp` or `table`."),
+        until("Time from which on it is zero; not before the last change of `ramp` or `table`."),
     ],
 };
 

@@ -225,7 +225,7 @@ impl Quantity {
 
 pub(super) static MEASURE: Schema = Schema {
     title: "[measures.NAME]",
-    doc: "What is measured, with what it should be where that is known.",
+    doc: "A measured quantity, with its reference value where one is known.",
     keys: &[
         Key::text("of", "a group, a body, a wall, `all` or `fragments`", "What is measured.")
             .or_word(ALL),
@@ -246,7 +246,7 @@ pub(super) static MEASURE: Schema = Schema {
             "end",
             "Value of its history that is reported; `mean` is over time.",
         ),
-        Key::new("reference", Kind::Measured, "What the result should be; its error is reported."),
+        Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
         Key::number(
             "tolerance",
             "A larger relative error gives a warning. Needs a `reference` other than 0.",

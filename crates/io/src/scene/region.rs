@@ -16,7 +16,7 @@ const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 
 pub(super) static REGION: Schema = Schema {
     title: "[regions.NAME]",
-    doc: "A part of space, which nothing bounces off, by one of its shapes.",
+    doc: "A part of space without any surface, of one shape.",
     keys: &[
         Key::table("box", &BOX, "A box."),
         Key::table("sphere", &SPHERE, "A sphere."),

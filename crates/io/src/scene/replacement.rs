@@ -17,7 +17,7 @@ const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
 pub(super) static REPLACEMENT: Schema = Schema {
     title: "[replacement.NAME]",
-    doc: "When the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
+    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
     keys: &[
         Key::table("when", &WHEN, "Conditions; at least one of its keys.")
             .required("{ enters = \"NAME\" }, a name in [regions]"),
@@ -187,7 +187,7 @@ fn check_body(
         let mass = root.find(&["bodies", name, "clump", "mass"]);
         let place = mass.unwrap_or_else(|| field.clone());
         let problem = format!(
-            "{} is \"union\", but [replacement.{name}] replaces it: the clump would weigh other than the cluster it becomes",
+            "{} is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass",
             place.path
         );
         return Err(place.refuse(problem, "write mass = \"spheres\""));

@@ -8,7 +8,7 @@ use super::table::Table;
 use crate::diagnostic::Result;
 use crate::units::{ACCELERATION, TIME};
 
-/// When the run ends, how it steps, what acts everywhere.
+/// End of the run, time step, and what acts on everything.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
@@ -62,7 +62,7 @@ pub const SAFETY: f64 = 0.9;
 
 pub(super) static RUN: Schema = Schema {
     title: "[run]",
-    doc: "When the run ends, how it steps, what acts everywhere.",
+    doc: "End of the run, time step, and what acts on everything.",
     keys: &[
         Key::quantity("end_time", &TIME, "Simulated time at the end. Needed where no `[test]` says when it ends.")
             .positive()

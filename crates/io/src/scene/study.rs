@@ -1,4 +1,4 @@
-//! A study: a scene, what varies in it, what is measured and against what. Plain data, as read from
+//! A study: a scene, what varies in it, what is measured and what it is compared with. Plain data, as read from
 //! TOML.
 
 mod check;

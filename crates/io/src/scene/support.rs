@@ -40,7 +40,7 @@ pub struct Support {
 
 pub(super) static SUPPORT: Schema = Schema {
     title: "[supports.NAME]",
-    doc: "Holds or moves each particle of a group along x, y, z and about them: rx, ry, rz.",
+    doc: "Boundary conditions: holds or moves each particle of a group along x, y, z and about them: rx, ry, rz.",
     keys: &[
         GROUP_KEY,
         Key::new(
@@ -61,7 +61,7 @@ pub(super) static SUPPORT: Schema = Schema {
         RAMP,
         TABLE,
         until(
-            "From then on the freedoms are free; not before the last change of `ramp` or `table`.",
+            "Time at which the freedoms are released; not before the last change of `ramp` or `table`.",
         ),
     ],
 };

@@ -103,9 +103,9 @@ impl<'a> Table<'a> {
             return Ok(());
         };
         let field = self.field(key, node);
-        if let Some(renamed) = new_name(self.schema, key) {
-            let problem = format!("{} is now called {}", field.path, renamed.new);
-            return Err(field.refuse(problem, renamed.remedy()));
+        if let Some((new, remedy)) = new_name(self.schema.title, key) {
+            let problem = format!("{} is now called {new}", field.path);
+            return Err(field.refuse(problem, remedy));
         }
         let problem = match node.value {
             Value::Table(_) if self.path.is_empty() => {

@@ -44,7 +44,7 @@ pub struct Report {
     pub sizes_by_number: Fit,
     /// Sizes placed against sizes asked for, by mass.
     pub sizes_by_mass: Fit,
-    /// Bonds divided by particles, as the thesis counts (4.87).
+    /// Bonds divided by particles, as Platzer 2022 counts (4.87).
     pub bonds_per_particle: f64,
     /// Mean number of bonds that a particle has: twice as many.
     pub mean_coordination: f64,

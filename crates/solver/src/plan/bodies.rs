@@ -227,7 +227,7 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     Err(Diagnostic::input(
         format!("particle {number}"),
         format!(
-            "with a radius of {:.3e} m and a mass of {:.3e} kg it is nothing that a program can reckon with",
+            "its radius of {:.3e} m and mass of {:.3e} kg are outside the range of floating-point numbers",
             particles.poses[i].radius_m(),
             1.0 / inert[0]
         ),
@@ -357,7 +357,7 @@ fn check_bond(
     if distance_m == 0.0 {
         return Err(Diagnostic::input(
             format!("bond {number}"),
-            "its two particles stand at the same place",
+            "its two particles are at the same place",
             "move one of them, or remove the bond",
         ));
     }
@@ -377,7 +377,7 @@ fn check_bond(
     Err(Diagnostic::input(
         format!("bond {number}"),
         format!(
-            "{distance_m:.3e} m long and {:.3e} N/m stiff, it would take a time step of {step_s:.3e} s, with which no program can reckon",
+            "{distance_m:.3e} m long and {:.3e} N/m stiff, it would need a time step of {step_s:.3e} s, which is too small to integrate",
             answer.normal
         ),
         "check the units of places, radii, density and modulus",

@@ -87,7 +87,7 @@ impl<'a> Kinds<'a> {
         let [a, b] = pair.map(|material| self.names[material]);
         Err(Diagnostic::input(
             format!("{}: [contacts]", scene.source),
-            format!("nothing is said of {a} with {b}, which {who}"),
+            format!("no contact law for the material pair {a}-{b}, which {who}"),
             format!("add {a}-{b} = {{ restitution = 0.5, friction = 0.5 }} to [contacts]"),
         ))
     }
@@ -275,7 +275,7 @@ fn refuse_same_place(
     let [a, b] = pair.map(|i| called(bodies, &state.clumps, i));
     Err(Diagnostic::input(
         &scene.source,
-        format!("{a} and {b} stand at the same place"),
+        format!("{a} and {b} are at the same place"),
         "move one of the bodies",
     ))
 }
@@ -339,6 +339,6 @@ fn refuse_overlaps(
             "{a} and {b} overlap by {} at the start although no bond joins them{more}",
             dem_io::units::show_length(*overlap)
         ),
-        "move the bodies apart; or run.initial_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it",
+        "move the bodies apart; or run.initial_overlap = \"relax\" takes the overlap as the origin of the contact law, and \"keep\" applies the full contact force",
     ))
 }

@@ -206,7 +206,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
         {
             if is_apart(&gate, &state.rules.regions[outlet.region].bounds()) {
                 doubts.push(format!(
-                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed at once",
+                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed immediately",
                     outlet.name, inlet.name
                 ));
             }

@@ -175,7 +175,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         return Err(Diagnostic::input(
             format!("{}: run.safety_factor", scene.source),
             format!(
-                "{} is no share of the largest stable step that is stable",
+                "{} of the largest stable step is not stable",
                 run.safety_factor
             ),
             "write 0.9, or --force-step to see what happens",

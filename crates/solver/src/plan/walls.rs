@@ -210,7 +210,7 @@ fn refuse_touches(
         }
         (_, true) => "move the body or the wall: its centre is inside",
         _ => {
-            "move the body or the wall; or run.initial_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it"
+            "move the body or the wall; or run.initial_overlap = \"relax\" takes the overlap as the origin of the contact law, and \"keep\" applies the full contact force"
         }
     };
     Err(Diagnostic::input(

@@ -39,7 +39,7 @@ pub const FAILURE: Stage = Stage {
 
 /// Their strength by the rate of strain.
 pub const RATES: Stage = Stage {
-    name: "strength by rate",
+    name: "rate strengthening",
     within: Some(FAILURE.name),
     need: |state, _| {
         let mut rules = state.bonds.rules.iter();
@@ -55,7 +55,7 @@ pub const RATES: Stage = Stage {
 
 /// Strengths that vary from bond to bond.
 pub const SCATTER: Stage = Stage {
-    name: "scattered strength",
+    name: "strength scatter",
     within: Some(FAILURE.name),
     need: |state, _| {
         let mut templates = state.clumps.templates.iter();

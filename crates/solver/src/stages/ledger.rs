@@ -21,7 +21,7 @@ use serde::Serialize;
 
 /// The ledgers of energy and momentum.
 pub const LEDGER: Stage = Stage {
-    name: "ledger",
+    name: "energy balance",
     within: None,
     need: |_, _| Need::Needed("energy and momentum".to_owned()),
     bytes: |_| 0,

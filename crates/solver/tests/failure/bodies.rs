@@ -48,7 +48,7 @@ pub(crate) const SHEAR: Criteria = Criteria {
     shear_pa: 0.6 * STRENGTH_PA,
     ..NONE
 };
-/// The thesis' equivalent stress.
+/// The equivalent stress of Platzer 2022, eq. 13.
 pub(crate) const VON_MISES: Criteria = Criteria {
     von_mises_pa: 1.1 * STRENGTH_PA,
     ..NONE

@@ -65,7 +65,7 @@ fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what
     );
 }
 
-/// Worked by hand from the thesis' eq. 20 with its parentheses.
+/// Worked by hand from Platzer 2022, eq. 20, with its parentheses.
 const TABLE: [(f64, f64); 9] = [
     (1e-6, 1.0),
     (4.64e-6, 1.0),

@@ -82,15 +82,15 @@ fn of_bonds() {
         &with(&FREE, &["cluster search"]),
     );
     expect(
-        "scattered strength",
+        "strength scatter",
         &scene(
             "",
             ", failure = { tensile_strength = 1e12, weibull_modulus = 5 }",
             "",
             "",
         ),
-        &with(&FREE, &["failure", "scattered strength"]),
-        &with(&FREE, &["cluster search", "scattered strength"]),
+        &with(&FREE, &["failure", "strength scatter"]),
+        &with(&FREE, &["cluster search", "strength scatter"]),
     );
     let rate = ", failure = { tensile_strength = 1e12, rate_strengthening = true }";
     expect(
@@ -102,7 +102,7 @@ fn of_bonds() {
     expect(
         "strength by rate, where bonds would",
         &scene("", &rate.replace("1e12", "1"), "", ""),
-        &with(&FREE, &["failure", "strength by rate", "cluster search"]),
+        &with(&FREE, &["failure", "rate strengthening", "cluster search"]),
         &with(&FREE, &["cluster search"]),
     );
 }
@@ -118,8 +118,8 @@ fn of_what_acts_on_particles() {
     expect(
         "damping of particles",
         &scene(", local_damping = 0.1", "", "", ""),
-        &with(&FREE, &["particle damping"]),
-        &with(&FREE, &["particle damping"]),
+        &with(&FREE, &["local damping"]),
+        &with(&FREE, &["local damping"]),
     );
     expect(
         "a load",
@@ -175,7 +175,7 @@ fn of_what_touches() {
         &searches,
         &searches,
     );
-    let touches = with(&searches, &["contacts of particles"]);
+    let touches = with(&searches, &["particle contacts"]);
     expect(
         "another that is touched",
         &scene("", "", "", &other(0.02, "")),

@@ -105,7 +105,7 @@ fn two_bonded_particles_at_one_place() {
     assert_eq!(
         said,
         format!(
-            "error: {}: [bodies.sample]: {}: bond 0: its two particles stand at the same place; move one of them, or remove the bond",
+            "error: {}: [bodies.sample]: {}: bond 0: its two particles are at the same place; move one of them, or remove the bond",
             scene.display(),
             file.display()
         )

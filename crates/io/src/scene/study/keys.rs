@@ -11,7 +11,7 @@ const ANYTHING: Kind = Kind::Anything("a value");
 
 pub(in crate::scene) static STUDY: Schema = Schema {
     title: "",
-    doc: "A study: a scene, what varies in it, what is measured and against what.",
+    doc: "A study: a scene, what varies in it, what is measured and what it is compared with.",
     keys: &[
         Key::whole("version", 1, "Version of the format.")
             .remedy("write version = 1")
@@ -25,7 +25,7 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::whole(
             "repeats",
             1,
-            "Each run is done so often; its time is the median.",
+            "Number of repetitions of each run; its time is the median.",
         )
         .up_to(MOST)
         .remedy("write repeats = 3")
@@ -42,7 +42,7 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::word::<RunTime>(
             "time",
             "wall",
-            "Which time is compared; `processor` is changed less by other programs on the machine.",
+            "Time that is compared; `processor` depends less on other programs on the machine.",
         ),
         Key::word::<Combine>(
             "combine",
@@ -52,7 +52,7 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::new(
             "set",
             Kind::Named("\"TABLE.KEY\"", &ANYTHING),
-            "What all runs have: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
+            "Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
         ),
         Key::new(
             "vary",
@@ -136,7 +136,7 @@ pub(super) static TOGETHER: Schema = Schema {
 
 pub(in crate::scene) static MEASURE: Schema = Schema {
     title: "[measures.NAME]",
-    doc: "What is looked at in each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and `balance`.",
+    doc: "A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and `balance`.",
     keys: &[
         Key::text("measure", "a measure of the scene", "A measure of the scene.")
             .otherwise("that of the same name"),
@@ -198,6 +198,8 @@ pub(super) static REFERENCE: Schema = Schema {
 pub(super) static PAGE: Schema = Schema {
     title: "[page]",
     doc: "How the page shows the runs.",
-    keys: &[Key::text("series", "an axis", "What colours tell apart.")
-        .otherwise("the first that is no number")],
+    keys: &[
+        Key::text("series", "an axis", "The axis that is shown by colours.")
+            .otherwise("the first that is no number"),
+    ],
 };

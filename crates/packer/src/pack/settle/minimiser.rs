@@ -108,7 +108,7 @@ pub fn minimise_overlaps(
                     "the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps",
                     worst
                 ),
-                "use a smaller share, or --densify 0 for the bare front",
+                "use a smaller fraction, or --densify 0 for the bare front",
             ));
         }
         if settled.steps >= patience {
