@@ -62,7 +62,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
             }
         };
         line("by", &format!("Newton's method; {factor}"))?;
-        line("does not use", UNUSED)?;
+        line("not used", UNUSED)?;
         for note in &plan.notes {
             line("note", note)?;
         }

@@ -28,7 +28,7 @@ pub fn overlaps() -> Result<Vec<Member>> {
     let all = [0.1, 0.25, 0.5, 0.75, 0.9].into_iter().map(member);
     let mut members = all.collect::<Result<Vec<Member>>>()?;
     if let Some(last) = members.last().cloned() {
-        let words = ["have come from nowhere", "set relaxation.enabled = true"];
+        let words = ["of energy were created", "set relaxation.enabled = true"];
         members.push(Member {
             what: format!("{}, relaxation off", last.what),
             trial: Trial {

@@ -115,7 +115,7 @@ pub fn map() -> Result<Vec<Member>> {
     for damping in [
         "damping_ratio = 0.3, per_mode = true",
         "damping_ratio = 10, per_mode = true",
-        "force = \"30 N s/m\", torque = 1",
+        "damping_coefficient = \"30 N s/m\", torque_factor = 1",
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
@@ -271,7 +271,7 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"larges
             trial: trial(&above, end_s, true)?,
             way: Way::Run,
             prediction: Prediction::Stopped(vec![
-                "have come from nowhere".to_owned(),
+                "of energy were created".to_owned(),
                 "began at 1.020 of the largest stable one".to_owned(),
             ]),
         });

@@ -329,7 +329,7 @@ fn an_empty_record_has_no_figures() {
     let result = evaluated(&test, &setup(bar), &empty, false);
     assert!(result.figures.is_empty(), "{:?}", result.figures);
     let doubts = result.doubts().join("; ");
-    assert!(doubts.contains("no stiffness can be told"), "{doubts}");
+    assert!(doubts.contains("the stiffness could not be determined"), "{doubts}");
 }
 
 #[test]

@@ -189,7 +189,7 @@ fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
         ("angular_velocity = [0, -10, 0]", 0.5),
         ("displacement = [0, 0, 0.05]\nramp = 0.1", 0.5),
         (
-            "turn = { axis = [0, 1, 0], angle = \"-45 deg\" }\nramp = 0.1",
+            "angular_displacement = { axis = [0, 1, 0], angle = \"-45 deg\" }\nramp = 0.1",
             0.39,
         ),
     ] {

@@ -97,7 +97,7 @@ fn only_scenes_can_be_checked() {
         let output = dem_run().arg("check").args(options).output().unwrap();
         let (said, code) = super::refused(&output);
         assert_eq!(code, 2);
-        assert!(said.contains("this is no scene (.toml)"), "{said}");
+        assert!(said.contains("this is not a scene (.toml)"), "{said}");
     }
 }
 

@@ -243,7 +243,7 @@ fn what_a_test_cannot_be_made_of() {
     );
 
     let bent = text
-        .replace("kind = \"tension\"", "kind = \"three-point-bending\"")
+        .replace("type = \"tension\"", "type = \"three-point-bending\"")
         .replace("crosshead = [\"head\"]", "crosshead = [\"plate\"]")
         .replace("length = \"40 mm\"", "rate_check = false")
         .replace("area = ", "periods = 9 # ")

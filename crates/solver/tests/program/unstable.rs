@@ -29,7 +29,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     // Without a folder there is no checkpoint to speak of.
     let said = bench.bad(&scene, &options, 3);
     assert!(
-        said.contains("unstable at step ") && said.contains("have come from nowhere"),
+        said.contains("unstable at step ") && said.contains("of energy were created"),
         "{said}"
     );
     assert!(

@@ -242,8 +242,8 @@ fn check_speaks_of_what_inlets_will_feed() {
     let text = String::from_utf8(output.stdout).unwrap();
     for said in [
         "0 particles, 0 bonds at the start\n",
-        "3 bodies through the inlet 'pairs' until the end: 6 spheres and 3 bonds once they are bonded\n",
-        "if all that is fed is bonded and none leaves\n",
+        "3 bodies by the inlet 'pairs' until the end: 6 spheres and 3 bonds once they are bonded\n",
+        "if all that is fed is bonded and none is discharged\n",
     ] {
         assert!(text.contains(said), "{text}");
     }

@@ -144,10 +144,10 @@ fn an_end_in_silence_is_found() {
 fn the_wrong_cause_is_found() {
     let stopped = member("impact", "on a wall, 10 MPa");
     let said = wrong(&stopped, |soft| {
-        soft.prediction = Prediction::Stopped(vec!["have come from nowhere".to_owned()]);
+        soft.prediction = Prediction::Stopped(vec!["of energy were created".to_owned()]);
     });
     assert!(
-        said.starts_with("'have come from nowhere' is not in: at "),
+        said.starts_with("'of energy were created' is not in: at "),
         "{said}"
     );
     let said = wrong(&stopped, |soft| {

@@ -139,7 +139,7 @@ fn steps_above_the_limit_are_for_trials() {
     let refused = bench(&study);
     let (said, _) = partly(&refused, &[]);
     assert!(
-        said.contains("run.safety_factor: 1.05 is no share of the largest stable step"),
+        said.contains("run.safety_factor: 1.05 of the largest stable step is not stable"),
         "{said}"
     );
 }
