@@ -80,9 +80,9 @@ fn vtp_that_is_no_body() {
     };
     for (from, to, wanted) in [
         (
-            "\"radius\"",
+            "\"radius_m\"",
             "\"r\"",
-            "the radii of the particles are missing: the point data are 'r'; name the point data that hold them 'radius'",
+            "the radii of the particles are missing: the point data are 'r'; name the point data that hold them 'radius_m'",
         ),
         (
             "2 4\n",
@@ -122,7 +122,7 @@ fn vtp_that_is_no_body() {
         (
             "0.0006 0.0005 0.0007",
             "0.0006 0.0005",
-            "array 'radius': 2 values, but the header says 3; the file is damaged: write or copy it again",
+            "array 'radius_m': 2 values, but the header says 3; the file is damaged: write or copy it again",
         ),
         (
             "0 0 0 0.001 0 0",
@@ -132,7 +132,7 @@ fn vtp_that_is_no_body() {
         (
             "NumberOfLines=\"2\"",
             "NumberOfLines=\"3\"",
-            "array 'bond_radius': 2 values, but the header says 3; the file is damaged: write or copy it again",
+            "array 'bond_radius_m': 2 values, but the header says 3; the file is damaged: write or copy it again",
         ),
         (
             "</Lines>",
@@ -246,7 +246,7 @@ fn tables_from_spreadsheets_and_matlab() {
         (
             good,
             "particle_a,particle_b\n0,2\n",
-            "bonds: line 2: b is 2, but there are 2 particles, numbered from 0; correct or remove this line",
+            "bonds: line 2: particle_b is 2, but there are 2 particles, numbered from 0; correct or remove this line",
         ),
         (
             good,
@@ -256,7 +256,7 @@ fn tables_from_spreadsheets_and_matlab() {
         (
             good,
             "particle_a,particle_b,bond_radius_m\n0,1,1 mm\n",
-            "bonds: line 2: radius_m is '1 mm', not a number; numbers have a decimal point and no unit",
+            "bonds: line 2: bond_radius_m is '1 mm', not a number; numbers have a decimal point and no unit",
         ),
     ] {
         assert_eq!(said(particles, bonds), wanted);

@@ -122,7 +122,7 @@ fn the_summary_goes_where_the_body_does_not() {
         "exactness",
         "pieces",
         "fabric",
-        "made by",
+        "packed by",
         "time",
         "verdict",
     ] {

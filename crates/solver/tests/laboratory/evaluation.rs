@@ -329,7 +329,10 @@ fn an_empty_record_has_no_figures() {
     let result = evaluated(&test, &setup(bar), &empty, false);
     assert!(result.figures.is_empty(), "{:?}", result.figures);
     let doubts = result.doubts().join("; ");
-    assert!(doubts.contains("the stiffness could not be determined"), "{doubts}");
+    assert!(
+        doubts.contains("the stiffness could not be determined"),
+        "{doubts}"
+    );
 }
 
 #[test]
