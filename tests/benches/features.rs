@@ -72,33 +72,33 @@ const CASES: [Case; 12] = [
     Case {
         name: "bond damping",
         stage: BOND_DAMPING,
-        bonds: "damping = { viscous = 0.1 }",
+        bonds: "damping = { damping_ratio = 0.1 }",
         ..CASE
     },
     Case {
         name: "failure",
         stage: FAILURE,
-        bonds: "failure = { von_mises = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12 }",
         ..CASE
     },
     Case {
-        name: "scattered strength",
+        name: "strength scatter",
         beside: "failure",
         stage: SCATTER,
-        bonds: "failure = { von_mises = 1e12, weibull_modulus = 5 }",
+        bonds: "failure = { von_mises_strength = 1e12, weibull_modulus = 5 }",
         ..CASE
     },
     Case {
-        name: "strength by rate",
+        name: "rate strengthening",
         beside: "failure",
         stage: RATES,
-        bonds: "failure = { von_mises = 1e12, rate_strengthening = true }",
+        bonds: "failure = { von_mises_strength = 1e12, rate_strengthening = true }",
         ..CASE
     },
     Case {
-        name: "particle damping",
+        name: "local damping",
         stage: PARTICLE_DAMPING,
-        run: ", particle_damping = 0.1",
+        run: ", local_damping = 0.1",
         ..CASE
     },
     Case {
@@ -126,10 +126,10 @@ const CASES: [Case; 12] = [
         ..CASE
     },
     Case {
-        name: "contacts of particles",
+        name: "particle contacts",
         beside: "failure",
         stage: CONTACTS,
-        bonds: "failure = { von_mises = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12 }",
         tables: MEETS,
         ..CASE
     },
@@ -201,7 +201,7 @@ fn main() {
         median(times[0].clone()) / states[0].bonds.len() as f64,
     );
     println!(
-        "| feature | beside | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
+        "| feature | compared with | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
     );
     println!("|---|---|---|---|---|---|---|");
     for (at, case) in CASES.iter().enumerate().skip(1) {
@@ -256,10 +256,10 @@ fn packed(diameters: &str) -> Body {
             sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),
             overlap: 0.25,
             seed: 1,
-            settle: None,
+            densify: None,
             seed_point_m: None,
         },
-        bonding_radius: 1.1,
+        bond_range: 1.1,
         bonds_per_particle: None,
         bond_radius_factor: 1.0,
         particle_density_kg_m3: None,

@@ -41,7 +41,7 @@ density = "2050 kg/m3"
 young_modulus = "12.05 MPa"
 poisson_ratio = 0.3
 DAMPING
-failure = { von_mises = "185 kPa" }
+failure = { von_mises_strength = "185 kPa" }
 [bodies.cake]
 file = "cake.vtp"
 material = "cake"
@@ -49,7 +49,7 @@ bonds = "cake"
 angular_velocity = [1.0, 0.0, 0.0]
 "#;
 
-/// The bending sample with as many bonds per particle as in the thesis.
+/// The bending sample with as many bonds per particle as in Platzer 2022.
 fn packed(diameters: &str) -> Body {
     let bytes = std::fs::read(SHAPE).expect("the shape is in the repository");
     let reading = ReadSettings {
@@ -63,10 +63,10 @@ fn packed(diameters: &str) -> Body {
             sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),
             overlap: 0.0,
             seed: 1,
-            settle: Some(0.0),
+            densify: Some(0.0),
             seed_point_m: None,
         },
-        bonding_radius: 1.1,
+        bond_range: 1.1,
         bonds_per_particle: Some(4.87),
         bond_radius_factor: 1.0,
         particle_density_kg_m3: None,
@@ -128,7 +128,7 @@ fn steps(criterion: &mut Criterion) {
                     })
                 });
             });
-            let mut damped = state(&body, "damping = { viscous = 0.1 }", threads);
+            let mut damped = state(&body, "damping = { damping_ratio = 0.1 }", threads);
             group.bench_function("damped", |b| {
                 b.iter_custom(|rounds| {
                     timed(rounds, &mut || {

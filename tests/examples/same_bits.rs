@@ -53,11 +53,11 @@ const PACKINGS: [(&str, &[&str]); 5] = [
             "2mm..3mm",
             "--overlap",
             "0.296",
-            "--bonding-radius",
+            "--bond-range",
             "1.0",
         ],
     ),
-    ("disc", &["--diameter", "3mm..4mm", "--settle", "0"]),
+    ("disc", &["--diameter", "3mm..4mm", "--densify", "0"]),
     ("bending-sample", &["--diameter", "5mm..7mm", "--seed", "3"]),
     (
         "rock",
@@ -121,7 +121,7 @@ fn main() -> Result<(), Failed> {
 /// The hash of what a scene gives.
 fn run(scene: &Path, sets: &[&str], results: &Path, threads: usize) -> Result<u64, Failed> {
     let mut command = program("dem-run")?;
-    command.arg(scene).arg("--out").arg(results);
+    command.arg(scene).arg("--output").arg(results);
     command.args(["--quiet", "--json", "--threads", &threads.to_string()]);
     command.args(sets.iter().flat_map(|set| ["--set", set]));
     command.args(["--set", "output.pictures=\"1000 s\""]);

@@ -173,7 +173,7 @@ fn options_exist() {
     }
 }
 
-/// Words such as `--settle` in a text.
+/// Words such as `--densify` in a text.
 fn options(text: &str) -> Vec<String> {
     text.split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
         .filter(|word| {

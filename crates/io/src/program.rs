@@ -1,9 +1,11 @@
 //! What both programs do alike: signals, completions of shells, man pages.
 
+use std::ffi::OsString;
+
 use clap::Command;
 pub use clap_complete::Shell;
 
-use crate::diagnostic::Result;
+use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::write_standard_output;
 
 /// Lets a file that grows beyond a limit of the shell (`ulimit -f`) be an error of the write, as a
@@ -16,6 +18,25 @@ pub fn take_size_limits_as_errors() {
         let caught = std::sync::Arc::default();
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, caught);
     }
+}
+
+/// Refuses options that have another name now: each an old name and the new one.
+///
+/// # Errors
+/// One of the arguments is an old name.
+pub fn refuse_renamed(
+    arguments: impl Iterator<Item = OsString>,
+    renamed: &[(&str, &str)],
+) -> Result<()> {
+    for argument in arguments.skip(1).take_while(|argument| argument != "--") {
+        let argument = argument.to_string_lossy();
+        let option = argument.split('=').next().unwrap_or_default();
+        if let Some((old, new)) = renamed.iter().find(|(old, _)| *old == option) {
+            let problem = format!("is now called {new}");
+            return Err(Diagnostic::input(*old, problem, format!("write {new}")));
+        }
+    }
+    Ok(())
 }
 
 /// Prints a script with which a shell completes the options of a program.

@@ -14,7 +14,7 @@ version = 1
 
 [run]
 end_time = "1 s"    # long
-safety = 0.9
+safety_factor = 0.9
 
 [materials.steel]
 density = 7850
@@ -22,7 +22,7 @@ density = 7850
 [bonds.steel]
 young_modulus = "200 GPa"
 poisson_ratio = 0.3
-damping = { viscous = 0.1 }
+damping = { damping_ratio = 0.1 }
 
 [bodies.bar]
 material = "steel"
@@ -33,7 +33,7 @@ particles = [
 ]
 bond_list = [[0, 1]]
 
-[sets.tip]
+[groups.tip]
 particles = [1]
 
 [measures.tip]
@@ -80,7 +80,7 @@ combine = "paired"
 [set]
 "run.end_time" = "0.1 s"
 [vary]
-"run.safety" = [0.9, 0.5, 0.25]
+"run.safety_factor" = [0.9, 0.5, 0.25]
 "run.time_step" = { from = "1e-7 s", to = "1e-5 s", count = 3, spacing = "log" }
 "bonds.beam.model" = { values = ["timoshenko", "parallel", "elastic-solid"], names = ["T", "P", "E"] }
 "body.bar" = { values = ["a/bar-5.csv", "a/bar-10.csv", "a/bar-20.csv"], size = ["0.8 m", "40 cm", 0.2] }
@@ -93,9 +93,9 @@ reference = { richardson = "body.bar" }
 measure = "tip"
 reference = { value = "-8.5 mm" }
 [measures.energy]
-ledger = "energy"
+balance = "energy"
 [measures.stiff]
-figure = "stiffness of the body"
+test_result = "specimen stiffness"
 [measures.fine]
 reference = { finest = "run.time_step" }
 [page]
@@ -126,14 +126,14 @@ series = "load"
         measure("first").reference,
         Reference::Value("-8.5 mm".to_owned())
     );
-    assert_eq!(measure("energy").of, MeasureOf::Ledger("energy_error"));
+    assert_eq!(measure("energy").of, MeasureOf::Balance("energy_error"));
     assert_eq!(measure("fine").reference, Reference::Finest(1));
 }
 
 #[test]
 fn ranges_begin_and_end_where_they_say() {
     let study = study(&format!(
-        "[vary]\n\"run.safety\" = {{ from = 0.1, to = 0.9, count = 5 }}\n\"run.gravity\" = {{ from = -1, to = 1, count = 2 }}\n{TIP}"
+        "[vary]\n\"run.safety_factor\" = {{ from = 0.1, to = 0.9, count = 5 }}\n\"run.gravity\" = {{ from = -1, to = 1, count = 2 }}\n{TIP}"
     ));
     assert_eq!(labels(&study, 0), ["0.1", "0.3", "0.5", "0.7", "0.9"]);
     assert_eq!(labels(&study, 1), ["-1", "1"]);
@@ -158,17 +158,20 @@ fn what_is_no_study() {
             "[measures.tip]\n",
             "study.toml:1: nothing varies; add [vary]",
         ),
-        ("[vary]\n\"run.safety\" = [0.5]\n", "nothing is measured"),
+        (
+            "[vary]\n\"run.safety_factor\" = [0.5]\n",
+            "nothing is measured",
+        ),
         (
             "[vary]\nrun.safety = [0.5]\n[measures.tip]\n",
             "study.toml:4: vary.\"run\" is neither a list nor a range; write its path in quotes",
         ),
         (
-            "[vary]\n\"run.safety\" = 0.5\n[measures.tip]\n",
-            "study.toml:4: vary.\"run.safety\" is 0.5, but must be a list or a range",
+            "[vary]\n\"run.safety_factor\" = 0.5\n[measures.tip]\n",
+            "study.toml:4: vary.\"run.safety_factor\" is 0.5, but must be a list or a range",
         ),
         (
-            "[vary]\n\"run.safety\" = []\n[measures.tip]\n",
+            "[vary]\n\"run.safety_factor\" = []\n[measures.tip]\n",
             "an empty list",
         ),
         (
@@ -176,40 +179,40 @@ fn what_is_no_study() {
             "\"safety\" is no path of a scene; write TABLE.KEY",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 1, to = \"2 s\", count = 3 }\n[measures.tip]\n",
-            "is in 's', but vary.\"run.safety\".from in no unit",
+            "[vary]\n\"run.safety_factor\" = { from = 1, to = \"2 s\", count = 3 }\n[measures.tip]\n",
+            "is in 's', but vary.\"run.safety_factor\".from in no unit",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 0, to = 2, count = 3, spacing = \"log\" }\n[measures.tip]\n",
+            "[vary]\n\"run.safety_factor\" = { from = 0, to = 2, count = 3, spacing = \"log\" }\n[measures.tip]\n",
             "no logarithm",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n",
+            "[vary]\n\"run.safety_factor\" = { from = 1, to = 2, count = 1 }\n[measures.tip]\n",
             "count is 1, but must be from 2 to 100000",
         ),
         (
-            "[vary]\n\"run.safety\" = { values = [1, 2], size = [1] }\n[measures.tip]\n",
+            "[vary]\n\"run.safety_factor\" = { values = [1, 2], size = [1] }\n[measures.tip]\n",
             "must be a list of 2, one for each value",
         ),
         (
-            "[vary]\n\"run.safety\" = { values = [1, 2], size = [1, -1] }\n[measures.tip]\n",
+            "[vary]\n\"run.safety_factor\" = { values = [1, 2], size = [1, -1] }\n[measures.tip]\n",
             "a size of more than 0",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[together.a]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
-            "study.toml:5: a is set by run.safety already",
+            "[vary]\n\"run.safety_factor\" = [0.5, 0.6]\n[together.a]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
+            "study.toml:5: a is set by run.safety_factor already",
         ),
         (
             "[vary]\n\"body.bar\" = [\"-\"]\n[measures.tip]\n",
             "must be the name of a file",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = \"richardson\"\n",
-            "study.toml:6: measures.tip.reference: run.safety has 2 sizes, but Richardson extrapolation needs 3",
+            "[vary]\n\"run.safety_factor\" = [0.5, 0.6]\n[measures.tip]\nreference = \"richardson\"\n",
+            "study.toml:6: measures.tip.reference: run.safety_factor has 2 sizes, but Richardson extrapolation needs 3",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5, 0.6]\n[measures.tip]\nreference = { finest = \"run.safty\" }\n",
-            "which does not vary; did you mean 'run.safety'?",
+            "[vary]\n\"run.safety_factor\" = [0.5, 0.6]\n[measures.tip]\nreference = { finest = \"run.safty_factor\" }\n",
+            "which does not vary; did you mean 'run.safety_factor'?",
         ),
         (
             "[vary]\n\"bonds.a.model\" = [\"parallel\"]\n[measures.tip]\nreference = { finest = \"bonds.a.model\" }\n",
@@ -220,59 +223,59 @@ fn what_is_no_study() {
             "but 0 axes have sizes",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = 5\n",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\nreference = 5\n",
             "must be a table",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\nreference = { value = 1, finest = \"run.safety\" }\n",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\nreference = { value = 1, finest = \"run.safety_factor\" }\n",
             "names 2 references",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energi\"\n",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.e]\nbalance = \"energi\"\n",
             "did you mean 'energy'?",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nreference = \"finest\"\n",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.e]\nbalance = \"energy\"\nreference = \"finest\"\n",
             "it is an error by itself",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.e]\nledger = \"energy\"\nmeasure = \"tip\"\n",
-            "stands beside",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.e]\nbalance = \"energy\"\nmeasure = \"tip\"\n",
+            "cannot be combined with",
         ),
         (
-            "[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n[page]\nseries = \"x\"\n",
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n[page]\nseries = \"x\"\n",
             "which does not vary",
         ),
         (
-            "repeats = 0\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeats = 0\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
             "repeats is 0",
         ),
         (
-            "threads = 5000\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "threads = 5000\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
             "at most 1024",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1000000000000 }\n[measures.tip]\n",
-            "vary.\"run.safety\".count is 1000000000000, but must be from 2 to 100000",
+            "[vary]\n\"run.safety_factor\" = { from = 1, to = 2, count = 1000000000000 }\n[measures.tip]\n",
+            "vary.\"run.safety_factor\".count is 1000000000000, but must be from 2 to 100000",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 1e300 }\n[measures.tip]\n",
-            "vary.\"run.safety\".count is 1e300",
+            "[vary]\n\"run.safety_factor\" = { from = 1, to = 2, count = 1e300 }\n[measures.tip]\n",
+            "vary.\"run.safety_factor\".count is 1e300",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = 1, to = 2, count = 60000 }\n\"run.rest\" = { from = 1, to = 2, count = 60000 }\n[measures.tip]\n",
-            "study.toml:5: with run.rest the axes have 120000 values, more than 100000; vary less, or in several studies",
+            "[vary]\n\"run.safety_factor\" = { from = 1, to = 2, count = 60000 }\n\"run.rest_energy_ratio\" = { from = 1, to = 2, count = 60000 }\n[measures.tip]\n",
+            "study.toml:5: with run.rest_energy_ratio the axes have 120000 values, more than 100000; vary less, or in several studies",
         ),
         (
-            "[vary]\n\"run.safety\" = { from = -1e308, to = 1e308, count = 99999999999999999999 }\n[measures.tip]\n",
-            "vary.\"run.safety\".count is 99999999999999999999",
+            "[vary]\n\"run.safety_factor\" = { from = -1e308, to = 1e308, count = 99999999999999999999 }\n[measures.tip]\n",
+            "vary.\"run.safety_factor\".count is 99999999999999999999",
         ),
         (
-            "repeats = 18446744073709551615\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeats = 18446744073709551615\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
             "repeats is 18446744073709551615, but must be at most 1024",
         ),
         (
-            "repeat = 3\n[vary]\n\"run.safety\" = [0.5]\n[measures.tip]\n",
+            "repeat = 3\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
             "unknown key repeat; did you mean 'repeats'?",
         ),
     ] {
@@ -280,16 +283,18 @@ fn what_is_no_study() {
         assert!(said.contains(parts), "{rest}\n{said}\n{parts}");
     }
     let axes: String = (0..101)
-        .map(|k| format!("\"run.safety{k}\" = [1]\n"))
+        .map(|k| format!("\"run.safety_factor{k}\" = [1]\n"))
         .collect();
     let said = refused(&format!("{HEAD}[vary]\n{axes}[measures.tip]\n"));
     assert!(
-        said.starts_with("study.toml:104: with run.safety100 there are more than 100 axes; join"),
+        said.starts_with(
+            "study.toml:104: with run.safety_factor100 there are more than 100 axes; join"
+        ),
         "{said}"
     );
     assert!(refused("version = 2\n").contains("at most 1"));
     assert!(
-        refused("version = 1\n[vary]\n\"run.safety\" = [1]\n[measures.tip]\n")
+        refused("version = 1\n[vary]\n\"run.safety_factor\" = [1]\n[measures.tip]\n")
             .contains("scene is missing")
     );
 }
@@ -302,16 +307,19 @@ fn values_meet_the_scene() {
         let read = scene_with(&study, SCENE, study.fixed.iter().chain(first));
         read.map_or_else(|error| error.to_string(), |_| String::new())
     };
-    assert_eq!(said("[vary]\n\"run.safety\" = [0.5]"), "");
-    assert_eq!(said("[vary]\n\"bonds.steel.damping.force\" = [1]"), "");
+    assert_eq!(said("[vary]\n\"run.safety_factor\" = [0.5]"), "");
+    assert_eq!(
+        said("[vary]\n\"bonds.steel.damping.damping_coefficient\" = [1]"),
+        ""
+    );
     for (rest, parts) in [
         (
-            "[vary]\n\"run.safty\" = [0.5]",
-            "study.toml:4: --set run.safty=0.5: unknown key run.safty; did you mean 'safety'?",
+            "[vary]\n\"run.safty_factor\" = [0.5]",
+            "study.toml:4: --set run.safty_factor=0.5: unknown key run.safty_factor; did you mean 'safety_factor'?",
         ),
         (
-            "[vary]\n\"run.safety\" = [5]",
-            "study.toml:4: --set run.safety=5: run.safety is 5, but must be",
+            "[vary]\n\"run.safety_factor\" = [5]",
+            "study.toml:4: --set run.safety_factor=5: run.safety_factor is 5, but must be",
         ),
         (
             "[set]\n\"run.seed\" = 5\n[vary]\n\"materials.stel.density\" = [1]",
@@ -345,14 +353,17 @@ fn a_scene_is_written_with_its_values() {
         rewritten(&study, SCENE, &settings, Path::new("new.toml"))
             .unwrap_or_else(|e| panic!("{rest}: {e}"))
     };
-    let plain = written("[vary]\n\"run.safety\" = [0.9, 0.25]");
-    assert_eq!(plain, SCENE.replace("safety = 0.9", "safety = 0.25"));
+    let plain = written("[vary]\n\"run.safety_factor\" = [0.9, 0.25]");
+    assert_eq!(
+        plain,
+        SCENE.replace("safety_factor = 0.9", "safety_factor = 0.25")
+    );
     let added = written(
-        "[vary]\n\"run.seed\" = [1]\n\"bonds.steel.damping.force\" = [\"2 N s/m\"]\n\"bonds.steel.model\" = [\"parallel\"]",
+        "[vary]\n\"run.seed\" = [1]\n\"bonds.steel.damping.damping_coefficient\" = [\"2 N s/m\"]\n\"bonds.steel.model\" = [\"parallel\"]",
     );
     assert!(added.contains("[run]\nseed = 1\n"), "{added}");
     assert!(
-        added.contains("{ viscous = 0.1, force = \"2 N s/m\" }"),
+        added.contains("{ damping_ratio = 0.1, damping_coefficient = \"2 N s/m\" }"),
         "{added}"
     );
     assert!(
@@ -360,12 +371,12 @@ fn a_scene_is_written_with_its_values() {
         "{added}"
     );
     let table = written(
-        "[vary]\n\"sets.tip\" = [{ box = { min = [0.3, -1, -1], max = [1, 1, 1] } }]\n\"output.frames\" = [\"1 s\"]\n\"run.gravity\" = [[0, 0, -9.81]]",
+        "[vary]\n\"groups.tip\" = [{ box = { min = [0.3, -1, -1], max = [1, 1, 1] } }]\n\"output.frames\" = [\"1 s\"]\n\"run.gravity\" = [[0, 0, -9.81]]",
     );
-    assert!(table.contains("[sets.tip]\nbox = { min"), "{table}");
+    assert!(table.contains("[groups.tip]\nbox = { min"), "{table}");
     assert!(table.contains("[output]\nframes = \"1 s\"\n"), "{table}");
     written(
-        "[vary]\n\"bodies.bar.particles\" = [[[0, 0, 0, 0.1], [0.2, 0, 0, 0.1]]]\n\"bonds.steel.failure.tension\" = [\"1 MPa\"]",
+        "[vary]\n\"bodies.bar.particles\" = [[[0, 0, 0, 0.1], [0.2, 0, 0, 0.1]]]\n\"bonds.steel.failure.tensile_strength\" = [\"1 MPa\"]",
     );
 
     let folder = tempfile::tempdir().unwrap();
@@ -374,7 +385,7 @@ fn a_scene_is_written_with_its_values() {
             "particles",
             "x_m,y_m,z_m,radius_m\n0,0,0,0.1\n0.2,0,0,0.1\n",
         ),
-        ("bonds", "a,b\n0,1\n"),
+        ("bonds", "particle_a,particle_b\n0,1\n"),
     ] {
         std::fs::write(folder.path().join(format!("b.{part}.csv")), text).unwrap();
     }
@@ -409,7 +420,7 @@ quantity = \"contact_duration\"
 "
     );
     let study = study(
-        "[vary]\n\"run.safety\" = [0.9]\n[measures.slope]\n[measures.hit]\nreference = { value = \"2 ms\" }\n[measures.turn]\nmeasure = \"slope\"\nreference = { value = \"30 deg\" }\n",
+        "[vary]\n\"run.safety_factor\" = [0.9]\n[measures.slope]\n[measures.hit]\nreference = { value = \"2 ms\" }\n[measures.turn]\nmeasure = \"slope\"\nreference = { value = \"30 deg\" }\n",
     );
     let scene = scene_with(&study, &scene, std::iter::empty()).unwrap();
     let values = reference_values(&study, &scene).unwrap();

@@ -38,7 +38,7 @@ type Stage = (&'static str, fn(&BodyReport) -> f64);
 const BARE_FRONT: [Stage; 1] = [("bare front", |made| made.history.front_seconds)];
 const SETTLED: [Stage; 5] = [
     ("front", |made| made.history.front_seconds),
-    ("settling", |made| made.history.settle_seconds),
+    ("settling", |made| made.history.densify_seconds),
     ("voids", |made| made.history.fill_seconds),
     ("bonds", |made| made.seconds.bonds),
     ("report", |made| made.seconds.report),
@@ -136,7 +136,7 @@ fn body_files(criterion: &mut Criterion, body: &Body) {
 
 fn settled(diameter: &str) -> BodySettings {
     let mut settings = bare(diameter);
-    settings.packing.settle = None;
+    settings.packing.densify = None;
     settings
 }
 
@@ -146,10 +146,10 @@ fn bare(diameter: &str) -> BodySettings {
             sizes: Sizes::parse(diameter, Basis::Number).expect("sizes"),
             overlap: 0.0,
             seed: 1,
-            settle: Some(0.0),
+            densify: Some(0.0),
             seed_point_m: None,
         },
-        bonding_radius: 1.1,
+        bond_range: 1.1,
         bonds_per_particle: None,
         bond_radius_factor: 1.0,
         particle_density_kg_m3: None,

@@ -1,7 +1,7 @@
 //! Prints the tables of README.md as Markdown, in the bending sample of `data/shapes`:
 //!
 //! ```text
-//! cargo run --release -p dem-pack --example quality_table              # quality beside time, for each --settle
+//! cargo run --release -p dem-pack --example quality_table              # quality beside time, for each --densify
 //! cargo run --release -p dem-pack --example quality_table -- growth    # 10,000 to 1,000,000 spheres: time and memory
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
 //! ```
@@ -50,7 +50,7 @@ fn quality_table() -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| `--settle` | spheres | overall | interior | eigenvalue off 1/3, sigma | taken out | front, s | settling, s | spheres/s |\n\
+        "| `--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | removed | front, s | densification, s | spheres/s |\n\
          |---|---|---|---|---|---|---|---|---|"
     )?;
     for settle in SETTLE {
@@ -76,9 +76,9 @@ fn quality_table() -> std::result::Result<(), Error> {
                 .interior_fabric
                 .as_ref()
                 .map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)),
-            mean(&|made| made.history.taken_out as f64),
+            mean(&|made| made.history.removed as f64),
             mean(&|made| made.history.front_seconds),
-            mean(&|made| made.history.settle_seconds),
+            mean(&|made| made.history.densify_seconds),
             mean(&|made| made.quality.particles as f64
                 / (made.seconds.packing + made.seconds.bonds + made.seconds.report)),
         )?;
@@ -135,7 +135,7 @@ fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
         std::io::stdout(),
         "| {placed} | {threads} | {:.2} | {:.2} | {seconds:.2} | {:.1} | {memory} | {:.4} | {:.4} |",
         made.history.front_seconds,
-        made.history.settle_seconds,
+        made.history.densify_seconds,
         1e6 * seconds / placed,
         made.quality
             .interior_generating_density
@@ -175,10 +175,10 @@ fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettin
             sizes: Sizes::parse(diameter, Basis::Number)?,
             overlap: 0.0,
             seed,
-            settle,
+            densify: settle,
             seed_point_m: None,
         },
-        bonding_radius: 1.001,
+        bond_range: 1.001,
         bonds_per_particle: None,
         bond_radius_factor: 1.0,
         particle_density_kg_m3: None,

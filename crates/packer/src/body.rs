@@ -1,6 +1,6 @@
 //! A bonded body from a surface: spheres, bonds, and a report of how good they are.
 
-use crate::bonds::{bond_lengths, bond_radii, bonding_radius_for, centre_distance, find_bonds};
+use crate::bonds::{bond_lengths, bond_radii, bond_range_for, centre_distance, find_bonds};
 use crate::density::{DensitySearch, pack_to_density};
 use crate::geometry::boundary::Boundary;
 use crate::geometry::depth_map::DepthMap;
@@ -27,8 +27,8 @@ pub struct BodySettings {
     /// The spheres.
     pub packing: PackSettings,
     /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
-    pub bonding_radius: f64,
-    /// Choose the bonding radius so that bonds / particles is this.
+    pub bond_range: f64,
+    /// Choose the bond range so that bonds / particles is this.
     pub bonds_per_particle: Option<f64>,
     /// Bond radius / smaller particle radius.
     pub bond_radius_factor: f64,
@@ -44,7 +44,7 @@ impl BodySettings {
     pub fn new(packing: PackSettings) -> Self {
         Self {
             packing,
-            bonding_radius: 1.1,
+            bond_range: 1.1,
             bonds_per_particle: None,
             bond_radius_factor: 1.0,
             particle_density_kg_m3: None,
@@ -81,8 +81,8 @@ pub struct BodyReport {
     pub centre_m: [f64; 3],
     /// The course of its packing. Its seconds are those of all packings of a density search.
     pub history: PackHistory,
-    /// The bonding radius that was used.
-    pub bonding_radius: f64,
+    /// The bond range that was used.
+    pub bond_range: f64,
     /// The search for the overlap, if there was one.
     pub density_search: Option<DensitySearch>,
     /// Repairs of the surface.
@@ -130,11 +130,11 @@ pub fn make_body(
         let clear = wall_distance[a as usize] + wall_distance[b as usize];
         clear <= centre_distance(spheres, a, b) && crosses_surface(&solid.boundary, p, q)
     };
-    let bonding_radius = match settings.bonds_per_particle {
-        Some(wanted) => bonding_radius_for(spheres, wanted, &crosses)?,
-        None => settings.bonding_radius,
+    let bond_range = match settings.bonds_per_particle {
+        Some(wanted) => bond_range_for(spheres, wanted, &crosses)?,
+        None => settings.bond_range,
     };
-    let bonds = find_bonds(spheres, bonding_radius, &crosses)?;
+    let bonds = find_bonds(spheres, bond_range, &crosses)?;
     seconds.bonds = started.elapsed().as_secs_f64();
 
     let started = Instant::now();
@@ -143,7 +143,7 @@ pub fn make_body(
         spheres,
         overlap: packed.settings.overlap,
         bonds: &bonds,
-        bonding_radius,
+        bond_range,
         sizes: &settings.packing.sizes,
         unit_m: surface.unit_m,
         shape_volume: surface.volume_m3() / surface.unit_m.powi(3),
@@ -159,14 +159,14 @@ pub fn make_body(
     quality.warnings.extend(packed.warnings());
     seconds.report += started.elapsed().as_secs_f64();
 
-    let body = body_of(&solid, settings, &packed, bonds, bonding_radius, &quality);
+    let body = body_of(&solid, settings, &packed, bonds, bond_range, &quality);
     let report = BodyReport {
         mass: of_named_density(&body),
         mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
         centre_m: of_body(&body, 1.0).centre_m,
         quality,
         history: packed.packing.history,
-        bonding_radius,
+        bond_range,
         density_search: packed.density_search,
         repairs: surface.repairs.clone(),
         seconds,
@@ -229,7 +229,7 @@ fn body_of(
     settings: &BodySettings,
     packed: &Packed,
     bonds: Vec<[u32; 2]>,
-    bonding_radius: f64,
+    bond_range: f64,
     quality: &Report,
 ) -> Body {
     let surface = solid.surface;
@@ -252,7 +252,7 @@ fn body_of(
             shape_volume_m3: Some(surface.volume_m3()),
             particle_density_kg_m3: settings.particle_density_kg_m3,
             overlap: Some(packed.settings.overlap),
-            bonding_radius: Some(bonding_radius),
+            bond_range: Some(bond_range),
             seed: Some(packed.settings.seed),
             warnings: quality.warnings.clone(),
         },
@@ -274,13 +274,13 @@ fn parts(surface: &Surface) -> usize {
 
 /// A warning if many spheres jammed.
 fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
-    let fraction = history.taken_out as f64 / particles.max(1) as f64;
+    let fraction = history.removed as f64 / particles.max(1) as f64;
     (fraction > MANY_TAKEN_OUT).then(|| {
         format!(
-            "{} spheres ({} %) jammed while settling and were taken out: --settle {} leaves them more room",
-            history.taken_out,
+            "{} spheres ({} %) jammed during densification and were removed: --densify {} leaves them more room",
+            history.removed,
             significant(100.0 * fraction, 2),
-            significant(0.8 * history.settle, 2)
+            significant(0.8 * history.densify, 2)
         )
     })
 }

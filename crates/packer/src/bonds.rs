@@ -1,7 +1,7 @@
 //! Bonds: which pairs of spheres are joined.
 //!
-//! A pair is joined when the distance of its centres is at most `bonding_radius * (R_a + R_b)`,
-//! true radii (thesis 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
+//! A pair is joined when the distance of its centres is at most `bond_range * (R_a + R_b)`,
+//! true radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
 //! two.
 
 use crate::spheres::Spheres;
@@ -13,12 +13,12 @@ use rayon::prelude::*;
 /// the surface.
 pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
-/// Beyond this bonding radius a bond would pass through other spheres.
-pub(crate) const LARGEST_BONDING_RADIUS: f64 = 2.0;
-/// Bonds per particle of a body that is well bonded (thesis: 377,052 bonds of 77,487 spheres,
+/// Beyond this bond range a bond would pass through other spheres.
+pub(crate) const LARGEST_BOND_RANGE: f64 = 2.0;
+/// Bonds per particle of a body that is well bonded (Platzer 2022: 377,052 bonds of 77,487 spheres,
 /// 4.87).
 pub(crate) const WELL_BONDED: f64 = 5.0;
-/// Spheres whose neighbours are counted to advise a bonding radius: enough for 1 % of the number of
+/// Spheres whose neighbours are counted to advise a bond range: enough for 1 % of the number of
 /// bonds.
 const SPHERES_TO_ADVISE: usize = 5000;
 /// Spheres that one task searches around: fixed, so that the order of results is the same for any
@@ -30,20 +30,20 @@ const CHUNK: usize = 4096;
 /// its two balls, which lie in the solid.
 ///
 /// # Errors
-/// A bonding radius that is not above 0 and at most 2; more spheres than 2^32.
+/// A bond range that is not above 0 and at most 2; more spheres than 2^32.
 pub fn find_bonds(
     spheres: &Spheres,
-    bonding_radius: f64,
+    bond_range: f64,
     crosses_surface: CrossesSurface,
 ) -> Result<Vec<[u32; 2]>> {
-    if !(bonding_radius > 0.0 && bonding_radius <= LARGEST_BONDING_RADIUS) {
+    if !(bond_range > 0.0 && bond_range <= LARGEST_BOND_RANGE) {
         return Err(Diagnostic::input(
-            "--bonding-radius",
-            format!("{bonding_radius} is not above 0 and at most {LARGEST_BONDING_RADIUS}"),
+            "--bond-range",
+            format!("{bond_range} is not above 0 and at most {LARGEST_BOND_RANGE}"),
             "give the largest distance of two bonded spheres as a multiple of the sum of their radii, such as 1.1",
         ));
     }
-    let parts = search(spheres, bonding_radius, |a, b, distance| {
+    let parts = search(spheres, bond_range, |a, b, distance| {
         is_joined(spheres, a, b, distance, crosses_surface).then(|| [a.min(b), a.max(b)])
     })?;
     Ok(sorted(parts, spheres.radii.len()))
@@ -58,12 +58,12 @@ pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
     Ok(sorted(parts, spheres.radii.len()))
 }
 
-/// The bonding radius that gives `wanted` bonds per particle (bonds divided by particles), as near
+/// The bond range that gives `wanted` bonds per particle (bonds divided by particles), as near
 /// as whole bonds allow: half-way between the last pair that is joined and the first that is not.
 ///
 /// # Errors
-/// `wanted` not positive, or not reached with a bonding radius of 2; more spheres than 2^32.
-pub fn bonding_radius_for(
+/// `wanted` not positive, or not reached with a bond range of 2; more spheres than 2^32.
+pub fn bond_range_for(
     spheres: &Spheres,
     wanted: f64,
     crosses_surface: CrossesSurface,
@@ -90,24 +90,24 @@ pub fn bonding_radius_for(
             let next = rest.iter().copied().fold(limit, f64::min);
             return Ok(0.5 * (*last + next));
         }
-        if limit >= LARGEST_BONDING_RADIUS {
+        if limit >= LARGEST_BOND_RANGE {
             return Err(Diagnostic::input(
                 PLACE,
                 format!(
-                    "{wanted} bonds per particle cannot be reached: {} even with the largest bonding radius of {LARGEST_BONDING_RADIUS}",
+                    "{wanted} bonds per particle cannot be reached: {} even with the largest bond range of {LARGEST_BOND_RANGE}",
                     dem_io::units::significant(ratios.len() as f64 / count.max(1) as f64, 3)
                 ),
                 "ask for fewer",
             ));
         }
-        limit = (limit * 1.2).min(LARGEST_BONDING_RADIUS);
+        limit = (limit * 1.2).min(LARGEST_BOND_RANGE);
     }
 }
 
-/// A bonding radius to advise when a packing has too few bonds: gives 5 bonds per
-/// particle, rounded up to two decimals. None where no bonding radius does. Of many spheres, the
+/// A bond range to advise when a packing has too few bonds: gives 5 bonds per
+/// particle, rounded up to two decimals. None where no bond range does. Of many spheres, the
 /// neighbours of some are counted.
-pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
+pub fn suggested_bond_range(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
     let radii = &spheres.radii;
     let stride = radii.len().div_ceil(SPHERES_TO_ADVISE).max(1);
     let largest = radii.iter().copied().fold(0.0, f64::max);
@@ -140,10 +140,10 @@ pub fn suggested_bonding_radius(spheres: &Spheres, crosses_surface: CrossesSurfa
             let (_, last, _) = ratios.select_nth_unstable_by(ends - 1, f64::total_cmp);
             return Some((*last * 100.0).ceil() / 100.0);
         }
-        if limit >= LARGEST_BONDING_RADIUS {
+        if limit >= LARGEST_BOND_RANGE {
             return None;
         }
-        limit = (limit * 1.2).min(LARGEST_BONDING_RADIUS);
+        limit = (limit * 1.2).min(LARGEST_BOND_RANGE);
     }
 }
 

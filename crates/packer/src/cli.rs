@@ -4,7 +4,7 @@ mod arguments;
 mod report;
 mod shape;
 
-pub use self::arguments::Arguments;
+pub use self::arguments::{Arguments, RENAMED};
 use self::arguments::{Command, PackArguments, Reading};
 use self::report::{summary_text, surface_summary, surface_text};
 use self::shape::read_surface;

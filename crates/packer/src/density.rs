@@ -161,7 +161,7 @@ impl Search {
     fn keep_nearer(&mut self, found: Try, packing: Packing) {
         let history = &packing.history;
         self.seconds[0] += history.front_seconds;
-        self.seconds[1] += history.settle_seconds;
+        self.seconds[1] += history.densify_seconds;
         self.seconds[2] += history.fill_seconds;
         let before = self.best.as_ref().map(|(best, _)| self.off(best.filled));
         if before.is_none_or(|before| self.off(found.filled) < before) {
@@ -221,7 +221,7 @@ pub(crate) fn pack_to_density(
     let history = &mut packing.history;
     [
         history.front_seconds,
-        history.settle_seconds,
+        history.densify_seconds,
         history.fill_seconds,
     ] = search.seconds;
     let found = DensitySearch {

@@ -31,7 +31,7 @@ mod sizes;
 mod spheres;
 
 pub use body::{BodyReport, BodySettings, StageSeconds, make_body};
-pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bond_range_for, find_bonds};
 pub use density::DensitySearch;
 pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};
 pub use quality::{Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
@@ -41,7 +41,7 @@ pub use spheres::Spheres;
 /// Stages one by one, for the tests of this crate: they may change at any time.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::bonds::{close_pairs, suggested_bonding_radius};
+    pub use crate::bonds::{close_pairs, suggested_bond_range};
     pub use crate::front::halo::{Halo, Neighbours};
     pub use crate::geometry::boundary::Boundary;
     pub use crate::geometry::depth_map::DepthMap;

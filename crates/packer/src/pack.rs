@@ -68,7 +68,7 @@ pub(crate) fn pack_if(
     let job = Job::new(solid, settings)?;
     let mut attempt = Retry::first(choose_shrink(settings), &settings.sizes);
     let mut retry = Retry::new(&job);
-    let mut settle_seconds = 0.0;
+    let mut densify_seconds = 0.0;
     let (mut spheres, grown, settled) = loop {
         let front = grow(&job, &attempt, progress)?;
         if let Some(better) = retry.after_front(&attempt, &front) {
@@ -88,30 +88,30 @@ pub(crate) fn pack_if(
             &mut spheres,
             progress,
         )?;
-        settle_seconds += settling.elapsed().as_secs_f64();
+        densify_seconds += settling.elapsed().as_secs_f64();
         match retry.after_settling(&attempt, &settled) {
             Some(better) => attempt = better,
             None => break (spheres, grown, settled),
         }
     };
-    let front_seconds = started.elapsed().as_secs_f64() - settle_seconds;
+    let front_seconds = started.elapsed().as_secs_f64() - densify_seconds;
     let filling = Instant::now();
     let filled = fill(&job, attempt.fills_voids, &mut spheres, progress)?;
 
     let history = PackHistory {
         seed_point_m: solid.to_metres(&job.seed),
         largest_inscribed_diameter_m: solid.largest_inscribed_diameter_m(),
-        settle: attempt.shrink,
+        densify: attempt.shrink,
         fronts: grown.fronts,
-        settling_steps: settled.steps,
-        taken_out: settled.taken_out,
+        densify_steps: settled.steps,
+        removed: settled.taken_out,
         attempts: retry.fronts,
         void_fillers: grown.fillers + filled.fillers,
         loose_fillers: grown.loose_fillers + filled.fillers,
         voids_left: grown.voids_left + filled.voids_left,
         unplaced: grown.unplaced,
         front_seconds,
-        settle_seconds,
+        densify_seconds,
         fill_seconds: filling.elapsed().as_secs_f64(),
     };
     let spheres = full_size(&job, &spheres)?;

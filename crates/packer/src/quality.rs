@@ -21,7 +21,7 @@ pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;
 use self::warnings::{ENOUGH_BONDS, warnings};
-use crate::bonds::suggested_bonding_radius;
+use crate::bonds::suggested_bond_range;
 use crate::sizes::{ks_distance_by_mass, ks_distance_by_number};
 use dem_io::Result;
 
@@ -58,7 +58,7 @@ pub fn assess(packing: &BondedPacking) -> Result<Report> {
     let mut report = Report {
         particles: count,
         bonds: packing.bonds.len(),
-        bonding_radius: packing.bonding_radius,
+        bond_range: packing.bond_range,
         mean_diameter_m: mean_diameter * unit,
         overlap: packing.overlap,
         shape_volume_m3: packing.shape_volume * unit.powi(3),
@@ -86,7 +86,7 @@ pub fn assess(packing: &BondedPacking) -> Result<Report> {
         warnings: Vec::new(),
     };
     let advised = if count > 1 && bonds_per_particle < ENOUGH_BONDS {
-        suggested_bonding_radius(spheres, packing.crosses_surface)
+        suggested_bond_range(spheres, packing.crosses_surface)
     } else {
         None
     };

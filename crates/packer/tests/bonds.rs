@@ -3,8 +3,8 @@
 use crate::helpers::lattice::cubic;
 use crate::helpers::random::Random;
 use dem_pack::Spheres;
-use dem_pack::internals::{close_pairs, suggested_bonding_radius};
-use dem_pack::{bond_lengths, bond_radii, bonding_radius_for, find_bonds};
+use dem_pack::internals::{close_pairs, suggested_bond_range};
+use dem_pack::{bond_lengths, bond_radii, bond_range_for, find_bonds};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -58,10 +58,10 @@ fn a_cubic_lattice_has_its_neighbours() {
         faces + face_diagonals + space_diagonals
     );
 
-    let radius = bonding_radius_for(&spheres, faces as f64 / f64::from(n), &open).unwrap();
+    let radius = bond_range_for(&spheres, faces as f64 / f64::from(n), &open).unwrap();
     assert!(radius > 1.0 && radius < 2.0_f64.sqrt(), "{radius}");
     assert_eq!(find_bonds(&spheres, radius, &open).unwrap().len(), faces);
-    assert_eq!(suggested_bonding_radius(&spheres, &open), Some(1.42));
+    assert_eq!(suggested_bond_range(&spheres, &open), Some(1.42));
 
     let bonds = find_bonds(&spheres, 1.42, &open).unwrap();
     assert!(bonds.is_sorted() && bonds.iter().all(|[a, b]| a < b));
@@ -115,7 +115,7 @@ fn two_fingers_stay_two() {
     );
     // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2)
     // are the next.
-    let radius = bonding_radius_for(&spheres, 38.0 / 40.0, &wall).unwrap();
+    let radius = bond_range_for(&spheres, 38.0 / 40.0, &wall).unwrap();
     assert_eq!(find_bonds(&spheres, radius, &wall).unwrap(), bonds);
 }
 
@@ -124,7 +124,7 @@ fn the_wanted_number_of_bonds_is_met() {
     for (ratio, seed) in [(1.0, 1), (1.5, 2), (8.0, 3)] {
         let spheres = scattered(3000, ratio, seed);
         for wanted in [0.5, 2.0, 4.87] {
-            let radius = bonding_radius_for(&spheres, wanted, &open).unwrap();
+            let radius = bond_range_for(&spheres, wanted, &open).unwrap();
             let bonds = find_bonds(&spheres, radius, &open).unwrap();
             assert_eq!(
                 bonds.len(),
@@ -141,21 +141,21 @@ fn what_cannot_be_is_said() {
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 2.01] {
         let error = find_bonds(&spheres, radius, &open).unwrap_err();
         assert!(
-            error.place == "--bonding-radius" && error.problem.contains(&radius.to_string()),
+            error.place == "--bond-range" && error.problem.contains(&radius.to_string()),
             "{error}"
         );
     }
     for wanted in [0.0, -3.0, f64::NAN, f64::INFINITY] {
-        assert!(bonding_radius_for(&spheres, wanted, &open).is_err());
+        assert!(bond_range_for(&spheres, wanted, &open).is_err());
     }
-    let error = bonding_radius_for(&spheres, 40.0, &open).unwrap_err();
+    let error = bond_range_for(&spheres, 40.0, &open).unwrap_err();
     assert!(
         error
             .problem
             .contains("40 bonds per particle cannot be reached"),
         "{error}"
     );
-    assert_eq!(suggested_bonding_radius(&cubic([2; 3], 0.5), &open), None);
+    assert_eq!(suggested_bond_range(&cubic([2; 3], 0.5), &open), None);
     assert!(
         find_bonds(&Spheres::default(), 1.1, &open)
             .unwrap()
@@ -177,7 +177,7 @@ fn the_same_bonds_for_any_number_of_threads() {
             .build()
             .unwrap();
         pool.install(|| {
-            let radius = bonding_radius_for(&spheres, 3.0, &open).unwrap();
+            let radius = bond_range_for(&spheres, 3.0, &open).unwrap();
             (
                 radius.to_bits(),
                 find_bonds(&spheres, radius, &open).unwrap(),

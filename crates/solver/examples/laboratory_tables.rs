@@ -68,7 +68,7 @@ const DISC_AND_BAR_HEAD: [&str; 7] = [
     "bonds",
     "failure force",
     "strength",
-    "modulus of the body",
+    "specimen modulus",
     "half the rate changes the force",
     "crack from the middle",
 ];
@@ -92,7 +92,7 @@ const LARGER_SPHERES_HEAD: [&str; 9] = [
 ];
 
 const FLAT_HEAD: [&str; 3] = [
-    "`bonds.cake.damping.viscous`",
+    "`bonds.cake.damping.damping_ratio`",
     "rebound",
     "share of the height of the fall",
 ];
@@ -127,7 +127,7 @@ const STRENGTHS: [Strength; 3] = [
     Strength {
         first_cell: "rises with the rate of elongation, `--seed 1`",
         name: "elongation",
-        sets: &["bonds.cake.failure.rate_of=\"elongation\""],
+        sets: &["bonds.cake.failure.strain_rate_measure=\"elongation\""],
         all_packings: false,
     },
     Strength {
@@ -145,7 +145,7 @@ const FALLS: [(&str, &[&str]); 4] = [
     ("25-flat", &[TILT]),
     ("25-upright", &[TILT, UPRIGHT[0], UPRIGHT[1]]),
 ];
-const TILT: &str = "walls.plate.tilt=\"25 deg\"";
+const TILT: &str = "walls.plate.rotation.angle=\"25 deg\"";
 const UPRIGHT: [&str; 2] = [
     "bodies.sample.rotation={axis=[0,1,0],angle=\"-90 deg\"}",
     "bodies.sample.position=[\"17.5 mm\",\"-15 mm\",\"15 mm\"]",
@@ -213,7 +213,7 @@ fn bending(bench: &Bench, packings: u32) -> Result<(), Failed> {
     let mut rows: Vec<Vec<String>> = runs.iter().map(bending_cells).collect();
     let [modulus, ratio, force] = [
         over(&|run| 1e-6 * figure(run, "modulus without shear")),
-        over(&|run| figure(run, "modulus over that of the bonds")),
+        over(&|run| figure(run, "specimen modulus over bond modulus")),
         over(&|run| figure(run, "failure force")),
     ];
     rows.push(vec![
@@ -232,14 +232,14 @@ fn bending(bench: &Bench, packings: u32) -> Result<(), Failed> {
 fn bending_cells(run: &Value) -> Vec<String> {
     let crack = &run["test"]["crack"];
     let changes = ["modulus without shear", "failure force"].map(|name| {
-        let changes = &run["test"]["half_the_rate_changes"];
+        let changes = &run["test"]["changes_at_half_the_rate"];
         found(changes, name).map(|change| percent(number(&change["value"])))
     });
     let changes: Vec<String> = changes.into_iter().flatten().collect();
     vec![
         thousands(&run["bonds"]),
         with_error(run, "modulus without shear", 1e-6, 2, "MPa"),
-        format!("{:.2}", figure(run, "modulus over that of the bonds")),
+        format!("{:.2}", figure(run, "specimen modulus over bond modulus")),
         with_error(run, "failure force", 1.0, 1, "N"),
         changes.join(", "),
         format!(
@@ -247,7 +247,7 @@ fn bending_cells(run: &Value) -> Vec<String> {
             1e3 * number(&crack["offset_m"]),
             1e3 * number(&crack["spread_m"])
         ),
-        format!("{:.0} %", 100.0 * number(&crack["share_within"])),
+        format!("{:.0} %", 100.0 * number(&crack["fraction_within"])),
     ]
 }
 
@@ -274,14 +274,14 @@ fn disc_and_bar(bench: &Bench, packings: u32) -> Result<(), Failed> {
             in_cell(&values, digits, unit)
         };
         let change = |run: &Value| {
-            let changes = &run["test"]["half_the_rate_changes"];
+            let changes = &run["test"]["changes_at_half_the_rate"];
             found(changes, "failure force").map_or(f64::NAN, |change| number(&change["value"]))
         };
         rows.push(vec![
             over(0, 1.0, "", &|run| number(&run["bonds"])),
             over(1, 1.0, "N", &|run| figure(run, "failure force")),
             over(4, 1e-6, "MPa", &|run| figure(run, "strength")),
-            over(2, 1e-6, "MPa", &|run| figure(run, "modulus of the body")),
+            over(2, 1e-6, "MPa", &|run| figure(run, "specimen modulus")),
             over(1, 100.0, "%", &change),
             over(1, 1e3, "mm", &|run| {
                 number(&run["test"]["crack"]["offset_m"])
@@ -314,7 +314,7 @@ fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
     let folder = bench.results.join("larger-spheres");
     let mut command = Command::new(&bench.dem_run);
     command.arg("sweep").arg(&study_file);
-    command.args(["--json", "--quiet", "--out"]).arg(&folder);
+    command.args(["--json", "--quiet", "--output"]).arg(&folder);
     command.arg(if bench.resume && folder.exists() {
         "--resume"
     } else {
@@ -353,7 +353,7 @@ fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
             format!(
                 "{}, {}",
                 set("bonds.cake.young_modulus"),
-                set("bonds.cake.failure.von_mises")
+                set("bonds.cake.failure.von_mises_strength")
             ),
             format!(
                 "{:.2} kN/m{}",
@@ -395,7 +395,7 @@ fn inclined_table(packings: u32) -> Table {
 }
 
 fn damping_set(damping: &str) -> String {
-    format!("bonds.cake.damping.viscous={damping}")
+    format!("bonds.cake.damping.damping_ratio={damping}")
 }
 
 fn inclined_sets(strength: &[&'static str], fall: &[&'static str]) -> Vec<&'static str> {
@@ -534,7 +534,7 @@ impl Bench {
         let mut command = Command::new(&self.dem_pack);
         command.arg(format!("data/shapes/{shape}.stl"));
         command.args(["--diameter", sizes, "--overlap", "0.296"]);
-        command.args(["--bonding-radius", "1.0", "--quiet", "--seed"]);
+        command.args(["--bond-range", "1.0", "--quiet", "--seed"]);
         command.arg(seed.to_string()).arg("-o").arg(&body);
         if !(self.resume && body.exists()) {
             self.output(&mut command)?;
@@ -554,7 +554,7 @@ impl Bench {
         let summary = folder.join("summary.json");
         let mut command = Command::new(&self.dem_run);
         command.arg(format!("data/scenes/{scene}.toml"));
-        command.args(["--threads", "1", "--quiet", "--force", "--out"]);
+        command.args(["--threads", "1", "--quiet", "--force", "--output"]);
         command.arg(&folder);
         if let Some(body) = body {
             command.arg("--body").arg(body);
@@ -624,14 +624,14 @@ fn in_cell(values: &[f64], digits: usize, unit: &str) -> String {
 
 /// The figure of a test with this name, wherever it stands.
 fn figure(run: &Value, name: &str) -> f64 {
-    ["figures", "calibration"]
+    ["results", "calibration"]
         .iter()
         .find_map(|part| found(&run["test"][part], name))
         .map_or(f64::NAN, |figure| number(&figure["value"]))
 }
 
 fn with_error(run: &Value, name: &str, factor: f64, digits: usize, unit: &str) -> String {
-    let Some(figure) = found(&run["test"]["figures"], name) else {
+    let Some(figure) = found(&run["test"]["results"], name) else {
         return String::new();
     };
     let value = factor * number(&figure["value"]);

@@ -31,7 +31,10 @@ use crate::plan::{Plan, plan};
 use crate::run::snapshot::Snapshot;
 use crate::run::{Finished, Outcome, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
 
-/// Runs scenes with bonded bodies.
+/// Options that had another name before version 0.1, and their names.
+pub const RENAMED: [(&str, &str); 2] = [("--out", "--output"), ("--want", "--max-error")];
+
+/// Simulates the breakage of bonded particles with the discrete element method.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -41,7 +44,7 @@ use crate::run::{Finished, Outcome, RunSettings, finish, run as run_plan, run_as
     after_help = "Exit codes: 0 done, 1 failed while running, 2 bad input, 3 unstable, 130 interrupted.\n\
                   Examples:\n  \
                   dem-run data/scenes/cantilever.toml\n  \
-                  dem-run spinning-bar.toml --set run.end_time=0.5 --out spin\n  \
+                  dem-run spinning-bar.toml --set run.end_time=0.5 --output spin\n  \
                   dem-pack cake.stl --diameter 2mm..3mm | dem-run clamped.toml --body -"
 )]
 pub struct Arguments {
@@ -53,32 +56,31 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what a scene will do: time step and why, stages, memory, predicted run time; nothing is
-    /// run
+    /// Dry run: print the time step and why, active stages, memory and the estimated run time
     Check {
         #[command(flatten)]
         scene: SceneArguments,
     },
-    /// Write a fragment of a run as a body: its particles where they stand in a frame, and the
-    /// bonds that hold
+    /// Write a fragment of a run as a body: its particles as they stand in a frame, and its
+    /// unbroken bonds
     #[command(
-        after_help = "Bonds keep the lengths at which they are free of force: one that is stretched stays so. Velocities, and that bonds are bent, \
-                      twisted or sheared, are not kept.\n\
+        after_help = "Bonds keep their stress-free lengths: a stretched bond stays stretched. Velocities, and bending, torsion and shear of bonds, \
+                      are not kept.\n\
                       Example:\n  dem-run fragment results --largest -o piece.vtp"
     )]
     Fragment(fragment::FragmentArguments),
-    /// Run a scene with many settings: error against run time
+    /// Parameter study: run a scene with many settings, and compare error and run time
     #[command(
-        after_help = "A study names a scene, what varies, what is measured and against what. Every run is a process of its own.\n\
+        after_help = "A study names a scene, what varies, what is measured and what it is compared with. Every run is a separate process.\n\
                       Exit code 1, after the tables are written, where runs failed or are missing; also with --collect and --quiet.\n\
                       Examples:\n  \
-                      dem-run sweep data/studies/cantilever-models.toml --want error=1% --write fast.toml\n  \
+                      dem-run sweep data/studies/cantilever-models.toml --max-error all=1% --write fast.toml\n  \
                       dem-run sweep study.toml --list | parallel -j 16; dem-run sweep study.toml --collect"
     )]
     Sweep(sweep::SweepArguments),
-    /// Try the solver on stiff and extreme scenes, each with a prediction made before its run: a
-    /// table of case, predicted, observed, verdict
-    #[command(after_help = "Exit code 0 if all cases do as predicted, else 1.\n\
+    /// Stress suite: run stiff and extreme scenes, each with a prediction made before its run;
+    /// print case, predicted, observed, verdict
+    #[command(after_help = "Exit code 0 if all cases behave as predicted, else 1.\n\
                       Example:\n  dem-run stress spin mass-ratio")]
     Stress(stress::StressArguments),
     /// Print a script that completes dem-run's options in a shell
@@ -92,23 +94,23 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct SceneArguments {
-    /// The scene (.toml); or a body (.vtp, .data, .csv, .txt) to say what it holds
+    /// The scene (.toml); or a body (.vtp, .data, .csv, .txt) to describe
     #[arg(value_name = "SCENE", required_unless_present = "body")]
     file: Option<PathBuf>,
-    /// File of a body, in place of the scene's; - is a .vtp on standard input. NAME= may be left
-    /// out where there is one body
+    /// File of a body, instead of the scene's; - is a .vtp on standard input. NAME= may be left
+    /// out if there is only one body
     #[arg(long, value_name = "[NAME=]FILE")]
     body: Vec<String>,
     /// Set a value of the scene, such as run.end_time=0.5 or "bonds.bar.young_modulus=20 MPa"
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
-    /// Take the scene's time step even if it is above the largest stable one
+    /// Accept a time step of the scene above the largest stable one
     #[arg(long)]
     force_step: bool,
-    /// Threads; all cores unless given. The results are the same for any number
+    /// Number of threads; all cores unless given. The results are the same for any number
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Say it as JSON
+    /// Print it as JSON
     #[arg(long)]
     json: bool,
 }
@@ -119,14 +121,14 @@ struct RunArguments {
     scene: SceneArguments,
     /// Folder for the results
     #[arg(long, short, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Replace the results that are in the folder
+    output: Option<PathBuf>,
+    /// Overwrite the results in the folder
     #[arg(long, conflicts_with = "resume")]
     force: bool,
-    /// Go on with the run whose checkpoint is in the folder
+    /// Resume from the checkpoint in the folder
     #[arg(long)]
     resume: bool,
-    /// Say nothing but errors: no progress, no warnings, no summary; --json is printed all the same
+    /// Only print errors: no progress, no warnings, no summary; --json is still printed
     #[arg(long, short)]
     quiet: bool,
 }
@@ -140,8 +142,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     match &arguments.command {
         Some(Command::Check { scene }) if !scene.names_a_scene() => Err(Diagnostic::input(
             scene.place(),
-            "this is no scene (.toml)",
-            "name one; what a body holds, dem-run says without check",
+            "this is not a scene (.toml)",
+            "name a scene; dem-run describes a body without check",
         )),
         Some(Command::Check { scene }) => in_pool(scene.threads, |threads| {
             let (scene_data, bodies) = scene.read()?;
@@ -196,7 +198,7 @@ impl RunArguments {
     /// Refuses what means nothing where no scene is run.
     fn refuse_scene_options(&self) -> Result<()> {
         let given = [
-            ("--out", self.out.is_some()),
+            ("--output", self.output.is_some()),
             ("--force", self.force),
             ("--resume", self.resume),
             ("--set", !self.scene.overrides.is_empty()),
@@ -396,7 +398,7 @@ fn folder_to_open(arguments: &RunArguments, scene: &Scene) -> Result<Option<(Pat
         None if arguments.resume => Err(Diagnostic::input(
             "--resume",
             "no folder of results is named",
-            "add --out FOLDER",
+            "add --output FOLDER",
         )),
         None => Ok(None),
     }
@@ -465,7 +467,7 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
             match &summary.results {
                 None => writeln!(
                     out,
-                    "no files written: add --out FOLDER to keep the results"
+                    "no files written: add --output FOLDER to keep the results"
                 ),
                 Some(_) => Ok(()),
             }
@@ -493,7 +495,7 @@ fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
 
 /// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
 fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
-    if let Some(out) = &arguments.out {
+    if let Some(out) = &arguments.output {
         return Some(out.clone());
     }
     let output = scene.output.as_ref()?;

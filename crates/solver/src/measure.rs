@@ -7,7 +7,7 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dem_io::scene::{At, Measure, Quantity};
+use dem_io::scene::{Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
@@ -68,7 +68,7 @@ pub struct Measured {
     /// Largest error for the run to be called good.
     pub tolerance: Option<f64>,
     /// Largest difference from the reference for the run to be called good, in `unit`.
-    pub tolerance_absolute: Option<f64>,
+    pub absolute_tolerance: Option<f64>,
     /// Why there is no value. None: there is one.
     pub missing: Option<String>,
 }
@@ -82,7 +82,7 @@ impl Measured {
             (Some(error), Some(tolerance)) => error.abs() <= tolerance,
             _ => true,
         };
-        within(self.error, self.tolerance) && within(off, self.tolerance_absolute)
+        within(self.error, self.tolerance) && within(off, self.absolute_tolerance)
     }
 }
 
@@ -353,12 +353,12 @@ impl Probe {
     pub fn result(&self) -> Measured {
         let history = &self.history;
         let last = history.last.map_or(f64::NAN, |(_, value)| value);
-        let value = match self.measure.at {
-            At::End => last,
-            At::Largest => history.largest.unwrap_or(f64::NAN),
-            At::Smallest => history.smallest.unwrap_or(f64::NAN),
-            At::Mean if history.duration_s > 0.0 => history.integral / history.duration_s,
-            At::Mean => last,
+        let value = match self.measure.statistic {
+            Statistic::End => last,
+            Statistic::Largest => history.largest.unwrap_or(f64::NAN),
+            Statistic::Smallest => history.smallest.unwrap_or(f64::NAN),
+            Statistic::Mean if history.duration_s > 0.0 => history.integral / history.duration_s,
+            Statistic::Mean => last,
         };
         let error = self.measure.reference.map(|reference| {
             let off = value - reference;
@@ -376,7 +376,7 @@ impl Probe {
             reference: self.measure.reference,
             error,
             tolerance: self.measure.tolerance,
-            tolerance_absolute: self.measure.tolerance_absolute,
+            absolute_tolerance: self.measure.absolute_tolerance,
         }
     }
 

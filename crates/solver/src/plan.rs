@@ -128,7 +128,7 @@ pub fn plan(
     let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
-    state.model.particle_damping = scene.run.particle_damping;
+    state.model.particle_damping = scene.run.local_damping;
     if state.model.particle_damping > 0.0 {
         state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
     }
@@ -144,9 +144,9 @@ pub fn plan(
     state.model.ball_m = ball_m;
     if !state.clumps.templates.is_empty() && state.model.particle_damping > 0.0 {
         return Err(Diagnostic::input(
-            format!("{}: run.particle_damping", scene.source),
-            "clumps have no particles of their own, which alone are damped so",
-            "leave it out, or start bodies as \"bonded\"",
+            format!("{}: run.local_damping", scene.source),
+            "it has no effect on clumps",
+            "remove it, or start bodies as \"bonded\"",
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
@@ -229,7 +229,7 @@ fn place_meetings(
     }
     state.model.search = Triggers {
         interval: scene.clusters.interval,
-        min_broken: scene.clusters.min_broken,
+        min_broken: scene.clusters.min_broken_bonds,
         force_every: scene.clusters.force_every,
     };
     if are_needed(scene) {
@@ -255,7 +255,7 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
     let mut held_by: BTreeMap<(u32, usize), &str> = BTreeMap::new();
     let mut supports = Vec::new();
     for (name, support) in &scene.supports {
-        let particles = particles_of(sets, &support.of);
+        let particles = particles_of(sets, &support.group);
         for &particle in particles {
             for (k, _) in support
                 .holds
@@ -268,7 +268,7 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
                         format!("{}: [supports.{name}]", scene.source),
                         format!(
                             "{} of a particle of '{}' is already held by [supports.{other}]",
-                            FREEDOMS[k], support.of
+                            FREEDOMS[k], support.group
                         ),
                         "hold each freedom of a particle once",
                     ));
@@ -303,7 +303,7 @@ fn loads(
         // What is let go before the load ends can move with it.
         let end_s = load.end_s.unwrap_or(f64::INFINITY);
         let held = held_freedoms(supports.iter().filter(|support| support.end_s >= end_s));
-        let particles = particles_of(sets, &load.of);
+        let particles = particles_of(sets, &load.group);
         let share = 1.0 / particles.len() as f64;
         let six: Vec<f64> = load.force_n.into_iter().chain(load.torque_n_m).collect();
         for particle in particles {
@@ -325,7 +325,7 @@ fn loads(
                             "N m about y",
                             "N m about z"
                         ][k],
-                        load.of
+                        load.group
                     ),
                     "load particles that can move, or free them",
                 ));

@@ -17,7 +17,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     damped: false,
     criteria: None,
     strengthening_from_1_s: None,
-    rate_of: dem_io::scene::RateOf::Elongation,
+    rate_of: dem_io::scene::StrainRateMeasure::Elongation,
 };
 
 /// All bond models, with the names of the reference values, which know no elastic solid bond.
@@ -39,7 +39,7 @@ pub(crate) enum BondDamping {
     Chen(f64),
     /// The same with the stiffness of each mode.
     ChenByMode(f64),
-    /// The thesis: this share of 2 sqrt(k_n m_red) on the velocity, and this factor on the moments.
+    /// Platzer 2022: this fraction of 2 sqrt(k_n m_red) on the velocity, and this factor on the moments.
     Platzer(f64, f64),
 }
 

@@ -39,14 +39,14 @@ pub(crate) fn bursting() -> Scene {
         "version = 1
         [run]
         end_time = 5e-4
-        safety = 0.2
+        safety_factor = 0.2
         seed = 5
         [materials.cake]
         density = 2050
         [bonds.brittle]
         young_modulus = 1e9
         poisson_ratio = 0.3
-        failure = {{ tension = 2e6, weibull_modulus = 4 }}
+        failure = {{ tensile_strength = 2e6, weibull_modulus = 4 }}
         [bodies.rod]
         material = \"cake\"
         bonds = \"brittle\"

@@ -34,7 +34,7 @@ pub(crate) fn head(slope_rad: f64) -> String {
     format!(
         "version = 1\nrun.end_time = 1\nrun.gravity = [{}, 0, {}]\n\
          materials.stuff = {{ density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }}\n\
-         bonds.stiff = {{ young_modulus = 1e8, poisson_ratio = 0.25, damping = {{ viscous = 0.3 }} }}\n\
+         bonds.stiff = {{ young_modulus = 1e8, poisson_ratio = 0.25, damping = {{ damping_ratio = 0.3 }} }}\n\
          contacts.stuff-stuff = {{ restitution = 0.05, friction = 0.8 }}\n",
         GRAVITY_M_S2 * sine,
         -GRAVITY_M_S2 * cosine

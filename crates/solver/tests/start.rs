@@ -26,8 +26,8 @@ use dem_io::read_bodies;
 const PAIR: &str = "version = 1\nmaterials.m.density = 1000\n\
      bonds.b = { model = \"parallel\", young_modulus = \"1 MPa\", poisson_ratio = 0.3, radius_factor = 1 }\n\
      bodies.pair = { material = \"m\", bonds = \"b\", particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3]], bond_list = [[0, 1]] }\n\
-     sets.first = { body = \"pair\", particles = [0] }\n\
-     sets.second = { body = \"pair\", particles = [1] }\n";
+     groups.first = { body = \"pair\", particles = [0] }\n\
+     groups.second = { body = \"pair\", particles = [1] }\n";
 
 /// Stiffness of the bond of [`PAIR`], N/m.
 const STIFFNESS_N_M: f64 = 1e6 * std::f64::consts::PI * 1e-6 / 2e-3;

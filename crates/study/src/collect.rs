@@ -43,10 +43,10 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
             (&measure.of, &measure.reference, read.closed_form)
         {
             return Err(format!(
-                "the scene says nothing of which the theory of '{name}' follows"
+                "the scene has no values for the theory of '{name}'"
             ));
         }
-        if let MeasureOf::Ledger(_) = measure.of {
+        if let MeasureOf::Balance(_) = measure.of {
             read.closed_form = Some(0.0);
         }
         readings.push(read);
@@ -73,7 +73,7 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         curve: Vec::new(),
     };
     let (entry, name, reference) = match of {
-        MeasureOf::Ledger(key) => {
+        MeasureOf::Balance(key) => {
             let value = summary[*key].as_f64().unwrap_or(f64::NAN);
             return Ok(plain(value));
         }
@@ -96,7 +96,7 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         }
         MeasureOf::Measure(name) => (summary["measures"].get(name), name, "reference"),
         MeasureOf::Figure(name) => {
-            let figures = summary["test"]["figures"].as_array();
+            let figures = summary["test"]["results"].as_array();
             let mut figures = figures.into_iter().flatten();
             let found = figures.find(|entry| entry["name"].as_str() == Some(name));
             (found, name, "theory")

@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn a_grid_has_each_with_each() {
         let grid = study(
-            "[set]\n\"run.seed\" = 3\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = { from = 1, to = 3, count = 3 }",
+            "[set]\n\"run.seed\" = 3\n[vary]\n\"run.safety_factor\" = [0.9, 0.5]\n\"run.rest_energy_ratio\" = { from = 1, to = 3, count = 3 }",
         );
         assert_eq!(
             labels(&grid),
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn pairs_go_side_by_side() {
         let paired = study(
-            "combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1, 2]",
+            "combine = \"paired\"\n[vary]\n\"run.safety_factor\" = [0.9, 0.5]\n\"run.rest_energy_ratio\" = [1, 2]",
         );
         assert_eq!(labels(&paired), ["0.9 1", "0.5 2"]);
         let runs_of = runs(&paired, false).unwrap();
@@ -183,19 +183,20 @@ mod tests {
             group(&paired, &runs_of[0], 0),
             group(&paired, &runs_of[1], 0)
         );
-        let uneven =
-            study("combine = \"paired\"\n[vary]\n\"run.safety\" = [0.9, 0.5]\n\"run.rest\" = [1]");
+        let uneven = study(
+            "combine = \"paired\"\n[vary]\n\"run.safety_factor\" = [0.9, 0.5]\n\"run.rest_energy_ratio\" = [1]",
+        );
         let said = runs(&uneven, true).unwrap_err();
         assert_eq!(said.exit_code(), 2);
         assert!(
             said.problem
-                .contains("run.rest has 1 values, but run.safety has 2")
+                .contains("run.rest_energy_ratio has 1 values, but run.safety_factor has 2")
         );
     }
 
     #[test]
     fn a_million_runs_are_refused_unless_asked_for() {
-        let many = "[vary]\n\"run.safety\" = { from = 0, to = 1, count = 1000 }\n\"run.rest\" = { from = 0, to = 1, count = COUNT }";
+        let many = "[vary]\n\"run.safety_factor\" = { from = 0, to = 1, count = 1000 }\n\"run.rest_energy_ratio\" = { from = 0, to = 1, count = COUNT }";
         let million = study(&format!("repeats = 1\n{}", many.replace("COUNT", "1000")));
         let said = runs(&million, false).unwrap_err().to_string();
         assert!(

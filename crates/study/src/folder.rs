@@ -54,7 +54,7 @@ impl SweepFolder {
         let place = path.display().to_string();
         let is_sweep = is_identity(&path.join(IDENTITY));
         if !is_sweep && earlier == Earlier::Collect {
-            let remedy = "run the sweep or its --list first, or name its folder with --out";
+            let remedy = "run the sweep or its --list first, or name its folder with --output";
             return Err(Diagnostic::input(
                 place,
                 "no sweep is in this folder",
@@ -64,11 +64,11 @@ impl SweepFolder {
         let is_empty = fs::read_dir(path).map_or(true, |mut entries| entries.next().is_none());
         if !is_sweep && !is_empty {
             let problem = "this folder holds something else than a sweep";
-            let remedy = "name another one with --out";
+            let remedy = "name another one with --output";
             return Err(Diagnostic::input(place, problem, remedy));
         }
         if is_sweep && earlier == Earlier::Refuse {
-            let remedy = "go on with it by --resume, replace it by --force, or name another folder with --out";
+            let remedy = "go on with it by --resume, replace it by --force, or name another folder with --output";
             return Err(Diagnostic::input(
                 place,
                 "a sweep is in this folder",
@@ -164,7 +164,7 @@ impl SweepFolder {
                     "this is an input of the study, and the sweep in '{}' would replace it",
                     path.display()
                 ),
-                "name another folder with --out, or copy the file elsewhere and name the copy",
+                "name another folder with --output, or copy the file elsewhere and name the copy",
             )),
         }
     }
@@ -191,7 +191,7 @@ impl SweepFolder {
         Err(Diagnostic::input(
             self.path.display().to_string(),
             format!("its runs are of another {what} than {} says", study.source),
-            "replace them with --force, or name another folder with --out",
+            "replace them with --force, or name another folder with --output",
         ))
     }
 }
@@ -260,7 +260,7 @@ fn lock(folder: &Path) -> Result<Option<File>> {
         Err(fs::TryLockError::WouldBlock) => Err(Diagnostic::input(
             folder.display().to_string(),
             "another sweep is writing into it",
-            "wait until it has ended, or name another folder with --out",
+            "wait until it has ended, or name another folder with --output",
         )),
     }
 }
@@ -270,6 +270,6 @@ fn cannot(path: &Path, error: &std::io::Error) -> Diagnostic {
     Diagnostic::failed(
         path.display().to_string(),
         problem,
-        "write elsewhere with --out",
+        "write elsewhere with --output",
     )
 }

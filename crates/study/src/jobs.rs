@@ -113,7 +113,14 @@ pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String>
     let mut arguments = scene_arguments(study, run);
     let threads = study.threads.to_string();
     let out = job.folder(runs).display().to_string();
-    for argument in ["--threads", &threads, "--out", &out, "--force", "--quiet"] {
+    for argument in [
+        "--threads",
+        &threads,
+        "--output",
+        &out,
+        "--force",
+        "--quiet",
+    ] {
         arguments.push(argument.to_owned());
     }
     arguments

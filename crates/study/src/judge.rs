@@ -187,7 +187,7 @@ fn set_error(judged: &mut Judged, reference: f64, uncertainty: Option<f64>) {
 pub fn in_words(study: &Study, measure: usize) -> String {
     let measure = &study.measures[measure];
     match (&measure.of, &measure.reference) {
-        (MeasureOf::Ledger(_), _) => "an error by itself".to_owned(),
+        (MeasureOf::Balance(_), _) => "an error by itself".to_owned(),
         (MeasureOf::Figure(_), Reference::ClosedForm) => "the theory of the test".to_owned(),
         (_, Reference::ClosedForm) => "the reference of the scene".to_owned(),
         (_, Reference::Value(text)) => text.clone(),

@@ -28,13 +28,13 @@ pub fn masses_kg(pieces: Pieces, results: &Path) -> Result<Vec<f64>, String> {
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let place = |wanted: &str| names.iter().position(|name| *name == wanted);
-    let (Some(mass), Some(kind)) = (place(column), place("kind").or(place("time_s"))) else {
+    let (Some(mass), Some(kind)) = (place(column), place("event").or(place("time_s"))) else {
         return Err(format!("its {file} has no column {column}"));
     };
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     let last_s = rows.last().and_then(|row| row.get(kind).copied());
     let wanted = match pieces {
-        Pieces::Left => Some("left"),
+        Pieces::Left => Some("discharged"),
         Pieces::AtEnd => last_s,
     };
     let of_row = |row: &&Vec<&str>| row.get(kind).copied() == wanted;
@@ -47,7 +47,7 @@ pub fn masses_kg(pieces: Pieces, results: &Path) -> Result<Vec<f64>, String> {
     match found {
         Some(found) if !found.is_empty() => Ok(found),
         Some(_) => Err(match pieces {
-            Pieces::Left => "nothing has left through an outlet".to_owned(),
+            Pieces::Left => "nothing was discharged through an outlet".to_owned(),
             Pieces::AtEnd => "there are no pieces at its end".to_owned(),
         }),
         None => Err(format!("a row of its {file} has no mass")),

@@ -110,7 +110,7 @@ impl Row {
     pub fn size(&self, study: &Study, along: usize) -> Option<f64> {
         let axis = &study.axes[along];
         match axis.name.as_str() {
-            "run.safety" => self.time_step_s,
+            "run.safety_factor" => self.time_step_s,
             _ => axis.values[self.choice[along]].size,
         }
     }

@@ -17,22 +17,25 @@ pub struct Want {
 }
 
 impl Want {
-    /// From `error=1%` or `NAME=1%`.
+    /// From `all=1%` or `NAME=1%`.
     ///
     /// # Errors
     /// No such measure, or no number above 0.
     pub fn parse(text: &str, table_measures: &[&str]) -> Result<Self> {
-        let place = format!("--want {text}");
-        let form = "write error=1%, or NAME=1% for one measure";
+        let place = format!("--max-error {text}");
+        let form = "write all=1%, or NAME=1% for one measure";
         let Some((name, error)) = text.split_once('=') else {
             return Err(Diagnostic::input(place, "there is no =", form));
         };
         let name = name.trim();
-        if name != "error" && !table_measures.contains(&name) {
+        if name != "all" && !table_measures.contains(&name) {
             return Err(Diagnostic::input(
                 place,
                 format!("nothing that is measured is called '{name}'"),
-                format!("use error for all, or one of {}", table_measures.join(", ")),
+                format!(
+                    "use all for all measures, or one of {}",
+                    table_measures.join(", ")
+                ),
             ));
         }
         let error = quantity(error, &NUMBER).map_err(|error| error.within(&place))?;
@@ -41,7 +44,7 @@ impl Want {
         }
         Ok(Self {
             text: text.to_owned(),
-            measure: (name != "error").then(|| name.to_owned()),
+            measure: (name != "all").then(|| name.to_owned()),
             error,
         })
     }
@@ -67,7 +70,9 @@ impl Want {
 /// # Errors
 /// None is as exact; times are of several machines.
 pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
-    let place = wants.iter().map(|want| format!("--want {}", want.text));
+    let place = wants
+        .iter()
+        .map(|want| format!("--max-error {}", want.text));
     let place = place.collect::<Vec<_>>().join(" ");
     if table.machines.len() > 1 {
         return Err(Diagnostic::input(

@@ -109,7 +109,7 @@ impl Bar {
                 damped: false,
                 criteria: None,
                 strengthening_from_1_s: None,
-                rate_of: dem_io::scene::RateOf::Elongation,
+                rate_of: dem_io::scene::StrainRateMeasure::Elongation,
             }]),
             ..Bonds::default()
         };

@@ -145,7 +145,7 @@ fn check_about(body: &Body) -> Result<()> {
             f64::MIN_POSITIVE,
         ),
         ("shape volume", about.shape_volume_m3, f64::MIN_POSITIVE),
-        ("bonding radius", about.bonding_radius, f64::MIN_POSITIVE),
+        ("bond range", about.bond_range, f64::MIN_POSITIVE),
         ("overlap", about.overlap, 0.0),
     ];
     for (what, value, least) in numbers {

@@ -1,7 +1,7 @@
 //! Bodies as a pair of CSV files for spreadsheets and scripts: `cake.particles.csv` and `cake.bonds.csv`.
 //!
-//! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and `a,b,radius_m,initial_length_m`.
-//! The ends `a` and `b` of a bond are the numbers of particles, counted from 0 in the order of their file. Every number reads
+//! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and `particle_a,particle_b,bond_radius_m,initial_length_m`.
+//! The ends `particle_a` and `particle_b` of a bond are the numbers of particles, counted from 0 in the order of their file. Every number reads
 //! back as the same bits. [`About`](super::About) has no place here and is left out.
 
 use std::io::{self, BufRead, Write};
@@ -12,7 +12,12 @@ use super::table::{Lines, float, in_table, on_line, particle, pick};
 use crate::diagnostic::{Diagnostic, Result};
 
 const PARTICLE_COLUMNS: [&str; 4] = ["x_m", "y_m", "z_m", "radius_m"];
-const BOND_COLUMNS: [&str; 4] = ["a", "b", "radius_m", "initial_length_m"];
+const BOND_COLUMNS: [&str; 4] = [
+    "particle_a",
+    "particle_b",
+    "bond_radius_m",
+    "initial_length_m",
+];
 
 /// Writes the file of the particles.
 ///
@@ -43,7 +48,7 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from its two files. Columns may stand in any order, others are left out. Without the column `radius_m` a bond
+/// Reads a body from its two files. Columns may stand in any order, others are left out. Without the column `bond_radius_m` a bond
 /// is as thick as the smaller of its particles, without `initial_length_m` it is as long as they are apart.
 ///
 /// # Errors
@@ -90,13 +95,13 @@ fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
         let [a, b, radius, length] = pick(line, columns);
         let mut read_line = || {
             let [a, b] = [
-                particle(a, "a", 0, particles)?,
-                particle(b, "b", 0, particles)?,
+                particle(a, "particle_a", 0, particles)?,
+                particle(b, "particle_b", 0, particles)?,
             ];
             check_different(a, b)?;
             parts.bonds.push([a, b]);
             if radius_column.is_some() {
-                let radius = float(radius, "radius_m")?;
+                let radius = float(radius, "bond_radius_m")?;
                 check_positive(radius, "radius")?;
                 radii.push(radius);
             }

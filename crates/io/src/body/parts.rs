@@ -20,7 +20,7 @@ pub struct About {
     /// Overlap o of the packing: spheres touch at r/(1 + o).
     pub overlap: Option<f64>,
     /// Bonds join pairs closer than this times the sum of their radii.
-    pub bonding_radius: Option<f64>,
+    pub bond_range: Option<f64>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
     /// What the program that made it warned of, a sentence each.

@@ -10,7 +10,7 @@ pub const RADIUS: &str = "radius_m";
 /// Particle array: density of the material, kg/m3.
 pub const DENSITY: &str = "density_kg_m3";
 /// Particle array: number of the fragment.
-pub const CLUSTER: &str = "cluster";
+pub const FRAGMENT_ID: &str = "fragment_id";
 /// Bond array: radius, m.
 pub const BOND_RADIUS: &str = "bond_radius_m";
 /// Bond array: length at which the bond is free of force, m.

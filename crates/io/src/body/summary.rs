@@ -196,8 +196,8 @@ impl fmt::Display for BodySummary {
                 .map(|volume| format!("shape of {} m3", significant(volume, 4))),
             about.overlap.map(|overlap| format!("overlap {overlap}")),
             about
-                .bonding_radius
-                .map(|radius| format!("bonding radius {radius}")),
+                .bond_range
+                .map(|radius| format!("bond range {radius}")),
             about.seed.map(|seed| format!("seed {seed}")),
         ];
         let made: Vec<String> = made.into_iter().flatten().collect();

@@ -18,8 +18,8 @@ pub(crate) use read::read_frame;
 use std::io::{self, Write};
 
 use names::{
-    BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY,
-    PROGRAM, RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+    BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM,
+    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 
 use super::parts::{About, Body};
@@ -67,12 +67,7 @@ fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {
         about.particle_density_kg_m3.map(exact),
     )?;
     write_number(out, "Float64", OVERLAP, about.overlap.map(exact))?;
-    write_number(
-        out,
-        "Float64",
-        BONDING_RADIUS,
-        about.bonding_radius.map(exact),
-    )?;
+    write_number(out, "Float64", BOND_RANGE, about.bond_range.map(exact))?;
     write_number(out, "UInt64", SEED, about.seed)?;
     write_texts(out, WARNINGS, &about.warnings)
 }

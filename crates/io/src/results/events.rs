@@ -10,7 +10,7 @@ use crate::diagnostic::Result;
 
 /// The first line of the file.
 pub const COLUMNS: &str =
-    "step,time_s,kind,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
+    "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]

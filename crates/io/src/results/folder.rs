@@ -381,7 +381,7 @@ pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()
                 "this is an input of the run, and results in '{}' would take its place",
                 path.display()
             ),
-            "name another folder with --out, or copy the file elsewhere and name the copy",
+            "name another folder with --output, or copy the file elsewhere and name the copy",
         )),
     }
 }
@@ -471,7 +471,7 @@ fn lock(folder: &Path) -> Result<File> {
         Err(TryLockError::WouldBlock) => Err(Diagnostic::input(
             folder.display().to_string(),
             "another run is writing into it",
-            "wait until that run has ended, or name another folder with --out",
+            "wait until that run has ended, or name another folder with --output",
         )),
         // Some network disks know no locks: that is no reason not to run.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),

@@ -13,11 +13,11 @@ use crate::safe_write::write_file;
 use crate::vtk::exact;
 
 /// The first line of the table of moments.
-pub const COLUMNS: &str = "time_s,id,parent,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
-                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,size_m,extent_m";
+pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
+                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m";
 
 /// The first line of the fragment tree.
-pub const TREE_COLUMNS: &str = "id,parent,born_s,ended_s,particles";
+pub const TREE_COLUMNS: &str = "fragment_id,parent_id,created_s,ended_s,particles";
 
 /// Rows that are handed to the system together.
 const AT_ONCE: usize = 1000;

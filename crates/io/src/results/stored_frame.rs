@@ -5,7 +5,8 @@ use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
 pub use crate::body::stored_frame::{
-    BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS, StoredFragment, StoredFrame, TIME,
+    BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS, StoredFragment, StoredFrame,
+    TIME,
 };
 use crate::body::vtp;
 use crate::diagnostic::{Diagnostic, Result};

@@ -80,7 +80,7 @@ const INDEX: Kind = Kind::Whole {
 
 pub(super) static BODY: Schema = Schema {
     title: "[bodies.NAME]",
-    doc: "A body, and how it stands and moves at the start. It has a `file` or `particles`.",
+    doc: "A body, its position and its velocity at the start. It has a `file` or `particles`.",
     keys: &[
         Key::text(
             "file",
@@ -108,14 +108,14 @@ pub(super) static BODY: Schema = Schema {
         Key::quantity(
             "mass",
             &MASS,
-            "What the body weighs. Without either its spheres have the density of the material, or else of the file.",
+            "Mass of the body. Without either its spheres have the density of the material, or else of the file.",
         )
         .positive()
         .otherwise("that of its particles"),
-        Key::text("bonds", "a name in [bonds]", "The kind of its bonds; a body without bonds needs none.")
+        Key::text("bonds", "a name in [bonds]", "The properties of its bonds; a body without bonds needs none.")
             .sometimes_required("\"NAME\", a name in [bonds]"),
-        Key::vector("position", &LENGTH, "It is moved by this, after `rotation`."),
-        Key::table("rotation", &ROTATION, "It is turned about the origin of its file.").or(0.0),
+        Key::vector("position", &LENGTH, "Translation of the body, after `rotation`."),
+        Key::table("rotation", &ROTATION, "Rotation about the origin of its file.").or(0.0),
         Key::vector("velocity", &VELOCITY, "Of the centre of mass."),
         Key::vector(
             "angular_velocity",
@@ -218,7 +218,7 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
         return Ok(mass.map(WholeMass::Mass));
     };
     if table.get("mass").is_some() {
-        let problem = format!("{} stands beside mass", field.path);
+        let problem = format!("{} cannot be combined with mass", field.path);
         return Err(field.refuse(
             problem,
             "either says what the body weighs: remove the other",
@@ -239,7 +239,7 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
     let bonds = table.get("bond_list");
     if let Some(file) = table.get("file") {
         if let Some(field) = particles.or(bonds) {
-            let problem = format!("{} stands beside file", field.path);
+            let problem = format!("{} cannot be combined with file", field.path);
             return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
         }
         return Ok(BodySource::File(named_path(&file, folder)?));
@@ -294,7 +294,7 @@ fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>
         let [from, to] = pair.map(|end| &particles[end as usize]);
         if from[..3] == to[..3] {
             let problem = format!(
-                "{} joins particles {} and {}, which stand at the same place",
+                "{} joins particles {} and {}, which are at the same place",
                 item.path, pair[0], pair[1]
             );
             return Err(item.refuse(problem, "a bond needs a length: move one of them"));

@@ -10,13 +10,13 @@ use crate::diagnostic::Result;
 use crate::units::{RATE, STRESS, VISCOUS_DAMPING};
 use serde::Serialize;
 
-/// Which beam a bond is taken for.
+/// Beam model of the bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BondModel {
-    /// "parallel": `kappa` is normal over shear stiffness, 2 (1 + nu) unless given.
+    /// "parallel": `stiffness_ratio` is normal over shear stiffness, 2 (1 + nu) unless given.
     Parallel {
         /// Normal over shear stiffness.
-        kappa: Option<f64>,
+        stiffness_ratio: Option<f64>,
     },
     /// "euler-bernoulli"
     EulerBernoulli,
@@ -63,20 +63,20 @@ pub struct BondKind {
 /// Viscous damping at the bond. Both may act together.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondDamping {
-    /// `viscous`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
-    pub viscous: f64,
-    /// `each_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
+    /// `damping_ratio`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
+    pub damping_ratio: f64,
+    /// `per_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
     /// one.
-    pub each_mode: bool,
-    /// `force`: d of Platzer 2022, eq. 7, N s/m. 0: none.
-    pub force_n_s_m: f64,
-    /// `torque`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
-    pub torque: f64,
+    pub per_mode: bool,
+    /// `damping_coefficient`: d of Platzer 2022, eq. 7, N s/m. 0: none.
+    pub damping_coefficient_n_s_m: f64,
+    /// `torque_factor`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
+    pub torque_factor: f64,
 }
 
 /// What the rate is of that strengthens bonds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub enum RateOf {
+pub enum StrainRateMeasure {
     /// "elongation": relative velocity along the bond over its initial length.
     #[default]
     Elongation,
@@ -88,21 +88,21 @@ pub enum RateOf {
 /// What breaks a bond; whichever comes first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
-    /// `tension`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
+    /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
     /// the sign of the force).
-    pub tension_pa: Option<f64>,
-    /// `compression`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
+    pub tensile_strength_pa: Option<f64>,
+    /// `compressive_strength`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
     /// breaks there.
-    pub compression_pa: Option<f64>,
-    /// `shear`: largest shear stress, Pa (MUSEN's tau_max).
-    pub shear_pa: Option<f64>,
-    /// `von_mises`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
-    pub von_mises_pa: Option<f64>,
+    pub compressive_strength_pa: Option<f64>,
+    /// `shear_strength`: largest shear stress, Pa (MUSEN's tau_max).
+    pub shear_strength_pa: Option<f64>,
+    /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
+    pub von_mises_strength_pa: Option<f64>,
     /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
     /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
     pub rate_strengthening_from_1_s: Option<f64>,
-    /// `rate_of`: what that rate is of. The elongation unless given.
-    pub rate_of: RateOf,
+    /// `strain_rate_measure`: what that rate is of. The elongation unless given.
+    pub strain_rate_measure: StrainRateMeasure,
     /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
     /// is the strength given. None: all alike.
     pub weibull_modulus: Option<f64>,
@@ -119,11 +119,11 @@ pub(super) static BOND: Schema = Schema {
         Key::new(
             "model",
             Kind::Word(|| words_of(&models(None, 0.0))),
-            "Which beam a bond is taken for.",
+            "Beam model of the bond.",
         )
         .or_word("timoshenko"),
         Key::number(
-            "kappa",
+            "stiffness_ratio",
             "Of the model `parallel`: normal over shear stiffness.",
         )
         .positive()
@@ -164,25 +164,25 @@ pub(super) static DAMPING: Schema = Schema {
     doc: "Viscous damping at the bond. Both kinds may act together.",
     keys: &[
         Key::number(
-            "viscous",
-            "eta of Chen et al. 2022, eqs. 9 and 10; 0: none.",
+            "damping_ratio",
+            "Fraction of critical damping: eta of Chen et al. 2022, eqs. 9 and 10; 0: none.",
         )
         .not_negative()
         .or(0.0),
         Key::flag(
-            "each_mode",
+            "per_mode",
             false,
-            "eta acts with the stiffness of each mode instead of the normal and the torsional one.",
+            "`damping_ratio` refers to the stiffness of each mode instead of the normal and the torsional one.",
         ),
         Key::quantity(
-            "force",
+            "damping_coefficient",
             &VISCOUS_DAMPING,
             "d of Platzer 2022, eq. 7; 0: none.",
         )
         .not_negative()
         .or(0.0),
         Key::number(
-            "torque",
+            "torque_factor",
             "Factor of the damping torque of Platzer 2022, eq. 9, which is 1 there; 0: none.",
         )
         .not_negative()
@@ -194,16 +194,16 @@ pub(super) static FAILURE: Schema = Schema {
     title: "Failure",
     doc: "What breaks a bond, whichever comes first. At least one strength is given.",
     keys: &[
-        Key::quantity("tension", &STRESS, "Largest stress at the pulled edge.").not_negative(),
+        Key::quantity("tensile_strength", &STRESS, "Largest tensile stress at the edge of the bond.").not_negative(),
         Key::quantity(
-            "compression",
+            "compressive_strength",
             &STRESS,
-            "Largest stress at the pressed edge; without it nothing breaks there.",
+            "Largest compressive stress at the edge of the bond; without it no bond breaks in compression.",
         )
         .not_negative(),
-        Key::quantity("shear", &STRESS, "Largest shear stress.").not_negative(),
+        Key::quantity("shear_strength", &STRESS, "Largest shear stress.").not_negative(),
         Key::quantity(
-            "von_mises",
+            "von_mises_strength",
             &STRESS,
             "Largest equivalent stress (Platzer 2022, eqs. 11 to 13).",
         )
@@ -221,11 +221,11 @@ pub(super) static FAILURE: Schema = Schema {
             "Strengths scatter by a Weibull distribution of this modulus whose scale is the strength given.",
         )
         .positive(),
-        Key::word::<RateOf>(
-            "rate_of",
+        Key::word::<StrainRateMeasure>(
+            "strain_rate_measure",
             "elongation",
-            "What that rate is of: the relative velocity along the bond over its length, or, as printed in Platzer \
-             2022, eq. 21, the whole of it.",
+            "What strain rate `rate_strengthening` uses: the relative velocity along the bond over its length, or, as \
+             printed in Platzer 2022, eq. 21, the full relative velocity over it.",
         ),
     ],
 };
@@ -235,7 +235,7 @@ impl Word for Formulation {
         &[("total", Self::Total), ("incremental", Self::Incremental)];
 }
 
-impl Word for RateOf {
+impl Word for StrainRateMeasure {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("elongation", Self::Elongation),
         ("relative-velocity", Self::RelativeVelocity),
@@ -258,9 +258,9 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their words.
-fn models(kappa: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
+fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
     [
-        ("parallel", BondModel::Parallel { kappa }),
+        ("parallel", BondModel::Parallel { stiffness_ratio }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
@@ -269,13 +269,16 @@ fn models(kappa: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
 }
 
 fn model(table: &Table<'_>) -> Result<BondModel> {
-    let known = models(table.read("kappa")?, table.read("shear_coefficient")?);
+    let known = models(
+        table.read("stiffness_ratio")?,
+        table.read("shear_coefficient")?,
+    );
     let model = table
         .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);
     for (key, of, belongs) in [
         (
-            "kappa",
+            "stiffness_ratio",
             "parallel",
             matches!(model, BondModel::Parallel { .. }),
         ),
@@ -288,7 +291,7 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         if let (Some(field), false) = (table.get(key), belongs) {
             let name = known.iter().find(|(_, other)| *other == model);
             let problem = format!(
-                "{} means nothing to the model \"{}\"",
+                "{} does not apply to the model \"{}\"",
                 field.path,
                 name.map_or("", |(name, _)| *name)
             );
@@ -300,18 +303,18 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
 
 one_field_a_key! {
     BondDamping {
-        viscous: "viscous",
-        each_mode: "each_mode",
-        force_n_s_m: "force",
-        torque: "torque",
+        damping_ratio: "damping_ratio",
+        per_mode: "per_mode",
+        damping_coefficient_n_s_m: "damping_coefficient",
+        torque_factor: "torque_factor",
     }
 }
 
 fn damping(table: &Table<'_>) -> Result<BondDamping> {
     let damping = fields(table)?;
-    if let (Some(field), None) = (table.get("each_mode"), table.get("viscous")) {
-        let problem = format!("{} stands without viscous, on which it acts", field.path);
-        return Err(field.refuse(problem, "add viscous = 0.1, or remove each_mode"));
+    if let (Some(field), None) = (table.get("per_mode"), table.get("damping_ratio")) {
+        let problem = format!("{} has no effect without damping_ratio", field.path);
+        return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
     }
     Ok(damping)
 }
@@ -320,12 +323,12 @@ impl Default for BondFailure {
     /// Nothing breaks.
     fn default() -> Self {
         Self {
-            tension_pa: None,
-            compression_pa: None,
-            shear_pa: None,
-            von_mises_pa: None,
+            tensile_strength_pa: None,
+            compressive_strength_pa: None,
+            shear_strength_pa: None,
+            von_mises_strength_pa: None,
             rate_strengthening_from_1_s: None,
-            rate_of: RateOf::default(),
+            strain_rate_measure: StrainRateMeasure::default(),
             weibull_modulus: None,
         }
     }
@@ -333,46 +336,55 @@ impl Default for BondFailure {
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
     if let Some(old) = Table::any(field)?.get("compressive") {
-        let problem = format!("{} is no more: tension breaks pulled edges only", old.path);
-        let remedy = "write compression = \"15 MPa\" for a strength of its own under pressure, or leave it out";
+        let problem = format!(
+            "{} was removed: tensile_strength breaks bonds in tension only",
+            old.path
+        );
+        let remedy = "write compressive_strength = \"15 MPa\" for a strength in compression, or leave it out";
         return Err(old.refuse(problem, remedy));
     }
     let table = Table::of(field, &FAILURE)?;
     let failure = BondFailure {
-        tension_pa: table.read("tension")?,
-        compression_pa: table.read("compression")?,
-        shear_pa: table.read("shear")?,
-        von_mises_pa: table.read("von_mises")?,
+        tensile_strength_pa: table.read("tensile_strength")?,
+        compressive_strength_pa: table.read("compressive_strength")?,
+        shear_strength_pa: table.read("shear_strength")?,
+        von_mises_strength_pa: table.read("von_mises_strength")?,
         rate_strengthening_from_1_s: rate_strengthening(&table)?,
-        rate_of: table.read("rate_of")?,
+        strain_rate_measure: table.read("strain_rate_measure")?,
         weibull_modulus: table.read("weibull_modulus")?,
     };
-    let by_rate = [failure.tension_pa, failure.shear_pa, failure.von_mises_pa];
+    let by_rate = [
+        failure.tensile_strength_pa,
+        failure.shear_strength_pa,
+        failure.von_mises_strength_pa,
+    ];
     let has_none = by_rate.iter().all(Option::is_none);
-    if has_none && failure.compression_pa.is_none() {
-        let remedy =
-            "add tension, compression, shear or von_mises, such as von_mises = \"0.185 MPa\"";
+    if has_none && failure.compressive_strength_pa.is_none() {
+        let remedy = "add tensile_strength, compressive_strength, shear_strength or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
-        let problem = format!("{} stands without a strength to exceed", field.path);
+        let problem = format!("{} has no strength to exceed", field.path);
         return Err(field.refuse(problem, remedy));
     }
-    if let (Some(field), None) = (table.get("rate_of"), table.get("rate_strengthening")) {
-        let problem = format!(
-            "{} stands without rate_strengthening, on which it acts",
-            field.path
-        );
-        return Err(field.refuse(problem, "add rate_strengthening = true, or remove rate_of"));
+    if let (Some(field), None) = (
+        table.get("strain_rate_measure"),
+        table.get("rate_strengthening"),
+    ) {
+        let problem = format!("{} has no effect without rate_strengthening", field.path);
+        return Err(field.refuse(
+            problem,
+            "add rate_strengthening = true, or remove strain_rate_measure",
+        ));
     }
     let strengthens = table.get("rate_strengthening");
     let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
     if let (Some(field), true) = (strengthens, has_none) {
         let problem = format!(
-            "{} stands without tension, shear or von_mises, which it raises; compression it does not",
+            "{} has no effect without tensile_strength, shear_strength or von_mises_strength, which it raises; it does not raise compressive_strength",
             field.path
         );
         return Err(field.refuse(
             problem,
-            "add tension = \"1 MPa\", or remove rate_strengthening",
+            "add tensile_strength = \"1 MPa\", or remove rate_strengthening",
         ));
     }
     Ok(failure)
@@ -400,9 +412,9 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     let name = known.iter().find(|(_, other)| same(other));
     listing.text("model", name.map_or("", |(name, _)| *name));
     match kind.model {
-        BondModel::Parallel { kappa } => {
-            let kappa = kappa.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
-            listing.value("kappa", &kappa);
+        BondModel::Parallel { stiffness_ratio } => {
+            let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
+            listing.value("stiffness_ratio", &stiffness_ratio);
         }
         BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
         BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
@@ -414,12 +426,12 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     listing.table("damping", &DAMPING, |listing| list(&kind.damping, listing));
     let failure = &kind.failure;
     listing.table("failure", &FAILURE, |listing| {
-        listing.value("tension", &failure.tension_pa);
-        listing.value("compression", &failure.compression_pa);
-        listing.value("shear", &failure.shear_pa);
-        listing.value("von_mises", &failure.von_mises_pa);
+        listing.value("tensile_strength", &failure.tensile_strength_pa);
+        listing.value("compressive_strength", &failure.compressive_strength_pa);
+        listing.value("shear_strength", &failure.shear_strength_pa);
+        listing.value("von_mises_strength", &failure.von_mises_strength_pa);
         listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);
         listing.value("weibull_modulus", &failure.weibull_modulus);
-        listing.value("rate_of", &failure.rate_of);
+        listing.value("strain_rate_measure", &failure.strain_rate_measure);
     });
 }

@@ -56,13 +56,13 @@ const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
 pub(super) const START_AS: Key = Key::new(
     "start_as",
     Kind::Word(|| words_of(&STARTS)),
-    "Particles and bonds between them, or a rigid clump, until `[replacement]` replaces it.",
+    "Bonded particles, or a rigid clump until `[replacement]` replaces it.",
 )
 .or_word("bonded");
 
 pub(super) static CLUMP: Schema = Schema {
     title: "Clump",
-    doc: "How a rigid clump is made of a body. Its spheres are the body's particles.",
+    doc: "A rigid clump made of a body. Its spheres are the body's particles.",
     keys: &[
         Key::number(
             "scale",
@@ -100,10 +100,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
         return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
     }
     if let Some(field) = body.get("clump") {
-        let problem = format!(
-            "{} stands without start_as = \"clump\", on which it acts",
-            field.path
-        );
+        let problem = format!("{} has no effect without start_as = \"clump\"", field.path);
         return Err(field.refuse(problem, "add start_as = \"clump\", or remove it"));
     }
     Ok(StartAs::Bonded)

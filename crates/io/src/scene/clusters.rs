@@ -10,8 +10,8 @@ use crate::diagnostic::Result;
 pub struct Clusters {
     /// `interval`: steps between two looks at what has broken. At least 1.
     pub interval: u64,
-    /// `min_broken`: bonds that must have broken since the last search for another. At least 1.
-    pub min_broken: u64,
+    /// `min_broken_bonds`: bonds that must have broken since the last search for another. At least 1.
+    pub min_broken_bonds: u64,
     /// `force_every`: so many intervals after the last search there is another in any case. 0:
     /// never.
     pub force_every: u64,
@@ -19,7 +19,7 @@ pub struct Clusters {
 
 pub(super) static CLUSTERS: Schema = Schema {
     title: "[clusters]",
-    doc: "When bodies that broke are searched for their pieces.",
+    doc: "How often broken bodies are searched for fragments.",
     keys: &[
         Key::new(
             "interval",
@@ -28,12 +28,12 @@ pub(super) static CLUSTERS: Schema = Schema {
                 most: None,
                 of: "steps",
             },
-            "Steps between two looks at what has broken.",
+            "Steps between two checks for broken bonds.",
         )
         .remedy("a usual value is 50")
         .or(50.0),
         Key::whole(
-            "min_broken",
+            "min_broken_bonds",
             1,
             "Bonds that must have broken since the last search for another.",
         )
@@ -56,7 +56,7 @@ pub(super) static CLUSTERS: Schema = Schema {
 one_field_a_key! {
     Clusters {
         interval: "interval",
-        min_broken: "min_broken",
+        min_broken_bonds: "min_broken_bonds",
         force_every: "force_every",
     }
 }

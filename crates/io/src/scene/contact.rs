@@ -25,12 +25,12 @@ const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpo
 
 pub(super) static CONTACT: Schema = Schema {
     title: "[contacts.NAME-NAME]",
-    doc: "How two materials touch, in either order of their names, which may have a - in them.",
+    doc: "Contact law of two materials, in either order of their names, which may contain a -.",
     keys: &[
         Key::new(
             "law",
             Kind::Word(|| words_of(&LAWS)),
-            "Elastic spheres, or a spring and a dashpot.",
+            "Hertz-Mindlin, or a linear spring and dashpot.",
         )
         .or_word("hertz-mindlin"),
         Key::quantity(
@@ -41,7 +41,7 @@ pub(super) static CONTACT: Schema = Schema {
         .positive()
         .sometimes_required("\"100 kN/m\""),
         Key::number(
-            "tangential_ratio",
+            "tangential_stiffness_ratio",
             "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
         )
         .within(Excluded(0.0), Included(1.0))
@@ -49,32 +49,32 @@ pub(super) static CONTACT: Schema = Schema {
         .or(2.0 / 7.0),
         Key::number(
             "restitution",
-            "Speed after a head-on collision over that before it.",
+            "Coefficient of restitution: speed after a head-on collision over that before it.",
         )
         .within(Included(LEAST_RESTITUTION), Included(1.0))
         .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
         .required("0.5"),
-        Key::number("friction", "Largest tangential force over the normal one.")
+        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal one.")
             .not_negative()
             .or(0.0),
         Key::new(
             "rolling",
             Kind::Word(|| words_of(&ROLLINGS)),
-            "What resists rolling; `constant-torque` where `rolling_friction` alone is given.",
+            "Model of rolling friction; `constant-torque` where only `rolling_friction` is given.",
         ),
         Key::number(
             "rolling_friction",
-            "Coefficient of rolling friction. Needs a `friction` above 0: what slides freely has no grip to roll with.",
+            "Coefficient of rolling friction. Needs a `friction` above 0.",
         )
         .positive()
         .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
         .sometimes_required("0.05"),
         Key::number(
-            "rolling_damping",
-            "Of `spring-dashpot`: share of the critical damping.",
+            "rolling_damping_ratio",
+            "Of `spring-dashpot`: fraction of critical damping.",
         )
         .within(Included(0.0), Included(1.0))
-        .remedy("it is a share of the critical damping: a usual value is 0.3")
+        .remedy("it is a fraction of critical damping: a usual value is 0.3")
         .or(0.3),
     ],
 };
@@ -104,8 +104,8 @@ pub enum ContactLaw {
     Linear {
         /// `normal_stiffness`, N/m.
         normal_n_m: f64,
-        /// `tangential_ratio`: tangential over normal stiffness, 2/7 unless given; in (0, 1].
-        tangential_ratio: f64,
+        /// `tangential_stiffness_ratio`: tangential over normal stiffness, 2/7 unless given; in (0, 1].
+        tangential_stiffness_ratio: f64,
     },
 }
 
@@ -123,7 +123,7 @@ pub enum Rolling {
     SpringDashpot {
         /// `rolling_friction`, a coefficient of more than 0.
         friction: f64,
-        /// `rolling_damping`: share of the critical damping, 0.3 unless given; in [0, 1].
+        /// `rolling_damping_ratio`: fraction of critical damping, 0.3 unless given; in [0, 1].
         damping: f64,
     },
 }
@@ -183,10 +183,10 @@ fn read(
 fn law(table: &Table<'_>) -> Result<ContactLaw> {
     let is_linear = table.read_by("law", |field| field.choice(&LAWS))?;
     if is_linear != Some(true) {
-        let mut of_linear = table.given(&["normal_stiffness", "tangential_ratio"]);
+        let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
         if let Some((_, field)) = of_linear.next() {
             let problem = format!(
-                "{} means nothing to the law \"hertz-mindlin\", whose stiffness is that of the materials",
+                "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
                 field.path
             );
             return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
@@ -195,7 +195,7 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     }
     Ok(ContactLaw::Linear {
         normal_n_m: table.read("normal_stiffness")?,
-        tangential_ratio: table.read("tangential_ratio")?,
+        tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
     })
 }
 
@@ -224,10 +224,10 @@ fn need_moduli(
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
-    let damping = table.read("rolling_damping")?;
-    if let (Some(field), false) = (table.get("rolling_damping"), is_sprung == Some(true)) {
+    let damping = table.read("rolling_damping_ratio")?;
+    if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
         let problem = format!(
-            "{} stands without rolling = \"spring-dashpot\", on which it acts",
+            "{} has no effect without rolling = \"spring-dashpot\"",
             field.path
         );
         return Err(field.refuse(problem, "remove it, or add rolling = \"spring-dashpot\""));
@@ -265,11 +265,11 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
         ContactLaw::HertzMindlin => listing.text("law", "hertz-mindlin"),
         ContactLaw::Linear {
             normal_n_m,
-            tangential_ratio,
+            tangential_stiffness_ratio,
         } => {
             listing.text("law", "linear");
             listing.value("normal_stiffness", &normal_n_m);
-            listing.value("tangential_ratio", &tangential_ratio);
+            listing.value("tangential_stiffness_ratio", &tangential_stiffness_ratio);
         }
     }
     listing.value("restitution", &contact.restitution);
@@ -283,7 +283,7 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
         Rolling::SpringDashpot { friction, damping } => {
             listing.text("rolling", "spring-dashpot");
             listing.value("rolling_friction", &friction);
-            listing.value("rolling_damping", &damping);
+            listing.value("rolling_damping_ratio", &damping);
         }
     }
 }

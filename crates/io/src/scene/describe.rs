@@ -7,8 +7,8 @@ use super::listing::Listing;
 use super::root::Scene;
 use super::schema::Schema;
 use super::{
-    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
-    relaxation, replacement, run, search, set, sleep, support, test, wall,
+    body, bond, clusters, contact, group, initial, inlet, load, material, measure, outlet, output,
+    region, relaxation, replacement, run, search, sleep, support, test, wall,
 };
 use crate::text::visible;
 
@@ -43,7 +43,7 @@ impl Scene {
         lines.each("bonds", &bond::BOND, &self.bonds, bond::list_kind);
         lines.each("bodies", &body::BODY, &self.bodies, body::list);
         lines.each("walls", &wall::WALL, &self.walls, wall::list);
-        lines.each("sets", &set::SET, &self.sets, set::list);
+        lines.each("groups", &group::GROUP, &self.groups, group::list);
         lines.each("initial", &initial::INITIAL, &self.initial, initial::list);
         lines.each("supports", &support::SUPPORT, &self.supports, support::list);
         lines.each("loads", &load::LOAD, &self.loads, load::list);

@@ -13,7 +13,7 @@ pub(super) static ROTATION: Schema = Schema {
         Key::new(
             "axis",
             Kind::Direction("an axis"),
-            "Axis of the turn; its length does not matter.",
+            "Axis of rotation; its length does not matter.",
         )
         .required("[0, 0, 1]"),
         Key::quantity("angle", &ANGLE, "Angle, right-handed about the axis.")

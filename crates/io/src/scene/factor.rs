@@ -28,7 +28,7 @@ pub enum Factor {
 pub(super) const RAMP: Key = Key::quantity(
     "ramp",
     &TIME,
-    "The factor on it rises evenly from 0 to 1 until this time, and stays.",
+    "The factor on it rises linearly from 0 to 1 until this time, and stays 1.",
 )
 .positive();
 
@@ -63,7 +63,7 @@ pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
         }),
         (None, Some(field)) => points(&field),
         (Some(_), Some(field)) => {
-            let problem = format!("{} stands beside ramp", field.path);
+            let problem = format!("{} cannot be combined with ramp", field.path);
             Err(field.refuse(problem, "the factor follows one of them: remove the other"))
         }
     }
@@ -98,10 +98,7 @@ pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<F
     };
     match (first, table.get("table")) {
         (None, _) => {
-            let problem = format!(
-                "{} stands without ramp and table, so at no time does anything move by it",
-                moved.path
-            );
+            let problem = format!("{} has no effect without ramp or table", moved.path);
             Err(moved.refuse(problem, "add ramp = \"0.1 s\", the time that it takes"))
         }
         (Some([time_s, first]), Some(field)) if first != 0.0 || time_s < 0.0 => {

@@ -18,7 +18,7 @@ const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
 
 pub(super) static INLET: Schema = Schema {
     title: "[inlets.NAME]",
-    doc: "Feeds bodies during the run, at a `rate` or a `mass_rate`. They do not stand in the scene at the start.",
+    doc: "Feeds bodies during the run, at a `rate` or a `mass_rate`. They are not in the scene at the start.",
     keys: &[
         Key::new(
             "bodies",
@@ -26,13 +26,13 @@ pub(super) static INLET: Schema = Schema {
                 Kind::List(&Kind::Text("a name in [bodies]")),
                 Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
             ]),
-            "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, shares by number, of any sum.",
+            "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions by number, of any sum.",
         )
         .required("[\"NAME\"], names in [bodies]"),
         Key::text(
             "region",
             "a name in [regions]",
-            "The centre of a new body is put there at random.",
+            "Region in which centres of new bodies are placed at random.",
         )
         .required("\"NAME\", a name in [regions]"),
         Key::quantity("rate", &RATE, "Bodies per second.")
@@ -44,7 +44,7 @@ pub(super) static INLET: Schema = Schema {
         Key::new(
             "orientation",
             Kind::Word(|| words_of(&ORIENTATIONS)),
-            "How new bodies are turned: at random, or as their `rotation` says.",
+            "Orientation of new bodies: random, or that of their `rotation`.",
         )
         .or_word("as-is"),
         Key::quantity("start", &TIME, "When it begins.")
@@ -59,7 +59,7 @@ pub(super) static INLET: Schema = Schema {
                 most: Some(u32::MAX as u64),
                 of: "",
             },
-            "At most so many bodies.",
+            "Maximum number of bodies.",
         )
         .remedy("leave it out for no limit")
         .otherwise("no limit"),
@@ -69,7 +69,7 @@ pub(super) static INLET: Schema = Schema {
 /// Feeds bodies during the run. Those that it names do not stand in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inlet {
-    /// `bodies`: names of `[bodies]`, each once, with their shares by number: more than 0, of any
+    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0, of any
     /// sum. All 1 unless given. At least one.
     pub bodies: Vec<(String, f64)>,
     /// `region`: a name of `[regions]`, in which the centres of new bodies are put at random.
@@ -150,7 +150,7 @@ fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec
         Value::Table(entries) => entries.is_empty(),
         _ => {
             let remedy = "write [\"NAME\"], or { NAME = 0.7, OTHER = 0.3 }";
-            return Err(field.wrong("a list of bodies or a table of their shares", remedy));
+            return Err(field.wrong("a list of bodies or a table of their proportions", remedy));
         }
     };
     if is_empty {
@@ -172,11 +172,8 @@ fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec
     for item in field.items()? {
         let name = item.reference(bodies.keys(), "bodies")?;
         if shares.iter().any(|(other, _)| *other == name) {
-            let problem = format!(
-                "{} is \"{name}\", which stands in the list already",
-                item.path
-            );
-            let remedy = "remove one of them, or give shares, such as { NAME = 2, OTHER = 1 }";
+            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
+            let remedy = "remove one of them, or give proportions, such as { NAME = 2, OTHER = 1 }";
             return Err(item.refuse(problem, remedy));
         }
         shares.push((name, 1.0));
@@ -194,7 +191,7 @@ fn rate(table: &Table<'_>) -> Result<FeedRate> {
         (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
         (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
         (Some(_), Some(field)) => {
-            let problem = format!("{} stands beside rate", field.path);
+            let problem = format!("{} cannot be combined with rate", field.path);
             Err(field.refuse(problem, "an inlet has one rate: remove one"))
         }
     }

@@ -5,18 +5,18 @@ use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use super::targets::{OF, Targets};
+use super::targets::{GROUP_KEY, Targets};
 use crate::diagnostic::Result;
 use crate::units::{FORCE, TORQUE};
 
-/// A load on a set of particles, shared equally among them.
+/// A load on a group of particles, shared equally among them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// `of`: a set, a body or `all`.
-    pub of: String,
-    /// `force` on the whole set, N. Length 3. Not zero together with the torque.
+    /// `group`: a group, a body or `all`.
+    pub group: String,
+    /// `force` on the whole group, N. Length 3. Not zero together with the torque.
     pub force_n: [f64; 3],
-    /// `torque` on the whole set, N m. Length 3.
+    /// `torque` on the whole group, N m. Length 3.
     pub torque_n_m: [f64; 3],
     /// `ramp` or `table`.
     pub factor: Factor,
@@ -26,23 +26,23 @@ pub struct Load {
 
 pub(super) static LOAD: Schema = Schema {
     title: "[loads.NAME]",
-    doc: "A force or a torque on a set, shared equally among its particles.",
+    doc: "A force or a torque on a group, shared equally among its particles.",
     keys: &[
-        OF,
-        Key::vector("force", &FORCE, "On the whole set."),
-        Key::vector("torque", &TORQUE, "On the whole set."),
+        GROUP_KEY,
+        Key::vector("force", &FORCE, "On the whole group."),
+        Key::vector("torque", &TORQUE, "On the whole group."),
         RAMP,
         TABLE,
-        until("From then on it is zero; not before the last change of `ramp` or `table`."),
+        until("Time from which on it is zero; not before the last change of `ramp` or `table`."),
     ],
 };
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
     let table = Table::of(field, &LOAD)?;
-    let of = targets.name(&table.need("of")?)?;
+    let group = targets.name(&table.need("group")?)?;
     let factor = factor(&table)?;
     let load = Load {
-        of,
+        group,
         force_n: table.read("force")?,
         torque_n_m: table.read("torque")?,
         end_s: end(&table, &factor)?,
@@ -58,7 +58,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
 }
 
 pub(super) fn list(load: &Load, listing: &mut Listing) {
-    listing.text("of", &load.of);
+    listing.text("group", &load.group);
     listing.value("force", &load.force_n);
     listing.value("torque", &load.torque_n_m);
     factor::list(&load.factor, listing);

@@ -14,9 +14,9 @@ use crate::units::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What is measured. Of a set, positions and velocities are those of its centre of mass, energies,
+/// What is measured. Of a group, positions and velocities are those of its centre of mass, energies,
 /// forces and counts are
-/// sums. Walls have positions, forces and torques, fragments a count and masses, sets all but
+/// sums. Walls have positions, forces and torques, fragments a count and masses, groups all but
 /// torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
@@ -35,9 +35,9 @@ pub enum Quantity {
     /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
     /// rad/s.
     AngularVelocity(u8),
-    /// "reaction_x", ... force of supports on the set, N.
+    /// "reaction_x", ... force of supports on the group, N.
     Reaction(u8),
-    /// "reaction_torque_x", ... torque of supports on the set, each about its particle's centre, N
+    /// "reaction_torque_x", ... torque of supports on the group, each about its particle's centre, N
     /// m.
     ReactionTorque(u8),
     /// "kinetic_energy", J.
@@ -51,11 +51,11 @@ pub enum Quantity {
     /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
     /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
-    /// on a set, N.
+    /// on a group, N.
     Force(u8),
     /// "force": its magnitude, N.
     ForceMagnitude,
-    /// "contact_force_x", ... force of contacts with what `with` names on the set, N.
+    /// "contact_force_x", ... force of contacts with what `with` names on the group, N.
     ContactForce(u8),
     /// "contact_force": its magnitude, N.
     ContactForceMagnitude,
@@ -75,7 +75,7 @@ pub enum Quantity {
 
 /// Which value of a measure's history is its result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum At {
+pub enum Statistic {
     /// "end"
     End,
     /// "largest"
@@ -89,22 +89,22 @@ pub enum At {
 /// A named quantity, with what it should be where that is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
-    /// `of`: a set, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
+    /// `of`: a group, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,
-    /// `with`: the body, set or wall that `of` touches. Only of contacts, which need it.
+    /// `with`: the body, group or wall that `of` touches. Only of contacts, which need it.
     pub with: Option<String>,
-    /// `at`, "end" unless given.
-    pub at: At,
+    /// `statistic`, "end" unless given.
+    pub statistic: Statistic,
     /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
     /// `tolerance`.
     pub reference: Option<f64>,
     /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
     pub tolerance: Option<f64>,
-    /// `tolerance_absolute`: largest difference from `reference`, which it needs, in the quantity's
+    /// `absolute_tolerance`: largest difference from `reference`, which it needs, in the quantity's
     /// unit.
-    pub tolerance_absolute: Option<f64>,
+    pub absolute_tolerance: Option<f64>,
 }
 
 /// Every quantity and its name in a scene.
@@ -155,7 +155,7 @@ pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
     ("mass_of_largest", Quantity::MassOfLargest),
 ];
 
-impl Word for At {
+impl Word for Statistic {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("end", Self::End),
         ("largest", Self::Largest),
@@ -226,37 +226,37 @@ impl Quantity {
 
 pub(super) static MEASURE: Schema = Schema {
     title: "[measures.NAME]",
-    doc: "What is measured, with what it should be where that is known.",
+    doc: "A measured quantity, with its reference value where one is known.",
     keys: &[
-        Key::text("of", "a set, a body, a wall, `all` or `fragments`", "What it is of.")
+        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "What is measured.")
             .or_word(ALL),
         Key::new(
             "quantity",
             Kind::Word(|| words_of(&QUANTITIES)),
             "Of a wall: `force`, `torque` about its pivot, `position` of its pivot; of `fragments`: `count`, \
-             `mass_of_largest`, `mass_fraction_of_largest`; of sets all others and `position`, `force`.",
+             `mass_of_largest`, `mass_fraction_of_largest`; of groups all others and `position`, `force`.",
         )
         .required("\"displacement_x\""),
         Key::text(
             "with",
-            "a set, a body or a wall",
-            "Of a contact's quantities, which need it: what `of` touches.",
+            "a group, a body or a wall",
+            "The other side of the contact, for contact quantities, which need it.",
         ),
-        Key::word::<At>(
-            "at",
+        Key::word::<Statistic>(
+            "statistic",
             "end",
-            "Which value of its history is the result; `mean` is over time.",
+            "Value of its history that is reported; `mean` is over time.",
         ),
-        Key::new("reference", Kind::Measured, "What the result should be; its error is reported."),
+        Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
         Key::number(
             "tolerance",
-            "A larger relative error spoils the verdict. Needs a `reference` other than 0.",
+            "A larger relative error gives a warning. Needs a `reference` other than 0.",
         )
         .positive(),
         Key::new(
-            "tolerance_absolute",
+            "absolute_tolerance",
             Kind::Measured,
-            "A larger difference from `reference`, which it needs, spoils the verdict.",
+            "A larger difference from `reference`, which it needs, gives a warning.",
         )
         .positive(),
     ],
@@ -277,11 +277,11 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
     let dimension = quantity.dimension();
     let reference = table.read_by("reference", |field| field.quantity(dimension))?;
     let tolerance = table.read("tolerance")?;
-    let tolerance_absolute =
-        table.read_by("tolerance_absolute", |field| field.positive(dimension))?;
+    let absolute_tolerance =
+        table.read_by("absolute_tolerance", |field| field.positive(dimension))?;
     if let Some(field) = table.get("tolerance") {
         let problem = match reference {
-            None => "stands without reference, to which it is relative",
+            None => "needs a reference, to which it is relative",
             Some(0.0) => "is relative to reference, which is 0",
             Some(_) => "",
         };
@@ -293,21 +293,18 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
             ));
         }
     }
-    if let (Some(field), None) = (table.get("tolerance_absolute"), reference) {
-        let problem = format!(
-            "{} stands without reference, from which it allows to differ",
-            field.path
-        );
-        return Err(field.refuse(problem, "give a reference, or remove tolerance_absolute"));
+    if let (Some(field), None) = (table.get("absolute_tolerance"), reference) {
+        let problem = format!("{} has no effect without reference", field.path);
+        return Err(field.refuse(problem, "give a reference, or remove absolute_tolerance"));
     }
     Ok(Measure {
         of,
         quantity,
         with,
-        at: table.read("at")?,
+        statistic: table.read("statistic")?,
         reference,
         tolerance,
-        tolerance_absolute,
+        absolute_tolerance,
     })
 }
 
@@ -323,7 +320,7 @@ fn counterpart(
         return match table.get("with") {
             Some(field) => {
                 let problem = format!(
-                    "{} stands beside the quantity \"{name}\", which is not of a contact",
+                    "{} cannot be combined with the quantity \"{name}\", which is not of a contact",
                     field.path
                 );
                 Err(field.refuse(problem, "remove it, or ask for \"contact_force\""))
@@ -336,7 +333,7 @@ fn counterpart(
             "{}.quantity is \"{name}\", of a contact, but nothing says with what",
             table.path
         );
-        return Err(table.refuse(problem, "add with = \"NAME\", of a body, a set or a wall"));
+        return Err(table.refuse(problem, "add with = \"NAME\", of a body, a group or a wall"));
     };
     let (with, subject) = targets.measured(&field)?;
     let problem = if with == of {
@@ -351,7 +348,7 @@ fn counterpart(
     };
     Err(field.refuse(
         problem,
-        "name another body, set or wall; quantity = \"force\" is of contacts with all else",
+        "name another body, group or wall; quantity = \"force\" is of contacts with all else",
     ))
 }
 
@@ -375,7 +372,7 @@ fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
     let (owner, remedy) = if elsewhere.is_of(Subject::Particles) {
         (
             "particles",
-            "write of = \"NAME\", with the name of a set or a body",
+            "write of = \"NAME\", with the name of a group or a body",
         )
     } else if elsewhere.is_of(Subject::Wall) {
         ("walls", "write of = \"NAME\", with the name of a wall")
@@ -410,8 +407,8 @@ pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     if let Some(with) = &measure.with {
         listing.text("with", with);
     }
-    listing.value("at", &measure.at);
+    listing.value("statistic", &measure.statistic);
     listing.text("reference", in_unit(measure.reference));
     listing.value("tolerance", &measure.tolerance);
-    listing.text("tolerance_absolute", in_unit(measure.tolerance_absolute));
+    listing.text("absolute_tolerance", in_unit(measure.absolute_tolerance));
 }

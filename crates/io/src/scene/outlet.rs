@@ -14,7 +14,7 @@ const SIDES: [&str; 2] = ["inside", "outside"];
 
 pub(super) static OUTLET: Schema = Schema {
     title: "[outlets.NAME]",
-    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts them.",
+    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts their mass.",
     keys: &[
         Key::text(
             "inside",
@@ -47,7 +47,7 @@ pub(super) fn read(
         return Err(table.refuse(problem, remedy));
     };
     if let Some((_, second)) = given.next() {
-        let problem = format!("{} stands beside {key}", second.path);
+        let problem = format!("{} cannot be combined with {key}", second.path);
         let remedy = "an outlet has one region: remove one, or make two outlets";
         return Err(second.refuse(problem, remedy));
     }
@@ -59,7 +59,7 @@ pub(super) fn read(
             "{} is \"{region}\", into which [inlets.{inlet}] puts bodies",
             field.path
         );
-        let remedy = "they would be removed at once: name another region";
+        let remedy = "they would be removed immediately: name another region";
         return Err(field.refuse(problem, remedy));
     }
     Ok(Outlet {

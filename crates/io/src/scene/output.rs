@@ -32,12 +32,12 @@ pub struct Output {
 
 pub(super) static OUTPUT: Schema = Schema {
     title: "[output]",
-    doc: "What is written, and how often, in simulated time. Without it and without `--out` no file is written.",
+    doc: "Output files and their intervals in simulated time. Without this table and without `--output` no file is written.",
     keys: &[
         Key::text(
             "folder",
             "a folder",
-            "Results go here, from the folder of the scene; without it and `--out` into the scene's name with -out \
+            "Results go here, from the folder of the scene; without it and `--output` into the scene's name with -out \
              where you stand.",
         )
         .otherwise("the scene's name with -out"),
@@ -53,7 +53,7 @@ pub(super) static OUTPUT: Schema = Schema {
         .positive()
         .otherwise("a thousandth of the run"),
         Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
-        Key::table("view", &VIEW, "Where pictures are taken from.")
+        Key::table("view", &VIEW, "View of the pictures.")
             .otherwise("front, right and above"),
         Key::quantity(
             "checkpoint",
@@ -67,7 +67,7 @@ pub(super) static OUTPUT: Schema = Schema {
 
 pub(super) static VIEW: Schema = Schema {
     title: "View",
-    doc: "Where pictures are taken from.",
+    doc: "View of the pictures.",
     keys: &[Key::new(
         "from",
         Kind::Direction("a direction"),

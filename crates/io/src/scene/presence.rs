@@ -59,15 +59,15 @@ impl Presence<'_> {
                     "{} is \"{ALL}\", with the body \"{name}\", {why}",
                     field.path
                 );
-                return Err(field.refuse(problem, "name a set or another body"));
+                return Err(field.refuse(problem, "name a group or another body"));
             }
         }
         Ok(())
     }
 
-    /// Refuses the set `field` of the body `body`, or of all bodies, where it could pick particles
+    /// Refuses the group `field` of the body `body`, or of all bodies, where it could pick particles
     /// of a clump, or where the body is fed.
-    pub(super) fn refuse_set(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
+    pub(super) fn refuse_group(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
             let table = Table::any(field)?;
             return match table.get("body") {
@@ -75,7 +75,7 @@ impl Presence<'_> {
                 None => self.refuse_only(&table, name),
             };
         }
-        // What is fed does not stand where a set could pick it.
+        // What is fed does not stand where a group could pick it.
         for name in self.bodies.keys().filter(|name| self.fed(name).is_none()) {
             if let Some(Absence { why, .. }) = self.clump(name) {
                 let problem = format!(

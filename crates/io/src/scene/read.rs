@@ -12,8 +12,8 @@ use super::table::Table;
 use super::targets::Targets;
 use super::tree::Document;
 use super::{
-    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
-    relaxation, replacement, run, search, set, sleep, statics, support, test, wall,
+    body, bond, clusters, contact, group, initial, inlet, load, material, measure, outlet, output,
+    region, relaxation, replacement, run, search, sleep, statics, support, test, wall,
 };
 use crate::diagnostic::Result;
 use crate::scene::field::Field;
@@ -59,17 +59,17 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         bodies: &bodies,
         inlets: &inlets,
     };
-    let sets = set::read_all(&root, &presence)?;
-    let walls = wall::read_all(&root, &materials, &bodies, &sets, folder)?;
+    let groups = group::read_all(&root, &presence)?;
+    let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;
     let targets = Targets {
-        sets: &sets,
+        groups: &groups,
         presence: &presence,
         walls: &walls,
     };
     let supports = each(&root, "supports", |field| support::read(field, &targets))?;
     let known = test::Known {
         presence: &presence,
-        sets: &sets,
+        groups: &groups,
         walls: &walls,
         supports: &supports,
     };
@@ -95,7 +95,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         contacts,
         bodies,
         walls,
-        sets,
+        groups,
         regions,
         replacement,
         inlets,

@@ -16,7 +16,7 @@ const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 
 pub(super) static REGION: Schema = Schema {
     title: "[regions.NAME]",
-    doc: "A part of space, which nothing bounces off, by one of its shapes.",
+    doc: "A part of space without any surface, of one shape.",
     keys: &[
         Key::table("box", &BOX, "A box."),
         Key::table("sphere", &SPHERE, "A sphere."),
@@ -75,7 +75,7 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
         return Err(table.refuse(problem, remedy));
     };
     if let Some((_, second)) = given.next() {
-        let problem = format!("{} stands beside {key}", second.path);
+        let problem = format!("{} cannot be combined with {key}", second.path);
         let remedy = "a region has one shape: remove one, or make two regions";
         return Err(second.refuse(problem, remedy));
     }

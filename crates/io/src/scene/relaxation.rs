@@ -12,7 +12,7 @@ use crate::diagnostic::Result;
 pub struct Relaxation {
     /// `enabled`: such an overlap becomes the origin of the pair's contact law.
     pub enabled: bool,
-    /// `min_overlap`: smaller ones, as a share of the reduced radius, are not kept; in [0, 1). The
+    /// `min_overlap`: smaller ones, as a fraction of the reduced radius, are not kept; in [0, 1). The
     /// force that a pair then has at once gives it energy, which grows with this to the power of
     /// 2.5: at 1e-3 a whole body can gain 1e-4 of its own.
     pub min_overlap: f64,
@@ -20,7 +20,7 @@ pub struct Relaxation {
 
 pub(super) static RELAXATION: Schema = Schema {
     title: "[relaxation]",
-    doc: "What becomes of overlaps between particles that cease to be of one piece.",
+    doc: "Overlaps between particles of fragments that separate.",
     keys: &[
         Key::flag(
             "enabled",
@@ -29,10 +29,10 @@ pub(super) static RELAXATION: Schema = Schema {
         ),
         Key::number(
             "min_overlap",
-            "Down to this overlap, as a share of the reduced radius; smaller ones press at once.",
+            "Down to this overlap, as a fraction of the reduced radius; smaller ones press at once.",
         )
         .within(Included(0.0), Excluded(1.0))
-        .remedy("it is a share of the reduced radius: a usual value is 1e-5")
+        .remedy("it is a fraction of the reduced radius: a usual value is 1e-5")
         .or(1e-5),
     ],
 };

@@ -13,23 +13,23 @@ use crate::diagnostic::Result;
 use crate::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
 
 /// Whether all of `when` must hold, or any.
-const NEEDS: [(&str, bool); 2] = [("any", false), ("all", true)];
+const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
 pub(super) static REPLACEMENT: Schema = Schema {
     title: "[replacement.NAME]",
-    doc: "When the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
+    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
     keys: &[
-        Key::table("when", &WHEN, "What must hold; at least one of its keys.")
+        Key::table("when", &WHEN, "Conditions; at least one of its keys.")
             .required("{ enters = \"NAME\" }, a name in [regions]"),
         Key::new(
-            "need",
-            Kind::Word(|| words_of(&NEEDS)),
-            "Any of what `when` names, or all.",
+            "require",
+            Kind::Word(|| words_of(&REQUIRE)),
+            "Any of the conditions in `when`, or all of them.",
         )
         .or_word("any"),
         Key::table(
-            "back",
-            &BACK,
+            "restore",
+            &RESTORE,
             "When a fragment becomes rigid again; all of it must hold.",
         )
         .otherwise("never"),
@@ -38,28 +38,36 @@ pub(super) static REPLACEMENT: Schema = Schema {
 
 pub(super) static WHEN: Schema = Schema {
     title: "When",
-    doc: "What makes a clump its bonded cluster.",
+    doc: "What turns a clump into its bonded cluster.",
     keys: &[
-        Key::text("enters", "a name in [regions]", "Its centre of mass is in this region.")
-            .otherwise("not asked"),
-        Key::quantity("force", &FORCE, "Contacts push it with this together.")
-            .positive()
-            .otherwise("not asked"),
+        Key::text(
+            "enters",
+            "a name in [regions]",
+            "Its centre of mass is in this region.",
+        )
+        .otherwise("not used"),
+        Key::quantity(
+            "force",
+            &FORCE,
+            "The resultant contact force on it reaches this.",
+        )
+        .positive()
+        .otherwise("not used"),
         Key::quantity(
             "impact_energy",
             &ENERGY,
-            "Contacts have taken this from its motion, over all times at which they slowed it down.",
+            "Kinetic energy that contacts have taken from it reaches this.",
         )
         .positive()
-        .otherwise("not asked"),
-        Key::quantity("time", &TIME, "So late it is.")
+        .otherwise("not used"),
+        Key::quantity("time", &TIME, "This time is reached.")
             .not_negative()
-            .otherwise("not asked"),
+            .otherwise("not used"),
     ],
 };
 
-pub(super) static BACK: Schema = Schema {
-    title: "Back",
+pub(super) static RESTORE: Schema = Schema {
+    title: "Restore",
     doc: "What makes a fragment rigid again.",
     keys: &[
         Key::text("leaves", "a name in [regions]", "Its centre is outside this region.")
@@ -83,9 +91,9 @@ pub(super) static BACK: Schema = Schema {
         .positive()
         .or(0.01),
         Key::quantity(
-            "inner_speed",
+            "fluctuation_velocity",
             &VELOCITY,
-            "Root mean square speed of its particles beside its motion as a rigid body is at most this.",
+            "Root mean square velocity of its particles relative to its rigid-body motion is at most this.",
         )
         .positive()
         .or(5e-3),
@@ -105,15 +113,15 @@ pub struct Replacement {
     pub impact_energy_j: Option<f64>,
     /// `when.time`: so late it is, s; at least 0.
     pub time_s: Option<f64>,
-    /// `need`: all that `when` has must hold ("all"), not just any ("any"). False unless given.
-    pub needs_all: bool,
-    /// `back`. None: what was replaced stays bonded.
-    pub back: Option<Back>,
+    /// `require`: all that `when` has must hold ("all"), not just any ("any"). False unless given.
+    pub requires_all: bool,
+    /// `restore`. None: what was replaced stays bonded.
+    pub restore: Option<Restore>,
 }
 
-/// `back = { ... }`: when a fragment becomes rigid again. All of it must hold.
+/// `restore = { ... }`: when a fragment becomes rigid again. All of it must hold.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Back {
+pub struct Restore {
     /// `leaves`: its centre is outside this region, a name of `[regions]`.
     pub leaves: String,
     /// `min_particles`: it has at least so many, 10 unless given. At least 1.
@@ -121,9 +129,9 @@ pub struct Back {
     /// `strain_energy`: elastic energy of its bonds over its mass is at most this, 0.01 J/kg unless
     /// given; more than 0.
     pub strain_energy_j_kg: f64,
-    /// `inner_speed`: root mean square speed of its particles beside its motion as a rigid body is
-    /// at most this, 5 mm/s unless given; more than 0.
-    pub inner_speed_m_s: f64,
+    /// `fluctuation_velocity`: root mean square velocity of its particles relative to its
+    /// rigid-body motion is at most this, 5 mm/s unless given; more than 0.
+    pub fluctuation_velocity_m_s: f64,
 }
 
 pub(super) fn read_all(
@@ -179,7 +187,7 @@ fn check_body(
         let mass = root.find(&["bodies", name, "clump", "mass"]);
         let place = mass.unwrap_or_else(|| field.clone());
         let problem = format!(
-            "{} is \"union\", but [replacement.{name}] replaces it: the clump would weigh other than the cluster it becomes",
+            "{} is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass",
             place.path
         );
         return Err(place.refuse(problem, "write mass = \"spheres\""));
@@ -200,20 +208,20 @@ fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
         force_n: when.read("force")?,
         impact_energy_j: when.read("impact_energy")?,
         time_s: when.read("time")?,
-        needs_all: table
-            .read_by("need", |field| field.choice(&NEEDS))?
+        requires_all: table
+            .read_by("require", |field| field.choice(&REQUIRE))?
             .unwrap_or(false),
-        back: table.read_by("back", |field| back(&field, regions))?,
+        restore: table.read_by("restore", |field| restore(&field, regions))?,
     })
 }
 
-fn back(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Back> {
-    let table = Table::of(field, &BACK)?;
-    Ok(Back {
+fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Restore> {
+    let table = Table::of(field, &RESTORE)?;
+    Ok(Restore {
         leaves: table.need("leaves")?.reference(regions.keys(), "regions")?,
         min_particles: table.read("min_particles")?,
         strain_energy_j_kg: table.read("strain_energy")?,
-        inner_speed_m_s: table.read("inner_speed")?,
+        fluctuation_velocity_m_s: table.read("fluctuation_velocity")?,
     })
 }
 
@@ -221,20 +229,27 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
     listing.table("when", &WHEN, |listing| {
         listing.text(
             "enters",
-            replacement.enters.as_deref().unwrap_or("not asked"),
+            replacement.enters.as_deref().unwrap_or("not used"),
         );
         listing.value("force", &replacement.force_n);
         listing.value("impact_energy", &replacement.impact_energy_j);
         listing.value("time", &replacement.time_s);
     });
-    listing.text("need", if replacement.needs_all { "all" } else { "any" });
-    let Some(back) = &replacement.back else {
-        return listing.text("back", "never");
+    listing.text(
+        "require",
+        if replacement.requires_all {
+            "all"
+        } else {
+            "any"
+        },
+    );
+    let Some(restore) = &replacement.restore else {
+        return listing.text("restore", "never");
     };
-    listing.table("back", &BACK, |listing| {
-        listing.text("leaves", &back.leaves);
-        listing.value("min_particles", &back.min_particles);
-        listing.value("strain_energy", &back.strain_energy_j_kg);
-        listing.value("inner_speed", &back.inner_speed_m_s);
+    listing.table("restore", &RESTORE, |listing| {
+        listing.text("leaves", &restore.leaves);
+        listing.value("min_particles", &restore.min_particles);
+        listing.value("strain_energy", &restore.strain_energy_j_kg);
+        listing.value("fluctuation_velocity", &restore.fluctuation_velocity_m_s);
     });
 }

@@ -7,6 +7,7 @@ use super::body::BodyEntry;
 use super::bond::BondKind;
 use super::clusters::Clusters;
 use super::contact::Contact;
+use super::group::ParticleGroup;
 use super::initial::Initial;
 use super::inlet::Inlet;
 use super::load::Load;
@@ -19,14 +20,13 @@ use super::relaxation::Relaxation;
 use super::replacement::Replacement;
 use super::run::Run;
 use super::search::Search;
-use super::set::ParticleSet;
 use super::sleep::Sleep;
 use super::support::Support;
 use super::test::Test;
 use super::wall::Wall;
 use super::{
-    body, bond, clusters, contact, initial, inlet, load, material, measure, outlet, output, region,
-    relaxation, replacement, run, search, set, sleep, support, test, wall,
+    body, bond, clusters, contact, group, initial, inlet, load, material, measure, outlet, output,
+    region, relaxation, replacement, run, search, sleep, support, test, wall,
 };
 
 /// Version of the scene format.
@@ -48,11 +48,11 @@ pub struct Scene {
     pub bonds: BTreeMap<String, BondKind>,
     /// `[bodies.NAME]`. At least one.
     pub bodies: BTreeMap<String, BodyEntry>,
-    /// `[walls.NAME]`. No body or set has the name of a wall.
+    /// `[walls.NAME]`. No body or group has the name of a wall.
     pub walls: BTreeMap<String, Wall>,
-    /// `[sets.NAME]`. The name of a body also stands for all its particles, and `all` for all of
+    /// `[groups.NAME]`. The name of a body also stands for all its particles, and `all` for all of
     /// the scene.
-    pub sets: BTreeMap<String, ParticleSet>,
+    pub groups: BTreeMap<String, ParticleGroup>,
     /// `[initial.NAME]`
     pub initial: BTreeMap<String, Initial>,
     /// `[supports.NAME]`
@@ -85,7 +85,7 @@ pub struct Scene {
 
 pub(super) static SCENE: Schema = Schema {
     title: "",
-    doc: "A scene: what stands where, of what, what is done to it, and what is asked.",
+    doc: "A scene: bodies, walls, materials, loads, and what is measured and written.",
     keys: &[
         Key::whole("version", 1, "Version of the format.").required("1"),
         Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
@@ -103,7 +103,7 @@ pub(super) static SCENE: Schema = Schema {
         named("bodies", &Kind::Table(&body::BODY), body::BODY.doc)
             .required("{ NAME = { file = \"body.vtp\" } }"),
         named("walls", &Kind::Table(&wall::WALL), wall::WALL.doc),
-        named("sets", &Kind::Table(&set::SET), set::SET.doc),
+        named("groups", &Kind::Table(&group::GROUP), group::GROUP.doc),
         named(
             "initial",
             &Kind::Table(&initial::INITIAL),

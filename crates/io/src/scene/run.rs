@@ -8,31 +8,31 @@ use super::table::Table;
 use crate::diagnostic::Result;
 use crate::units::{ACCELERATION, TIME};
 
-/// When the run ends, how it steps, what acts everywhere.
+/// End of the run, time step, and what acts on everything.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
     pub end_time_s: f64,
     /// `integrator`, "leapfrog" unless given.
     pub integrator: Integrator,
-    /// `rest`, in (0, 1): end sooner, when the kinetic energy has been below this share of the
+    /// `rest_energy_ratio`, in (0, 1): end sooner, when the kinetic energy has been below this share of the
     /// elastic energy during the last fifth of the run.
-    pub rest: Option<f64>,
-    /// `time_step`: seconds, or None for "auto", which is `safety` times the exact limit.
+    pub rest_energy_ratio: Option<f64>,
+    /// `time_step`: seconds, or None for "auto", which is `safety_factor` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and
+    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and
     /// more are for trials only.
-    pub safety: f64,
+    pub safety_factor: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
     pub adaptive: bool,
     /// `gravity`, m/s2; none unless given. Length 3.
     pub gravity_m_s2: [f64; 3],
-    /// `particle_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
-    pub particle_damping: f64,
+    /// `local_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
+    pub local_damping: f64,
     /// `seed` of everything random (scatter of strengths); 0 unless given.
     pub seed: u64,
-    /// `start_overlap`, "refuse" unless given.
-    pub start_overlap: StartOverlap,
+    /// `initial_overlap`, "refuse" unless given.
+    pub initial_overlap: InitialOverlap,
 }
 
 /// How a run comes to its end.
@@ -48,7 +48,7 @@ pub enum Integrator {
 
 /// What happens where bodies or walls overlap at the start, although no bond joins them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StartOverlap {
+pub enum InitialOverlap {
     /// "refuse": the scene is refused.
     Refuse,
     /// "relax": the overlap is the origin of their contact law.
@@ -57,12 +57,12 @@ pub enum StartOverlap {
     Keep,
 }
 
-/// `run.safety` unless given.
+/// `run.safety_factor` unless given.
 pub const SAFETY: f64 = 0.9;
 
 pub(super) static RUN: Schema = Schema {
     title: "[run]",
-    doc: "When the run ends, how it steps, what acts everywhere.",
+    doc: "End of the run, time step, and what acts on everything.",
     keys: &[
         Key::quantity("end_time", &TIME, "Simulated time at the end. Needed where no `[test]` says when it ends.")
             .positive()
@@ -70,28 +70,28 @@ pub(super) static RUN: Schema = Schema {
         Key::word::<Integrator>(
             "integrator",
             "leapfrog",
-            "Step by step, or `static`: at once into the equilibrium under what acts at `end_time`.",
+            "Explicit time steps, or `static`: the static equilibrium under the loads at `end_time`, without steps.",
         ),
         Key::number(
-            "rest",
-            "The run ends sooner, once the kinetic energy has been below this share of the elastic one during the \
+            "rest_energy_ratio",
+            "The run ends sooner, once the kinetic energy has been below this fraction of the elastic energy during the \
              last fifth of the run and no load or support changes any more.",
         )
         .within(Excluded(0.0), Excluded(1.0))
-        .remedy("a small share such as 1e-6 means at rest")
+        .remedy("a small ratio such as 1e-6 means at rest")
         .otherwise("never"),
         Key::new(
             "time_step",
             Kind::Auto(&TIME),
-            "The step; `auto` is `safety` times the exact limit.",
+            "The step; `auto` is `safety_factor` times the exact limit.",
         )
         .positive()
         .remedy("write \"auto\" or a time such as \"1 us\"")
         .or_word("auto"),
         Key::number(
-            "safety",
+            "safety_factor",
             "The automatic step over the largest stable one; the step that impacts allow is more or less by \
-             safety/0.9. 1 and more are for trials only.",
+             safety_factor/0.9. 1 and more are for trials only.",
         )
         .within(Excluded(0.0), Excluded(2.0))
         .remedy("a usual value is 0.9")
@@ -101,20 +101,20 @@ pub(super) static RUN: Schema = Schema {
             false,
             "The automatic step follows the limit up as well as down.",
         ),
-        Key::vector("gravity", &ACCELERATION, "Acceleration that acts on everything."),
-        Key::number("particle_damping", "Damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
+        Key::vector("gravity", &ACCELERATION, "Gravity."),
+        Key::number("local_damping", "Local (non-viscous) damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
             .within(Included(0.0), Excluded(1.0))
             .remedy("write 0 for none")
             .or(0.0),
         Key::new(
             "seed",
             Kind::Whole { least: 0, most: Some(u64::MAX), of: "" },
-            "Of all that is random: scattered strengths, inlets.",
+            "Seed of everything random: scattered strengths, inlets.",
         )
         .remedy("write any such number")
         .or(0.0),
-        Key::word::<StartOverlap>(
-            "start_overlap",
+        Key::word::<InitialOverlap>(
+            "initial_overlap",
             "refuse",
             "Bodies or walls that overlap at the start are refused; or `relax`: the overlap is the origin of their \
              contact law; or `keep`: they press with all of it.",
@@ -127,7 +127,7 @@ impl Word for Integrator {
         &[("leapfrog", Self::Leapfrog), ("static", Self::Static)];
 }
 
-impl Word for StartOverlap {
+impl Word for InitialOverlap {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("refuse", Self::Refuse),
         ("relax", Self::Relax),
@@ -139,14 +139,14 @@ one_field_a_key! {
     Run {
         end_time_s: "end_time",
         integrator: "integrator",
-        rest: "rest",
+        rest_energy_ratio: "rest_energy_ratio",
         time_step_s: "time_step",
-        safety: "safety",
+        safety_factor: "safety_factor",
         adaptive: "adaptive",
         gravity_m_s2: "gravity",
-        particle_damping: "particle_damping",
+        local_damping: "local_damping",
         seed: "seed",
-        start_overlap: "start_overlap",
+        initial_overlap: "initial_overlap",
     }
 }
 

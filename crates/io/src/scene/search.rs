@@ -7,23 +7,23 @@ use super::schema::{Key, Schema};
 use super::table::Table;
 use crate::diagnostic::Result;
 
-/// How particles that may touch are found.
+/// Neighbour search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// `skin`: how far beyond touching pairs are listed, as a share of the largest radius; in (0,
+    /// `skin`: how far beyond touching pairs are listed, as a fraction of the largest radius; in (0,
     /// 2]. None: chosen by the program.
     pub skin: Option<f64>,
 }
 
 pub(super) static SEARCH: Schema = Schema {
     title: "[search]",
-    doc: "How particles that may touch are found.",
+    doc: "Neighbour search.",
     keys: &[Key::number(
         "skin",
-        "How far beyond touching pairs are listed, as a share of the largest radius.",
+        "How far beyond touching pairs are listed, as a fraction of the largest radius.",
     )
     .within(Excluded(0.0), Included(2.0))
-    .remedy("it is a share of the largest radius: leave it out, and the program chooses")
+    .remedy("it is a fraction of the largest radius: leave it out, and the program chooses")
     .otherwise("chosen by the program")],
 };
 

@@ -1,4 +1,4 @@
-//! Shapes that sets, walls and regions share.
+//! Shapes that groups, walls and regions share.
 
 use std::path::{Path, PathBuf};
 
@@ -133,7 +133,7 @@ pub(super) fn refuse_without_stl(
 ) -> Result<()> {
     match table.given(keys).next() {
         Some((_, of_stl)) if key != "stl" => {
-            let problem = format!("{} stands without stl, on which it acts", of_stl.path);
+            let problem = format!("{} has no effect without stl", of_stl.path);
             Err(of_stl.refuse(problem, format!("remove it: lengths of a {key} have units")))
         }
         _ => Ok(()),

@@ -18,16 +18,16 @@ pub struct Sleep {
 
 pub(super) static SLEEP: Schema = Schema {
     title: "[sleep]",
-    doc: "Bodies at rest are not stepped; without this table all are.",
+    doc: "Bodies at rest sleep: they are not stepped. Without this table none do.",
     keys: &[
         Key::quantity(
             "speed",
             &VELOCITY,
-            "Speed that no point of a body exceeds when it falls asleep.",
+            "A body falls asleep when no point of it is faster than this.",
         )
         .positive()
         .or(1e-3),
-        Key::quantity("after", &TIME, "How long it has been so slow.")
+        Key::quantity("after", &TIME, "Time for which it has been that slow.")
             .positive()
             .or(0.05),
     ],

@@ -21,7 +21,7 @@ const TABLES: [&str; 8] = [
 pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     if let Some((_, field)) = root.given(&TABLES).next() {
         let problem = format!(
-            "[{}] stands in a scene with run.integrator = \"static\", which knows bonded bodies, loads and supports only",
+            "[{}] is not available with run.integrator = \"static\", which handles bonded bodies, loads and supports only",
             field.path
         );
         let remedy = "remove it, or write run.integrator = \"leapfrog\"";
@@ -31,7 +31,7 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         for (_, one) in root.named(table)? {
             if let Some(field) = Table::any(&one)?.get("end") {
                 let problem = format!(
-                    "{} stands in a scene with run.integrator = \"static\", where nothing ends",
+                    "{} has no effect with run.integrator = \"static\"",
                     field.path
                 );
                 let remedy = format!(

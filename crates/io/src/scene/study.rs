@@ -1,9 +1,9 @@
-//! A study: a scene, what varies in it, what is measured and against what. Plain data, as read from
+//! A study: a scene, what varies in it, what is measured and what it is compared with. Plain data, as read from
 //! TOML.
 
 mod check;
 mod contents;
-mod keys;
+pub(super) mod keys;
 mod measures;
 mod read;
 mod rewrite;

@@ -7,7 +7,7 @@ use super::names::suggestion;
 use super::numbers::quantity;
 use super::schema::{Key, Kind, Schema};
 use super::table::Table;
-use super::targets::{OF, Targets};
+use super::targets::{GROUP_KEY, Targets};
 use super::tree::Value;
 use crate::diagnostic::Result;
 use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
@@ -24,11 +24,11 @@ pub enum Hold {
     Displacement(f64),
 }
 
-/// A support: holds degrees of freedom of a set of particles.
+/// A support: holds degrees of freedom of a group of particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
-    /// `of`: a set, a body or `all`.
-    pub of: String,
+    /// `group`: a group, a body or `all`.
+    pub group: String,
     /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all
     /// are free. Length 6.
     pub holds: [Option<Hold>; 6],
@@ -41,9 +41,9 @@ pub struct Support {
 
 pub(super) static SUPPORT: Schema = Schema {
     title: "[supports.NAME]",
-    doc: "Holds or moves each particle of a set along x, y, z and about them: rx, ry, rz.",
+    doc: "Boundary conditions: holds or moves each particle of a group along x, y, z and about them: rx, ry, rz.",
     keys: &[
-        OF,
+        GROUP_KEY,
         Key::new(
             "fixed",
             Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]),
@@ -62,7 +62,7 @@ pub(super) static SUPPORT: Schema = Schema {
         RAMP,
         TABLE,
         until(
-            "From then on the freedoms are free; not before the last change of `ramp` or `table`.",
+            "Time at which the freedoms are released; not before the last change of `ramp` or `table`.",
         ),
     ],
 };
@@ -98,7 +98,7 @@ pub(super) const FREEDOMS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> {
     let table = Table::of(field, &SUPPORT)?;
-    let of = targets.name(&table.need("of")?)?;
+    let group = targets.name(&table.need("group")?)?;
     let mut holds = [None; 6];
     if let Some(field) = table.get("fixed") {
         fix(&field, &mut holds)?;
@@ -118,7 +118,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
     let moves = holds.iter().flatten().any(|hold| *hold != Hold::Fixed);
     if let (Some(field), false) = (over_time(&table), moves) {
         let problem = format!(
-            "{} stands without velocity or displacement, on which it acts",
+            "{} has no effect without velocity or displacement",
             field.path
         );
         return Err(field.refuse(problem, "remove it"));
@@ -129,7 +129,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
     };
     let end_s = end(&table, &factor)?;
     Ok(Support {
-        of,
+        group,
         holds,
         factor,
         end_s,
@@ -202,7 +202,7 @@ fn hold(field: &Field<'_>, freedom: &str, place: &mut Option<Hold>, new: Hold) -
 }
 
 pub(super) fn list(support: &Support, listing: &mut Listing) {
-    listing.text("of", &support.of);
+    listing.text("group", &support.group);
     for (at, (freedom, hold)) in FREEDOMS.iter().zip(&support.holds).enumerate() {
         let unit = |units: [&'static str; 2]| if at < 3 { units[0] } else { units[1] };
         let text = match hold {

@@ -2,6 +2,7 @@
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
+use super::renamed::new_name;
 use super::schema::{Key, Schema, Unless};
 use super::tree::{Document, Node, Origin, Value, shortened};
 use crate::diagnostic::{Diagnostic, Result};
@@ -102,6 +103,10 @@ impl<'a> Table<'a> {
             return Ok(());
         };
         let field = self.field(key, node);
+        if let Some((new, remedy)) = new_name(self.schema.title, key) {
+            let problem = format!("{} is now called {new}", field.path);
+            return Err(field.refuse(problem, remedy));
+        }
         let problem = match node.value {
             Value::Table(_) if self.path.is_empty() => {
                 format!("unknown table [{}]", field.path)

@@ -3,25 +3,25 @@
 use std::collections::BTreeMap;
 
 use super::field::Field;
+use super::group::ParticleGroup;
 use super::names::{ALL, FRAGMENTS, suggestion};
 use super::presence::Presence;
 use super::schema::Key;
-use super::set::ParticleSet;
 use super::wall::Wall;
 use crate::diagnostic::{Diagnostic, Result};
 
-/// The key `of` of supports, loads and `[initial]`.
-pub(super) const OF: Key = Key::text(
-    "of",
-    "a set, a body or `all`",
+/// The key `group` of supports, loads and `[initial]`.
+pub(super) const GROUP_KEY: Key = Key::text(
+    "group",
+    "a group, a body or `all`",
     "The particles that it acts on.",
 )
-.required("\"NAME\", a set, a body or \"all\"");
+.required("\"NAME\", a group, a body or \"all\"");
 
-/// What supports, loads and measures can name: sets, bodies and `all`; walls and `fragments` can
+/// What supports, loads and measures can name: groups, bodies and `all`; walls and `fragments` can
 /// only be measured.
 pub(super) struct Targets<'a> {
-    pub(super) sets: &'a BTreeMap<String, ParticleSet>,
+    pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
     pub(super) presence: &'a Presence<'a>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
 }
@@ -29,7 +29,7 @@ pub(super) struct Targets<'a> {
 /// What has quantities that can be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Subject {
-    /// A set, a body or `all`.
+    /// A group, a body or `all`.
     Particles,
     /// A wall.
     Wall,
@@ -38,7 +38,7 @@ pub(super) enum Subject {
 }
 
 impl Targets<'_> {
-    /// The name that `field` gives, if it is that of a set, of a body or `all`, and has particles
+    /// The name that `field` gives, if it is that of a group, of a body or `all`, and has particles
     /// of its own at the start.
     pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
         let name = field.text()?;
@@ -54,12 +54,12 @@ impl Targets<'_> {
             Some(Subject::Wall) => {
                 let problem = format!("{} is \"{name}\", which is a wall", field.path);
                 let remedy = format!(
-                    "name a set or a body: how a wall moves and pushes stands in [walls.{name}]"
+                    "name a group or a body: the motion of a wall is set in [walls.{name}]"
                 );
                 Err(field.refuse(problem, remedy))
             }
             Some(Subject::Fragments) | None => {
-                Err(unknown(field, name, "set or body", self.of_particles()))
+                Err(unknown(field, name, "group or body", self.of_particles()))
             }
         }
     }
@@ -70,13 +70,14 @@ impl Targets<'_> {
         let subject = self.subject(name).ok_or_else(|| {
             let others = self.walls.keys().map(String::as_str).chain([FRAGMENTS]);
             let known = self.of_particles().chain(others);
-            unknown(field, name, "set, body or wall", known)
+            unknown(field, name, "group, body or wall", known)
         })?;
         Ok((name.to_owned(), subject))
     }
 
     fn subject(&self, name: &str) -> Option<Subject> {
-        if name == ALL || self.sets.contains_key(name) || self.presence.bodies.contains_key(name) {
+        if name == ALL || self.groups.contains_key(name) || self.presence.bodies.contains_key(name)
+        {
             Some(Subject::Particles)
         } else if self.walls.contains_key(name) {
             Some(Subject::Wall)
@@ -86,7 +87,7 @@ impl Targets<'_> {
     }
 
     fn of_particles(&self) -> impl Iterator<Item = &str> {
-        let names = self.sets.keys().chain(self.presence.bodies.keys());
+        let names = self.groups.keys().chain(self.presence.bodies.keys());
         names.map(String::as_str).chain([ALL])
     }
 }

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::ops::Bound::{Included, Unbounded};
 
 use super::field::Field;
+use super::group::ParticleGroup;
 use super::listing::Listing;
 use super::material::poisson_ratio;
 use super::names::suggestion;
 use super::presence::Presence;
 use super::schema::{Key, Kind, Schema, words_of};
-use super::set::ParticleSet;
 use super::support::Support;
 use super::table::Table;
 use super::wall::{Wall, WallMotion};
@@ -20,36 +20,36 @@ pub(super) static TEST: Schema = Schema {
     title: "[test]",
     doc: "A laboratory test. `run.end_time` may be left out then.",
     keys: &[
-        Key::new("kind", Kind::Word(|| words_of(&KINDS)), "Which test.").required("\"four-point-bending\""),
+        Key::new("type", Kind::Word(|| words_of(&KINDS)), "Type of test.").required("\"four-point-bending\""),
         Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
         Key::new(
-            "moves",
-            Kind::List(&Kind::Text("a name in [walls], for tension in [sets]")),
-            "Walls that load, which do not move otherwise; for tension sets that are gripped and pulled.",
+            "crosshead",
+            Kind::List(&Kind::Text("a name in [walls], for tension in [groups]")),
+            "Walls that load the body and do not move otherwise; for tension, groups that are gripped and pulled.",
         )
         .required("[\"NAME\"], walls that load the body"),
         Key::new(
             "direction",
             Kind::Direction("a direction"),
-            "In which they move; for tension along x, y or z. Its length does not matter.",
+            "Direction of loading; for tension along x, y or z. Its length does not matter.",
         )
         .required("[0, 0, -1], in which they move"),
         Key::quantity(
             "stroke",
             &LENGTH,
-            "How far they move at most; the run ends sooner when the body has broken.",
+            "Maximum crosshead travel; the run ends sooner when the body has broken.",
         )
         .positive()
         .required("\"4 mm\""),
         Key::new(
             "rate",
             Kind::Auto(&VELOCITY),
-            "Their velocity; `auto`: such that the stroke takes `periods`.",
+            "Crosshead velocity; `auto`: such that the stroke takes `periods`.",
         )
         .positive()
         .remedy("write \"auto\" or a velocity such as \"0.2 mm/s\"")
         .or_word("auto"),
-        Key::number("periods", "Periods of the body's lowest frequency.")
+        Key::number("periods", "Duration of the stroke in periods of the body's lowest natural frequency.")
             .within(Included(1.0), Unbounded)
             .remedy("a usual value is 20: more are slower, and nearer to rest")
             .or(20.0),
@@ -57,14 +57,14 @@ pub(super) static TEST: Schema = Schema {
         Key::quantity(
             "young_modulus",
             &STRESS,
-            "That of the body as a whole, to compare with.",
+            "Young's modulus of the body as a whole, to compare with.",
         )
         .positive(),
-        poisson_ratio("That of the body as a whole, for its shear in bending.").or(0.3),
-        Key::quantity("strength", &STRESS, "That of the body as a whole, to compare with.")
+        poisson_ratio("Poisson's ratio of the body as a whole, for its shear in bending.").or(0.3),
+        Key::quantity("strength", &STRESS, "Strength of the body as a whole, to compare with.")
             .positive(),
-        size("span", "Between the supports of a beam."),
-        size("load_distance", "Between the two loading pins."),
+        size("support_span", "Between the supports of a beam."),
+        size("loading_span", "Between the two loading pins."),
         size("width", "Of a beam, or thickness of a disc."),
         size("height", "Of a beam, or diameter of a disc."),
         size("length", "Of a body that is pressed or pulled."),
@@ -117,8 +117,8 @@ impl TestKind {
     /// The keys of lengths and areas that mean something to it.
     pub(super) fn dimensions(self) -> &'static [&'static str] {
         match self {
-            Self::FourPointBending => &["span", "load_distance", "width", "height"],
-            Self::ThreePointBending => &["span", "width", "height"],
+            Self::FourPointBending => &["support_span", "loading_span", "width", "height"],
+            Self::ThreePointBending => &["support_span", "width", "height"],
             Self::BrazilianDisc => &["width", "height"],
             Self::Compression | Self::Tension => &["length", "area"],
         }
@@ -128,13 +128,13 @@ impl TestKind {
 /// A quasi-static test: what moves, how far and how fast, and what it is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Test {
-    /// `kind`
+    /// `type`
     pub kind: TestKind,
     /// `body` that is tested; the only one unless given.
     pub body: String,
-    /// `moves`: walls that load, which do not move otherwise; for tension sets that are pulled. At
+    /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are pulled. At
     /// least one.
-    pub moves: Vec<String>,
+    pub crosshead: Vec<String>,
     /// `direction` in which they move, of length 1; for tension along x, y or z. Length 3.
     pub direction: [f64; 3],
     /// `stroke`: how far they move at most, m.
@@ -152,10 +152,10 @@ pub struct Test {
     /// `strength` that the body as a whole should have, by the formula of the test, Pa. None:
     /// compared with nothing.
     pub strength_pa: Option<f64>,
-    /// `span` between the supports of a beam, m. None: that of the walls.
-    pub span_m: Option<f64>,
-    /// `load_distance` between the two loading pins, m. None: that of the walls.
-    pub load_distance_m: Option<f64>,
+    /// `support_span` between the supports of a beam, m. None: that of the walls.
+    pub support_span_m: Option<f64>,
+    /// `loading_span` between the two loading pins, m. None: that of the walls.
+    pub loading_span_m: Option<f64>,
     /// `width` of a beam, or thickness of a disc, m. None: that of the body.
     pub width_m: Option<f64>,
     /// `height` of a beam, or diameter of a disc, m. None: that of the body.
@@ -170,23 +170,23 @@ pub struct Test {
 /// What a test can name.
 pub(super) struct Known<'a> {
     pub(super) presence: &'a Presence<'a>,
-    pub(super) sets: &'a BTreeMap<String, ParticleSet>,
+    pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
     pub(super) supports: &'a BTreeMap<String, Support>,
 }
 
 pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     let table = Table::of(field, &TEST)?;
-    let kind = table.need("kind")?.choice(&KINDS)?;
+    let kind = table.need("type")?.choice(&KINDS)?;
     refuse_dimensions(&table, kind)?;
     let pulls = kind == TestKind::Tension;
     let example = if pulls {
-        "[\"NAME\"], sets that are pulled"
+        "[\"NAME\"], groups that are pulled"
     } else {
         "[\"NAME\"], walls that load the body"
     };
-    let moves = table.need_such("moves", example)?;
-    let moves = all_moved(&moves, pulls, known)?;
+    let crosshead = table.need_such("crosshead", example)?;
+    let crosshead = all_moved(&crosshead, pulls, known)?;
     let direction: [f64; 3] = table.read("direction")?;
     if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
         let remedy = "write [1, 0, 0], [0, 1, 0], [0, 0, 1] or the opposite";
@@ -196,7 +196,7 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     Ok(Test {
         kind,
         body: body(&table, known)?,
-        moves,
+        crosshead,
         direction,
         stroke_m: table.read("stroke")?,
         rate_m_s: table.read("rate")?,
@@ -205,8 +205,8 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         young_modulus_pa: table.read("young_modulus")?,
         poisson_ratio: table.read("poisson_ratio")?,
         strength_pa: table.read("strength")?,
-        span_m: table.read("span")?,
-        load_distance_m: table.read("load_distance")?,
+        support_span_m: table.read("support_span")?,
+        loading_span_m: table.read("loading_span")?,
         width_m: table.read("width")?,
         height_m: table.read("height")?,
         length_m: table.read("length")?,
@@ -215,9 +215,9 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
 }
 
 pub(super) fn list(test: &Test, listing: &mut Listing) {
-    listing.text("kind", test.kind.name());
+    listing.text("type", test.kind.name());
     listing.text("body", &test.body);
-    listing.text("moves", test.moves.join(", "));
+    listing.text("crosshead", test.crosshead.join(", "));
     listing.value("direction", &test.direction);
     listing.value("stroke", &test.stroke_m);
     listing.value("rate", &test.rate_m_s);
@@ -227,8 +227,8 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
     listing.value("poisson_ratio", &test.poisson_ratio);
     listing.value("strength", &test.strength_pa);
     for (key, given) in [
-        ("span", test.span_m),
-        ("load_distance", test.load_distance_m),
+        ("support_span", test.support_span_m),
+        ("loading_span", test.loading_span_m),
         ("width", test.width_m),
         ("height", test.height_m),
         ("length", test.length_m),
@@ -242,11 +242,18 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
 
 /// Refuses dimensions that mean nothing to the kind of test.
 fn refuse_dimensions(table: &Table<'_>, kind: TestKind) -> Result<()> {
-    let all = ["span", "load_distance", "width", "height", "length", "area"];
+    let all = [
+        "support_span",
+        "loading_span",
+        "width",
+        "height",
+        "length",
+        "area",
+    ];
     let known = kind.dimensions();
     match table.given(&all).find(|(key, _)| !known.contains(key)) {
         Some((_, field)) => {
-            let problem = format!("{} means nothing to \"{}\"", field.path, kind.name());
+            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
             Err(field.refuse(
                 problem,
                 format!("remove it; known here: {}", known.join(", ")),
@@ -278,16 +285,13 @@ fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
     }
 }
 
-/// What `moves` names, each once.
+/// What `crosshead` names, each once.
 fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<String>> {
     let mut moves: Vec<String> = Vec::new();
     for item in field.items()? {
         let name = moved(&item, pulls, known)?;
         if moves.contains(&name) {
-            let problem = format!(
-                "{} is \"{name}\", which stands in the list already",
-                item.path
-            );
+            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             return Err(item.refuse(problem, "remove one of them"));
         }
         moves.push(name);
@@ -295,21 +299,21 @@ fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<St
     Ok(moves)
 }
 
-/// What an item of `moves` names: a wall that stands still, or a set that no support holds.
+/// What an item of `crosshead` names: a wall that stands still, or a group that no support holds.
 fn moved(item: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<String> {
     let name = item.text()?;
     if pulls {
-        if !known.sets.contains_key(name) {
-            let problem = format!("{} is \"{name}\", but no set has this name", item.path);
-            let names = known.sets.keys().map(String::as_str);
+        if !known.groups.contains_key(name) {
+            let problem = format!("{} is \"{name}\", but no group has this name", item.path);
+            let names = known.groups.keys().map(String::as_str);
             return Err(item.refuse(problem, suggestion(name, names)));
         }
-        if let Some((support, _)) = known.supports.iter().find(|(_, s)| s.of == name) {
+        if let Some((support, _)) = known.supports.iter().find(|(_, s)| s.group == name) {
             let problem = format!(
                 "{} is \"{name}\", which [supports.{support}] holds",
                 item.path
             );
-            return Err(item.refuse(problem, "remove that support: the test moves the set"));
+            return Err(item.refuse(problem, "remove that support: the test moves the group"));
         }
         return Ok(name.to_owned());
     }

@@ -1,6 +1,6 @@
 //! `[walls.NAME]`
 
-mod motion;
+pub(super) mod motion;
 mod shape;
 
 pub use motion::WallMotion;
@@ -13,19 +13,19 @@ use super::body::BodyEntry;
 use super::direction::ROTATION;
 use super::factor::{RAMP, TABLE};
 use super::field::Field;
+use super::group::ParticleGroup;
 use super::listing::Listing;
 use super::material::Material;
 use super::names::meaning;
 use super::schema::{Key, Schema};
-use super::set::ParticleSet;
 use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
 use crate::diagnostic::Result;
-use crate::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
+use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 pub(super) static WALL: Schema = Schema {
     title: "[walls.NAME]",
-    doc: "What particles bounce off, of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
+    doc: "A rigid wall of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
           a servo.",
     keys: &[
         Key::table("plane", &shape::PLANE, "A plane without end."),
@@ -46,23 +46,12 @@ pub(super) static WALL: Schema = Schema {
             .or(1.0),
         Key::text("material", "a name in [materials]", "Its material.")
             .required("\"NAME\", a name in [materials]"),
-        Key::table(
-            "rotation",
-            &ROTATION,
-            "It is turned about the pivot, then tilted.",
-        )
-        .or(0.0),
-        Key::quantity(
-            "tilt",
-            &ANGLE,
-            "It is turned about the y axis through the pivot.",
-        )
-        .or(0.0),
-        Key::vector("pivot", &LENGTH, "What it turns about."),
+        Key::table("rotation", &ROTATION, "Initial rotation about the pivot.").or(0.0),
+        Key::vector("pivot", &LENGTH, "Centre of rotation."),
         Key::vector(
             "surface_velocity",
             &VELOCITY,
-            "Of a belt: its surface moves, its shape stays; in space, not turned with the wall.",
+            "Of a belt: its surface moves, its shape stays; in space, not rotated with the wall.",
         ),
         Key::vector("velocity", &VELOCITY, "Of the pivot."),
         Key::vector(
@@ -76,7 +65,7 @@ pub(super) static WALL: Schema = Schema {
             "Of the pivot. Needs a `ramp` or `table` that begins at 0.",
         ),
         Key::table(
-            "turn",
+            "angular_displacement",
             &ROTATION,
             "About the pivot. Needs a `ramp` or `table` that begins at 0.",
         )
@@ -84,14 +73,14 @@ pub(super) static WALL: Schema = Schema {
         Key::table(
             "servo",
             &motion::SERVO,
-            "Moves such that it pushes as wanted.",
+            "Servo control: it moves such that it exerts a given force.",
         ),
         RAMP,
         TABLE,
     ],
 };
 
-/// What particles bounce off. It moves as it is told.
+/// A wall, fixed or moving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
     /// `plane`, `box`, `cylinder` or `stl`
@@ -100,8 +89,6 @@ pub struct Wall {
     pub material: String,
     /// `rotation = { axis, angle }`: turned about the pivot, as a rotation vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
-    /// `tilt`: turned about the y axis through the pivot after `rotation`, rad; 0 unless given.
-    pub tilt_rad: f64,
     /// `pivot`, m; the origin unless given. Length 3.
     pub pivot_m: [f64; 3],
     /// How it moves; fixed unless given.
@@ -115,21 +102,21 @@ pub(super) fn read_all(
     root: &Table<'_>,
     materials: &BTreeMap<String, Material>,
     bodies: &BTreeMap<String, BodyEntry>,
-    sets: &BTreeMap<String, ParticleSet>,
+    groups: &BTreeMap<String, ParticleGroup>,
     folder: &Path,
 ) -> Result<BTreeMap<String, Wall>> {
     let mut walls = BTreeMap::new();
     for (name, field) in root.named("walls")? {
         let like = if bodies.contains_key(&name) {
             Some(format!("the body [bodies.{name}]"))
-        } else if sets.contains_key(&name) {
-            Some(format!("the set [sets.{name}]"))
+        } else if groups.contains_key(&name) {
+            Some(format!("the group [groups.{name}]"))
         } else {
             meaning(&name).map(str::to_owned)
         };
         if let Some(like) = like {
             let problem = format!("{} is named like {like}", field.path);
-            let remedy = "give it another name: measures name walls as they do sets and bodies";
+            let remedy = "give it another name: measures name walls as they do groups and bodies";
             return Err(field.refuse(problem, remedy));
         }
         walls.insert(name, read(&field, materials, folder)?);
@@ -145,7 +132,6 @@ fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path
             .need("material")?
             .reference(materials.keys(), "materials")?,
         rotation_rad: table.read("rotation")?,
-        tilt_rad: table.read("tilt")?,
         pivot_m: table.read("pivot")?,
         motion: motion::read(&table)?,
         surface_velocity_m_s: table.read("surface_velocity")?,
@@ -157,7 +143,6 @@ pub(super) fn list(wall: &Wall, listing: &mut Listing) {
     listing.text("material", &wall.material);
     listing.value("pivot", &wall.pivot_m);
     listing.value("rotation", &wall.rotation_rad);
-    listing.value("tilt", &wall.tilt_rad);
     listing.value("surface_velocity", &wall.surface_velocity_m_s);
     motion::list(&wall.motion, listing);
 }

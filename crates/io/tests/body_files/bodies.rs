@@ -19,7 +19,7 @@ pub(crate) fn triangle() -> Body {
             shape_volume_m3: Some(1.0 / 3.0),
             particle_density_kg_m3: Some(2050.0),
             overlap: Some(0.25),
-            bonding_radius: Some(1.1),
+            bond_range: Some(1.1),
             seed: Some(7),
             warnings: vec!["few – 4.9 – across".to_owned(), "2 pieces".to_owned()],
         },
@@ -122,7 +122,7 @@ fn any_about() -> impl Strategy<Value = About> {
                 volume,
                 density,
                 overlap,
-                bonding_radius,
+                bond_range,
                 seed,
                 warnings,
             )| {
@@ -133,7 +133,7 @@ fn any_about() -> impl Strategy<Value = About> {
                     shape_volume_m3: volume,
                     particle_density_kg_m3: density,
                     overlap,
-                    bonding_radius,
+                    bond_range,
                     seed,
                     warnings,
                 }

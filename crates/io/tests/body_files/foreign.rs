@@ -62,7 +62,7 @@ fn vtk_compressed_says_how_to_save() {
 
 #[test]
 fn bonds_without_radius_are_as_thick_as_their_smaller_particle() {
-    let text = include_str!("vtk-ascii.vtp").replace("bond_radius", "thickness");
+    let text = include_str!("vtk-ascii.vtp").replace("bond_radius_m", "thickness");
     assert_eq!(
         three(vtp::read(&mut text.as_bytes())).bond_radii,
         [0.0005, 0.0006]
@@ -80,9 +80,9 @@ fn vtp_that_is_no_body() {
     };
     for (from, to, wanted) in [
         (
-            "\"radius\"",
+            "\"radius_m\"",
             "\"r\"",
-            "the radii of the particles are missing: the point data are 'r'; name the point data that hold them 'radius'",
+            "the radii of the particles are missing: the point data are 'r'; name the point data that hold them 'radius_m'",
         ),
         (
             "2 4\n",
@@ -122,7 +122,7 @@ fn vtp_that_is_no_body() {
         (
             "0.0006 0.0005 0.0007",
             "0.0006 0.0005",
-            "array 'radius': 2 values, but the header says 3; the file is damaged: write or copy it again",
+            "array 'radius_m': 2 values, but the header says 3; the file is damaged: write or copy it again",
         ),
         (
             "0 0 0 0.001 0 0",
@@ -132,7 +132,7 @@ fn vtp_that_is_no_body() {
         (
             "NumberOfLines=\"2\"",
             "NumberOfLines=\"3\"",
-            "array 'bond_radius': 2 values, but the header says 3; the file is damaged: write or copy it again",
+            "array 'bond_radius_m': 2 values, but the header says 3; the file is damaged: write or copy it again",
         ),
         (
             "</Lines>",
@@ -230,33 +230,33 @@ fn tables_from_spreadsheets_and_matlab() {
     for (particles, bonds, wanted) in [
         (
             "x;y\n",
-            "a,b\n",
+            "particle_a,particle_b\n",
             "particles: line 1: there is no column 'x_m'; the first line names the columns: x_m,y_m,z_m,radius_m",
         ),
         (
             good,
             "",
-            "bonds: line 1: there is no column 'a'; the first line names the columns: a,b,radius_m,initial_length_m",
+            "bonds: line 1: there is no column 'particle_a'; the first line names the columns: particle_a,particle_b,bond_radius_m,initial_length_m",
         ),
         (
             "x_m,y_m,z_m,radius_m\n0,0,0\n",
-            "a,b\n",
+            "particle_a,particle_b\n",
             "particles: line 2: radius_m is missing; the line is incomplete",
         ),
         (
             good,
-            "a,b\n0,2\n",
-            "bonds: line 2: b is 2, but there are 2 particles, numbered from 0; correct or remove this line",
+            "particle_a,particle_b\n0,2\n",
+            "bonds: line 2: particle_b is 2, but there are 2 particles, numbered from 0; correct or remove this line",
         ),
         (
             good,
-            "a,b\n0,1\n1,0\n",
+            "particle_a,particle_b\n0,1\n1,0\n",
             "bonds: bond 1: it joins particles 0 and 1, as bond 0 does already; one pair takes one bond: remove one of the two",
         ),
         (
             good,
-            "a,b,radius_m\n0,1,1 mm\n",
-            "bonds: line 2: radius_m is '1 mm', not a number; numbers have a decimal point and no unit",
+            "particle_a,particle_b,bond_radius_m\n0,1,1 mm\n",
+            "bonds: line 2: bond_radius_m is '1 mm', not a number; numbers have a decimal point and no unit",
         ),
     ] {
         assert_eq!(said(particles, bonds), wanted);

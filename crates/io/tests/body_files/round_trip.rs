@@ -97,9 +97,9 @@ fn an_independent_reader_sees_the_same() {
     assert_eq!(floats("Points", "Points"), body.positions.as_flattened());
     assert_eq!(integers("Lines", "connectivity"), [0, 1, 0, 2]);
     assert_eq!(integers("Lines", "offsets"), [2, 4]);
-    assert_eq!(floats("PointData", "radius"), body.radii);
-    assert_eq!(floats("CellData", "bond_radius"), body.bond_radii);
-    assert_eq!(floats("CellData", "bond_initial_length"), body.bond_lengths);
+    assert_eq!(floats("PointData", "radius_m"), body.radii);
+    assert_eq!(floats("CellData", "bond_radius_m"), body.bond_radii);
+    assert_eq!(floats("CellData", "initial_length_m"), body.bond_lengths);
 }
 
 fn through_file(body: &Body, path: &Path) -> Body {
@@ -152,7 +152,7 @@ fn files_for_other_programs_look_as_documented() {
     );
     assert_eq!(
         text(written(|out| csv::write_bonds(&body, out))),
-        "a,b,radius_m,initial_length_m\n0,1,4e-4,1e-3\n0,2,3e-4,1.1e-3\n"
+        "particle_a,particle_b,bond_radius_m,initial_length_m\n0,1,4e-4,1e-3\n0,2,3e-4,1.1e-3\n"
     );
     assert_eq!(
         text(written(|out| txt::write_particles(&body, out))),

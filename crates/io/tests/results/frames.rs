@@ -25,7 +25,7 @@ const PARTICLE_ARRAYS: [NamedArray<'static>; 4] = [
         values: Values::Counts(&|i| [7, 8, u32::MAX][i]),
     },
     NamedArray {
-        name: "radius",
+        name: "radius_m",
         values: Values::Scalars(&|i| [6e-4, 5e-4, 7e-4][i]),
     },
     NamedArray {
@@ -40,7 +40,7 @@ const BOND_ARRAYS: [NamedArray<'static>; 3] = [
         values: Values::Integers(&|bond| [1, -1][bond]),
     },
     NamedArray {
-        name: "bond_radius",
+        name: "bond_radius_m",
         values: Values::Scalars(&|bond| [4e-4, 3e-4][bond]),
     },
     NamedArray {
@@ -145,10 +145,10 @@ fn every_array_stands_where_the_header_says() {
             ("Lines", "Int64", "offsets", 1, 16),
             ("PointData", "Float64", "velocity_m_s", 3, 72),
             ("PointData", "UInt32", "body \"a\" & <b>", 1, 12),
-            ("PointData", "Float64", "radius", 1, 24),
+            ("PointData", "Float64", "radius_m", 1, 24),
             ("PointData", "Int32", "cluster", 1, 12),
             ("CellData", "Int32", "state", 1, 8),
-            ("CellData", "Float64", "bond_radius", 1, 16),
+            ("CellData", "Float64", "bond_radius_m", 1, 16),
             ("CellData", "Float64", "force_n", 3, 48),
         ]
     );

@@ -46,7 +46,7 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let mut of_particles = vec![
         array("radius_m", Values::Scalars(&radius)),
         array("velocity_m_s", Values::Vectors(&velocity)),
-        array("cluster", Values::Counts(&cluster)),
+        array("fragment_id", Values::Counts(&cluster)),
         array("density_kg_m3", Values::Scalars(&density)),
     ];
     let mut of_bonds = vec![
@@ -154,7 +154,7 @@ fn an_unknown_fragment_is_told_with_the_heaviest() {
 fn frames_without_fragments_and_other_files_are_refused() {
     for name in [
         "radius_m",
-        "cluster",
+        "fragment_id",
         "density_kg_m3",
         "bond_radius_m",
         "initial_length_m",
@@ -163,7 +163,7 @@ fn frames_without_fragments_and_other_files_are_refused() {
         let (_folder, path) = written(&stored(), name);
         let error = read_frame(&path).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        let said = format!("this frame tells of no fragments: it has no array '{name}'");
+        let said = format!("this frame has no fragments: there is no array '{name}'");
         assert_eq!(error.problem, said);
         assert_eq!(error.place, path.display().to_string());
     }
@@ -232,4 +232,12 @@ proptest! {
         let (_folder, path) = written(&frame, "");
         prop_assert_eq!(read_frame(&path).unwrap(), frame);
     }
+}
+
+#[test]
+fn a_frame_is_no_body() {
+    let (_folder, path) = written(&stored(), "");
+    let said = read_body(&path).unwrap_err().to_string();
+    assert!(said.contains("this is a frame of a run"), "{said}");
+    assert!(said.contains("dem-run fragment"), "{said}");
 }

@@ -90,7 +90,7 @@ fn events_look_as_documented() {
     };
     events.append(&[]).unwrap();
     events.append(&[event(2), planned]).unwrap();
-    let text = "step,time_s,kind,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
+    let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
                 2,2e-6,bond_broken,3,1,2,5e-1,-1e-3,0e0,tension,1e-1,\n\
                 12,2.5e-1,plan,,,,,,,,,\"search begins, bodies are near\"\n";
     assert_eq!(fs::read_to_string(&path).unwrap(), text);

@@ -1,7 +1,7 @@
 //! Clumps, regions, replacement, inlets and outlets.
 
 use dem_io::scene::{
-    Back, ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, StartAs,
+    ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, Restore, StartAs,
 };
 use dem_io::{read_scene, scene_from_text};
 
@@ -99,12 +99,12 @@ fn replacement() {
             force_n: Some(100.0),
             impact_energy_j: Some(0.5),
             time_s: Some(0.1),
-            needs_all: true,
-            back: Some(Back {
+            requires_all: true,
+            restore: Some(Restore {
                 leaves: "impact".to_owned(),
                 min_particles: 3,
                 strain_energy_j_kg: 0.02,
-                inner_speed_m_s: 0.001,
+                fluctuation_velocity_m_s: 0.001,
             }),
         }
     );
@@ -115,12 +115,12 @@ fn replacement() {
             force_n: None,
             impact_energy_j: None,
             time_s: Some(0.0),
-            needs_all: false,
-            back: Some(Back {
+            requires_all: false,
+            restore: Some(Restore {
                 leaves: "all".to_owned(),
                 min_particles: 10,
                 strain_energy_j_kg: 0.01,
-                inner_speed_m_s: 0.005,
+                fluctuation_velocity_m_s: 0.005,
             }),
         }
     );
@@ -174,9 +174,9 @@ fn bodies_that_are_fed() {
     let scene = good("only-fed.toml");
     assert_eq!((scene.bodies.len(), scene.inlets.len()), (1, 1));
     let file = folder().join("only-fed.toml");
-    let options = ["sets.there.all=true", "bodies.block.velocity=[0, 0, 0]"];
+    let options = ["groups.there.all=true", "bodies.block.velocity=[0, 0, 0]"];
     let scene = read_scene(&file, &options.map(str::to_owned)).unwrap();
-    assert_eq!(scene.sets.len(), 1);
+    assert_eq!(scene.groups.len(), 1);
 }
 
 #[test]
@@ -220,20 +220,20 @@ fn values_in_words() {
             "replacement.cake.when.force 100 N",
             "replacement.cake.when.impact_energy 0.5 J",
             "replacement.cake.when.time 0.1 s",
-            "replacement.cake.need all",
-            "replacement.cake.back.leaves impact",
-            "replacement.cake.back.min_particles 3",
-            "replacement.cake.back.strain_energy 0.02 J/kg",
-            "replacement.cake.back.inner_speed 0.001 m/s",
-            "replacement.pair.when.enters not asked",
-            "replacement.pair.when.force not asked",
-            "replacement.pair.when.impact_energy not asked",
+            "replacement.cake.require all",
+            "replacement.cake.restore.leaves impact",
+            "replacement.cake.restore.min_particles 3",
+            "replacement.cake.restore.strain_energy 0.02 J/kg",
+            "replacement.cake.restore.fluctuation_velocity 0.001 m/s",
+            "replacement.pair.when.enters not used",
+            "replacement.pair.when.force not used",
+            "replacement.pair.when.impact_energy not used",
             "replacement.pair.when.time 0 s",
-            "replacement.pair.need any",
-            "replacement.pair.back.leaves all",
-            "replacement.pair.back.min_particles 10",
-            "replacement.pair.back.strain_energy 0.01 J/kg",
-            "replacement.pair.back.inner_speed 0.005 m/s",
+            "replacement.pair.require any",
+            "replacement.pair.restore.leaves all",
+            "replacement.pair.restore.min_particles 10",
+            "replacement.pair.restore.strain_energy 0.01 J/kg",
+            "replacement.pair.restore.fluctuation_velocity 0.005 m/s",
             "inlets.feed.bodies rock: 3, cake: 0.5",
             "inlets.feed.region gate",
             "inlets.feed.rate 4 1/s",
@@ -261,6 +261,6 @@ fn values_in_words() {
     let text = read_scene(&file, &options).unwrap().describe();
     let back = text
         .lines()
-        .find(|l| l.starts_with("replacement.pair.back"));
+        .find(|l| l.starts_with("replacement.pair.restore"));
     assert!(back.unwrap().ends_with(" never"), "{text}");
 }

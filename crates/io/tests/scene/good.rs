@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::scene::{
-    At, BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
-    Formulation, Hold, Integrator, Pick, Quantity, RateOf, Relaxation, Rolling, Scene, Search,
-    StartOverlap, TestKind, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
+    Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling, Scene,
+    Search, Statistic, StrainRateMeasure, TestKind, Wall, WallMotion, WallShape,
 };
 use dem_io::units::DIMENSIONS;
 use dem_io::{read_scene, scene_from_text};
@@ -72,13 +72,13 @@ fn the_documentation_lists_every_unit() {
 fn the_run() {
     let run = good("every-key.toml").run;
     assert_eq!(run.end_time_s, 0.5);
-    assert_eq!(run.rest, Some(1e-9));
+    assert_eq!(run.rest_energy_ratio, Some(1e-9));
     assert_near(run.time_step_s.unwrap(), 2e-6);
-    assert_eq!(run.safety, 0.8);
+    assert_eq!(run.safety_factor, 0.8);
     assert_eq!(run.gravity_m_s2, [0.0, -9.81, 0.0]);
-    assert_eq!(run.particle_damping, 0.7);
+    assert_eq!(run.local_damping, 0.7);
     assert_eq!(run.seed, u64::MAX);
-    assert_eq!(run.start_overlap, StartOverlap::Relax);
+    assert_eq!(run.initial_overlap, InitialOverlap::Relax);
     assert_eq!(run.integrator, Integrator::Leapfrog);
 }
 
@@ -111,9 +111,9 @@ fn contact(materials: [&str; 2], law: ContactLaw, restitution: f64, rolling: Rol
 
 #[test]
 fn contacts() {
-    let linear = |normal_n_m, tangential_ratio| ContactLaw::Linear {
+    let linear = |normal_n_m, tangential_stiffness_ratio| ContactLaw::Linear {
         normal_n_m,
-        tangential_ratio,
+        tangential_stiffness_ratio,
     };
     let sprung = |friction, damping| Rolling::SpringDashpot { friction, damping };
     let torque = |friction| Rolling::ConstantTorque { friction };
@@ -163,7 +163,6 @@ fn walls() {
             },
             material: "steel".to_owned(),
             rotation_rad: [0.0; 3],
-            tilt_rad: 0.0,
             pivot_m: [0.0; 3],
             motion: WallMotion::Fixed,
             surface_velocity_m_s: [0.0; 3],
@@ -179,7 +178,6 @@ fn walls() {
     );
     assert_eq!(belt.material, "belt-rubber");
     assert_near(belt.rotation_rad[2], std::f64::consts::FRAC_PI_2);
-    assert_near(belt.tilt_rad, 25_f64.to_radians());
     assert_eq!(belt.pivot_m, [0.0, 0.0, 0.01]);
     assert_eq!(belt.surface_velocity_m_s, [3.0, 0.0, 0.0]);
     assert_eq!(
@@ -220,7 +218,7 @@ fn motions_of_walls() {
         walls["plate"].motion,
         WallMotion::Displacement {
             displacement_m: [0.0, 0.0, -0.001],
-            turn_rad: [0.0, 4.0 * std::f64::consts::PI, 0.0],
+            angular_displacement_rad: [0.0, 4.0 * std::f64::consts::PI, 0.0],
             factor: Factor::Table(vec![[0.0, 0.0], [0.005, 1.0]]),
         }
     );
@@ -229,7 +227,7 @@ fn motions_of_walls() {
         WallMotion::Servo {
             force_n: 1000.0,
             direction: [0.0, 0.0, -1.0],
-            largest_velocity_m_s: 0.01,
+            max_velocity_m_s: 0.01,
             factor: Factor::Ramp { until_s: 0.001 },
         }
     );
@@ -247,7 +245,7 @@ fn motions_of_walls() {
         walls["sieve"].motion,
         WallMotion::Displacement {
             displacement_m: [0.0; 3],
-            turn_rad: [0.0; 3],
+            angular_displacement_rad: [0.0; 3],
             factor: Factor::Ramp { until_s: 1.0 },
         }
     );
@@ -258,7 +256,7 @@ fn how_contacts_are_found() {
     let scene = good("every-key.toml");
     let clusters = Clusters {
         interval: 20,
-        min_broken: 3,
+        min_broken_bonds: 3,
         force_every: 100,
     };
     let relaxation = Relaxation {
@@ -272,7 +270,7 @@ fn how_contacts_are_found() {
         let scene = good(name);
         let clusters = Clusters {
             interval: 50,
-            min_broken: 1,
+            min_broken_bonds: 1,
             force_every: 0,
         };
         let relaxation = Relaxation {
@@ -282,7 +280,7 @@ fn how_contacts_are_found() {
         assert_eq!(scene.clusters, clusters);
         assert_eq!(scene.relaxation, relaxation);
         assert_eq!(scene.search, Search { skin: None });
-        assert_eq!(scene.run.start_overlap, StartOverlap::Refuse);
+        assert_eq!(scene.run.initial_overlap, InitialOverlap::Refuse);
     }
 }
 
@@ -290,7 +288,12 @@ fn how_contacts_are_found() {
 fn bonds() {
     let scene = good("every-key.toml");
     let parallel = &scene.bonds["parallel"];
-    assert_eq!(parallel.model, BondModel::Parallel { kappa: Some(2.5) });
+    assert_eq!(
+        parallel.model,
+        BondModel::Parallel {
+            stiffness_ratio: Some(2.5)
+        }
+    );
     assert_eq!(parallel.formulation, Formulation::Incremental);
     assert_near(parallel.young_modulus_pa, 12.05e6);
     assert_eq!(parallel.poisson_ratio, 0.3);
@@ -298,21 +301,21 @@ fn bonds() {
     assert_eq!(
         parallel.damping,
         BondDamping {
-            viscous: 0.1,
-            each_mode: true,
-            force_n_s_m: 3.0,
-            torque: 1.0
+            damping_ratio: 0.1,
+            per_mode: true,
+            damping_coefficient_n_s_m: 3.0,
+            torque_factor: 1.0
         }
     );
     assert_eq!(
         parallel.failure,
         BondFailure {
-            tension_pa: Some(1e6),
-            shear_pa: Some(2e6),
-            compression_pa: Some(15e6),
-            von_mises_pa: Some(3e6),
+            tensile_strength_pa: Some(1e6),
+            shear_strength_pa: Some(2e6),
+            compressive_strength_pa: Some(15e6),
+            von_mises_strength_pa: Some(3e6),
             rate_strengthening_from_1_s: Some(1e-5),
-            rate_of: RateOf::RelativeVelocity,
+            strain_rate_measure: StrainRateMeasure::RelativeVelocity,
             weibull_modulus: Some(7.0),
         }
     );
@@ -322,7 +325,7 @@ fn bonds() {
     assert_eq!(sheared.radius_factor, None);
     assert_eq!(sheared.damping, BondDamping::default());
     assert_eq!(sheared.failure.rate_strengthening_from_1_s, Some(4.64e-6));
-    assert_eq!(sheared.failure.compression_pa, None);
+    assert_eq!(sheared.failure.compressive_strength_pa, None);
 }
 
 #[test]
@@ -362,20 +365,20 @@ fn bodies() {
 #[test]
 fn sets() {
     let scene = good("every-key.toml");
-    let left = &scene.sets["left-end"];
+    let left = &scene.groups["left-end"];
     assert_eq!(left.body.as_deref(), Some("bar"));
     assert_eq!(left.pick, Pick::Particles(vec![0]));
-    assert_eq!(scene.sets["tool_all"].pick, Pick::All);
-    assert_eq!(scene.sets["near"].body, None);
+    assert_eq!(scene.groups["tool_all"].pick, Pick::All);
+    assert_eq!(scene.groups["near"].body, None);
     assert_eq!(
-        scene.sets["near"].pick,
+        scene.groups["near"].pick,
         Pick::Box {
             min: [-0.001; 3],
             max: [0.001; 3]
         }
     );
     assert_eq!(
-        scene.sets["round"].pick,
+        scene.groups["round"].pick,
         Pick::Sphere {
             centre: [0.0; 3],
             radius: 0.005
@@ -389,7 +392,7 @@ fn supports_and_loads() {
     assert_eq!(scene.supports["wall"].holds, [Some(Hold::Fixed); 6]);
     assert_eq!(scene.supports["wall"].factor, Factor::One);
     let pull = &scene.supports["pull"];
-    assert_eq!(pull.of, "near");
+    assert_eq!(pull.group, "near");
     assert_eq!(
         pull.holds,
         [
@@ -407,7 +410,7 @@ fn supports_and_loads() {
         Factor::Table(vec![[0.0, 0.0], [0.005, 1.0], [0.01, -0.5]])
     );
     let press = &scene.loads["press"];
-    assert_eq!(press.of, "all");
+    assert_eq!(press.group, "all");
     assert_eq!(press.force_n, [100e3, 0.0, -0.001]);
     assert_eq!(press.torque_n_m, [0.0, 2.0, 0.0]);
     assert_eq!(scene.loads["turn"].torque_n_m, [0.0, 0.0, 0.003]);
@@ -423,11 +426,11 @@ fn supports_and_loads() {
 fn initial_states() {
     let scene = good("every-key.toml");
     let tip = &scene.initial["tip"];
-    assert_eq!(tip.of, "left-end");
+    assert_eq!(tip.group, "left-end");
     assert_eq!(tip.velocity_m_s, [0.003, 0.0, 0.0]);
     assert_near(tip.angular_velocity_rad_s[1], std::f64::consts::PI);
     assert_eq!(tip.displacement_m, [0.0, -1e-6, 0.0]);
-    let options = ["initial.only={ of = \"all\", velocity = [1, 0, 0] }".to_owned()];
+    let options = ["initial.only={ group = \"all\", velocity = [1, 0, 0] }".to_owned()];
     let file = folder().join("every-key.toml");
     let scene = read_scene(&file, &options).unwrap();
     assert_eq!(scene.initial["only"].displacement_m, [0.0; 3]);
@@ -437,7 +440,7 @@ fn initial_states() {
 /// A clump that is never replaced needs no kind of bonds, and overlaps may be kept.
 #[test]
 fn a_rigid_clump_without_a_kind_of_bonds() {
-    let options = ["bodies.bar.start_as=clump", "run.start_overlap=keep"].map(str::to_owned);
+    let options = ["bodies.bar.start_as=clump", "run.initial_overlap=keep"].map(str::to_owned);
     let text = "version = 1\nrun.end_time = 1\nmaterials.clay.density = 2000\n\
                 bodies.bar = { particles = [[0, 0, 0, 1], [1, 0, 0, 1]], bond_list = [[0, 1]], \
                 material = \"clay\" }\n";
@@ -447,7 +450,7 @@ fn a_rigid_clump_without_a_kind_of_bonds() {
     assert!(error.contains("bodies.bar.bonds is missing"), "{error}");
     let scene = scene_from_text(text, "bar.toml", &options).unwrap();
     assert_eq!(scene.bodies["bar"].bond_kind, None);
-    assert_eq!(scene.run.start_overlap, StartOverlap::Keep);
+    assert_eq!(scene.run.initial_overlap, InitialOverlap::Keep);
 }
 
 #[test]
@@ -456,11 +459,14 @@ fn measures_and_output() {
     let bending = &scene.measures["bending"];
     assert_eq!(bending.of, "left-end");
     assert_eq!(bending.quantity, Quantity::Displacement(1));
-    assert_eq!(bending.at, At::Largest);
+    assert_eq!(bending.statistic, Statistic::Largest);
     assert_near(bending.reference.unwrap(), 0.0015);
     assert_eq!(bending.tolerance, Some(0.02));
     let energy = &scene.measures["energy"];
-    assert_eq!((energy.of.as_str(), energy.at), ("all", At::End));
+    assert_eq!(
+        (energy.of.as_str(), energy.statistic),
+        ("all", Statistic::End)
+    );
     assert_eq!((energy.reference, energy.tolerance), (None, None));
     let push = &scene.measures["push"];
     assert_eq!(
@@ -468,11 +474,11 @@ fn measures_and_output() {
         ("punch", Quantity::Force(2))
     );
     assert_eq!(push.reference, Some(-1000.0));
-    assert_eq!((push.tolerance_absolute, &push.with), (None, &None));
+    assert_eq!((push.absolute_tolerance, &push.with), (None, &None));
     let hit = &scene.measures["hit"];
     assert_eq!(hit.quantity, Quantity::ContactOverlap);
     assert_eq!(hit.with.as_deref(), Some("punch"));
-    assert_near(hit.tolerance_absolute.unwrap(), 1e-5);
+    assert_near(hit.absolute_tolerance.unwrap(), 1e-5);
     let pieces = &scene.measures["pieces"];
     assert_eq!(pieces.of, "fragments");
     assert_eq!(pieces.quantity, Quantity::MassOfLargest);
@@ -514,14 +520,14 @@ fn defaults_in_words() {
     let wanted = "\
 run.end_time                    1 s
 run.integrator                  leapfrog
-run.rest                        never
+run.rest_energy_ratio           never
 run.time_step                   auto
-run.safety                      0.9
+run.safety_factor               0.9
 run.adaptive                    false
 run.gravity                     [0, 0, 0] m/s2
-run.particle_damping            0
+run.local_damping               0
 run.seed                        0
-run.start_overlap               refuse
+run.initial_overlap             refuse
 materials.clay.density          from the body's file
 materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
@@ -549,7 +555,7 @@ fn a_laboratory_test() {
     let test = scene.test.as_ref().unwrap();
     assert_eq!(test.kind, TestKind::ThreePointBending);
     assert_eq!(
-        (test.body.as_str(), test.moves.join(" ")),
+        (test.body.as_str(), test.crosshead.join(" ")),
         ("beam", "pin".to_owned())
     );
     assert_eq!((test.direction, test.stroke_m), ([0.0, 0.0, -1.0], 0.004));
@@ -558,11 +564,11 @@ fn a_laboratory_test() {
         text.starts_with("run.end_time                    that of the test\n"),
         "{text}"
     );
-    let (_, of_test) = text.split_once("test.kind").unwrap();
+    let (_, of_test) = text.split_once("test.type").unwrap();
     let wanted = "\
 three-point-bending
 test.body                       beam
-test.moves                      pin
+test.crosshead                  pin
 test.direction                  [0, 0, -1]
 test.stroke                     0.004 m
 test.rate                       auto
@@ -571,7 +577,7 @@ test.rate_check                 true
 test.young_modulus              none
 test.poisson_ratio              0.3
 test.strength                   none
-test.span                       measured on walls and body
+test.support_span               measured on walls and body
 test.width                      measured on walls and body
 test.height                     measured on walls and body
 ";
@@ -580,7 +586,7 @@ test.height                     measured on walls and body
     let file = folder().join("bending-test.toml");
     let options = [
         "test.rate=2 mm/s",
-        "test.kind=compression",
+        "test.type=compression",
         "test.area=9 cm2",
         "test.young_modulus=12 MPa",
         "run.end_time=3 s",
@@ -601,7 +607,7 @@ test.height                     measured on walls and body
     ] {
         assert!(words.contains(line), "{line}: {text}");
     }
-    assert!(!text.contains("test.span"));
+    assert!(!text.contains("test.support_span"));
 }
 
 #[test]
@@ -614,7 +620,10 @@ fn what_a_laboratory_test_is_told() {
         (Some(12e6), 0.25)
     );
     assert_eq!(test.strength_pa, Some(2e5));
-    assert_eq!((test.span_m, test.load_distance_m), (Some(2.0), Some(1.0)));
+    assert_eq!(
+        (test.support_span_m, test.loading_span_m),
+        (Some(2.0), Some(1.0))
+    );
     assert_eq!((test.width_m, test.height_m), (Some(2.0), Some(2.0)));
     let test = good("compression-test.toml").test.unwrap();
     assert_eq!((test.length_m, test.area_m2), (Some(2.0), Some(3.1)));
@@ -629,36 +638,35 @@ fn values_in_words() {
         "bodies.bar.mass that of its particles",
         "bodies.piped.body_density 1800 kg/m3",
         "bodies.tool.mass 1.2 kg",
-        "run.start_overlap relax",
+        "run.initial_overlap relax",
         "contacts.belt-rubber-cake.law linear",
         "contacts.belt-rubber-cake.normal_stiffness 100000 N/m",
-        "contacts.belt-rubber-cake.tangential_ratio 0.5",
+        "contacts.belt-rubber-cake.tangential_stiffness_ratio 0.5",
         "contacts.belt-rubber-cake.rolling constant-torque",
         "contacts.cake-cake.law hertz-mindlin",
         "contacts.cake-cake.restitution 1",
         "contacts.cake-cake.friction 0.6",
         "contacts.cake-cake.rolling spring-dashpot",
         "contacts.cake-cake.rolling_friction 0.1",
-        "contacts.cake-cake.rolling_damping 0.5",
+        "contacts.cake-cake.rolling_damping_ratio 0.5",
         "walls.floor.plane.point [0, 0, -0.01] m",
         "walls.floor.plane.normal [0, 0, 1]",
         "walls.floor.motion fixed",
         "walls.belt.box.min [-2, -0.3, -0.02] m",
-        "walls.belt.tilt 0.436332312999 rad",
         "walls.belt.surface_velocity [3, 0, 0] m/s",
         "walls.pin.cylinder.radius 0.005 m",
         "walls.pin.angular_velocity [0, 3.14159265359, 0] rad/s",
         "walls.pin.ramp 0.01 s",
         "walls.plate.unit 0.001 m",
         "walls.plate.scale 0.5",
-        "walls.plate.turn [0, 12.5663706144, 0] rad",
+        "walls.plate.angular_displacement [0, 12.5663706144, 0] rad",
         "walls.plate.table 0 s: 0, 0.005 s: 1",
         "walls.punch.servo.force 1000 N",
         "walls.punch.servo.direction [0, 0, -1]",
-        "walls.punch.servo.velocity 0.01 m/s",
+        "walls.punch.servo.max_velocity 0.01 m/s",
         "measures.pieces.reference 0.02 kg",
         "clusters.interval 20 steps",
-        "clusters.min_broken 3",
+        "clusters.min_broken_bonds 3",
         "clusters.force_every 100 intervals",
         "relaxation.enabled false",
         "relaxation.min_overlap 0",
@@ -667,8 +675,8 @@ fn values_in_words() {
         "sleep.after 0.01 s",
         "supports.swing.rx velocity 0.10471975512 rad/s",
         "supports.turn.z displacement 1e-6 m",
-        "bonds.parallel.kappa 2.5",
-        "bonds.parallel.damping.force 3 N s/m",
+        "bonds.parallel.stiffness_ratio 2.5",
+        "bonds.parallel.damping.damping_coefficient 3 N s/m",
         "bodies.bar.particles 3 in the scene",
         "bodies.bar.position [0.01, 0, -0.001] m",
         "supports.pull.x velocity 0.01 m/s",
@@ -682,9 +690,9 @@ fn values_in_words() {
         "initial.tip.displacement [0, -1e-6, 0] m",
         "materials.anvil.rigid true",
         "measures.bending.reference 0.0015 m",
-        "measures.bending.tolerance_absolute none",
+        "measures.bending.absolute_tolerance none",
         "measures.hit.with punch",
-        "measures.hit.tolerance_absolute 1e-5 m",
+        "measures.hit.absolute_tolerance 1e-5 m",
         "output.frames 0.005 s",
         "output.pictures 0.01 s",
         "output.view.from [0.6, -0.8, 0]",
@@ -717,7 +725,7 @@ fn words_on_contacts() {
         said(&good("touching.toml")),
         [
             "clusters.interval 50 steps",
-            "clusters.min_broken 1",
+            "clusters.min_broken_bonds 1",
             "clusters.force_every never",
             "relaxation.enabled true",
             "relaxation.min_overlap 1e-5",

@@ -42,14 +42,14 @@ fn options_add_keys_and_tables() {
     let scene = with(&[
         "bonds.weak.young_modulus=1 MPa",
         "bonds.weak.poisson_ratio=0.2",
-        "bonds.weak.failure.tension=1 kPa",
+        "bonds.weak.failure.tensile_strength=1 kPa",
         "output.folder=elsewhere",
         "bodies.other.file=a=b.vtp",
         "bodies.other.material=clay",
     ])
     .unwrap();
     assert_eq!(scene.bonds["weak"].young_modulus_pa, 1e6);
-    assert_eq!(scene.bonds["weak"].failure.tension_pa, Some(1e3));
+    assert_eq!(scene.bonds["weak"].failure.tensile_strength_pa, Some(1e3));
     // What is typed in a shell is meant from there.
     let folder = scene.output.unwrap().folder;
     assert_eq!(folder, Some("elsewhere".into()));
@@ -68,7 +68,7 @@ fn options_add_contacts_and_walls() {
         "walls.plate.material=clay",
         "walls.plate.servo.force=-2 N",
         "walls.plate.servo.direction=[0, 0, 1]",
-        "walls.plate.servo.velocity=1 mm/s",
+        "walls.plate.servo.max_velocity=1 mm/s",
         "search.skin=0.2",
     ])
     .unwrap();
@@ -139,7 +139,7 @@ fn bad_options_are_refused_by_name() {
 /// A message repeats a long option only in part, and on one line.
 #[test]
 fn long_options_are_shortened() {
-    let text = format!("run.rest=\"{}\n\"", "x".repeat(1000));
+    let text = format!("run.rest_energy_ratio=\"{}\n\"", "x".repeat(1000));
     let message = with(&[&text]).unwrap_err();
     assert!(message.len() < 300 && !message.contains('\n'), "{message}");
 }

@@ -136,7 +136,7 @@ fn deep_nesting() {
         assert_one_message(&format!("version = {}", "[".repeat(depth)), &[]);
         let lists = format!("{}{}", "[".repeat(depth), "]".repeat(depth));
         assert_one_message(&format!("version = 1\nrun = {lists}"), &[]);
-        assert_one_message(EVERY_KEY, &[format!("run.rest={lists}")]);
+        assert_one_message(EVERY_KEY, &[format!("run.rest_energy_ratio={lists}")]);
         let keys = vec!["a"; depth].join(".");
         assert_one_message(&format!("version = 1\n[{keys}]\n{keys} = 1"), &[]);
         assert_one_message(EVERY_KEY, &[format!("{keys}=1")]);

@@ -1,20 +1,28 @@
 //! Arguments as typed, and the settings that they give.
 
 use crate::body::BodySettings;
-use crate::bonds::LARGEST_BONDING_RADIUS;
+use crate::bonds::LARGEST_BOND_RANGE;
 use crate::density::LARGEST_OVERLAP;
 use crate::pack::PackSettings;
 use crate::pack::shrink::SHRINK_RANGE;
 use crate::sizes::{Basis, Sizes};
 use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use dem_io::program::Shell;
+use dem_io::program::{Shell, refuse_renamed};
 use dem_io::units::{density_kg_m3, length_m, significant};
 use dem_io::{Diagnostic, Result};
 use std::path::PathBuf;
 
+/// Options that had another name before version 0.1, and their names.
+pub const RENAMED: [(&str, &str); 4] = [
+    ("--bonding-radius", "--bond-range"),
+    ("--bond-radius-factor", "--bond-radius"),
+    ("--settle", "--densify"),
+    ("--by", "--basis"),
+];
+
 /// As large as a shrink is chosen.
-const LARGEST_SETTLE: f64 = SHRINK_RANGE[1];
+const LARGEST_DENSIFY: f64 = SHRINK_RANGE[1];
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
 #[derive(Debug, Parser)]
@@ -27,8 +35,8 @@ const LARGEST_SETTLE: f64 = SHRINK_RANGE[1];
     after_help = "Lengths: a number with a unit (2mm, 0.3cm, 50um), or metres.\n\
         Exit codes: 0 done, 1 failed while running, 2 bad input, 130 interrupted.\n\
         Examples:\n  \
-        dem-pack cake.stl --diameter 2mm..3mm --overlap 0.25 --bonding-radius 1.1 -o cake.vtp\n  \
-        dem-pack rock.stl --diameter lognormal:2.5mm,0.3mm,1.5mm..4mm --by mass | dem-run --body -"
+        dem-pack cake.stl --diameter 2mm..3mm --overlap 0.25 --bond-range 1.1 -o cake.vtp\n  \
+        dem-pack rock.stl --diameter lognormal:2.5mm,0.3mm,1.5mm..4mm --basis mass | dem-run --body -"
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -39,18 +47,17 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Say what is known of an STL file or a body
+    /// Describe an STL file or a body
     Info {
         /// An STL file, a body (.vtp, .data, .csv, .txt), or - for a .vtp on standard input
         file: PathBuf,
         #[command(flatten)]
         reading: Reading,
-        /// Say it as JSON
+        /// Print it as JSON
         #[arg(long)]
         json: bool,
     },
-    /// Turn a body file into one of another kind (.vtp, .data, .csv, .txt, - for a .vtp through a
-    /// pipe)
+    /// Convert a body file to another format (.vtp, .data, .csv, .txt, - for a .vtp through a pipe)
     Convert {
         /// The body to read
         from: PathBuf,
@@ -111,10 +118,10 @@ pub(super) struct PackArguments {
         help_heading = "Spheres"
     )]
     pub(super) diameter: Option<String>,
-    /// What the distribution of diameters counts
+    /// Basis of the distribution of diameters: by number or by mass
     #[arg(long, value_enum, default_value = "number", help_heading = "Spheres")]
-    pub(super) by: BasisArgument,
-    /// Overlap o: spheres touch at radius/(1 + o)
+    pub(super) basis: BasisArgument,
+    /// Overlap o of neighbouring spheres: they touch at the reduced radius r_gen = radius/(1 + o)
     #[arg(
         long,
         default_value_t = 0.25,
@@ -125,8 +132,8 @@ pub(super) struct PackArguments {
     /// Density of the particles' material (kg/m3 unless given)
     #[arg(long, allow_hyphen_values = true, help_heading = "Spheres")]
     pub(super) particle_density: Option<String>,
-    /// Find the overlap that gives this mass of particles / volume of the shape (kg/m3 unless
-    /// given)
+    /// Find the overlap that gives this bulk density: mass of particles / volume of the shape
+    /// (kg/m3 unless given)
     #[arg(
         long,
         requires = "particle_density",
@@ -135,7 +142,7 @@ pub(super) struct PackArguments {
         help_heading = "Spheres"
     )]
     pub(super) solid_density: Option<String>,
-    /// Random numbers: the same seed gives the same body
+    /// Seed of the random numbers: the same seed gives the same body
     #[arg(
         long,
         default_value_t = 1,
@@ -144,7 +151,7 @@ pub(super) struct PackArguments {
         help_heading = "Spheres"
     )]
     pub(super) seed: u64,
-    /// Where the first front begins: X,Y,Z; the deepest point if not given
+    /// Starting point of the advancing front: X,Y,Z; the deepest point if not given
     #[arg(
         long,
         value_name = "X,Y,Z",
@@ -152,29 +159,29 @@ pub(super) struct PackArguments {
         help_heading = "Spheres"
     )]
     pub(super) seed_point: Option<String>,
-    /// Run the front at radii smaller by this share, then let them grow to full size; 0 for the
-    /// bare front, at most 0.08. If not given, as much as leaves the spheres just short of jamming,
-    /// 0.02 to 0.08
+    /// Densify: run the front at radii reduced by this fraction, then grow the spheres to full size
+    /// while they relax; 0 for the bare front, at most 0.08. If not given, as much as leaves the
+    /// spheres just short of jamming, 0.02 to 0.08
     #[arg(
         long,
         allow_negative_numbers = true,
-        value_name = "SHARE",
+        value_name = "FRACTION",
         help_heading = "Spheres"
     )]
-    pub(super) settle: Option<f64>,
+    pub(super) densify: Option<f64>,
 
-    /// Bond pairs nearer than this times the sum of their radii
+    /// Bond pairs whose centres are nearer than this times the sum of their radii
     #[arg(
         long,
         default_value_t = 1.1,
         allow_negative_numbers = true,
         help_heading = "Bonds"
     )]
-    pub(super) bonding_radius: f64,
-    /// Find the bonding radius that gives this many bonds / particles
+    pub(super) bond_range: f64,
+    /// Find the bond range that gives this many bonds / particles
     #[arg(
         long,
-        conflicts_with = "bonding_radius",
+        conflicts_with = "bond_range",
         allow_negative_numbers = true,
         help_heading = "Bonds"
     )]
@@ -186,7 +193,7 @@ pub(super) struct PackArguments {
         allow_negative_numbers = true,
         help_heading = "Bonds"
     )]
-    pub(super) bond_radius_factor: f64,
+    pub(super) bond_radius: f64,
 
     /// Number of threads; the result is the same for any
     #[arg(long, help_heading = "Running")]
@@ -194,7 +201,7 @@ pub(super) struct PackArguments {
     /// Print the report as JSON on standard output (the body then needs --output)
     #[arg(long, requires = "output", help_heading = "Running")]
     pub(super) json: bool,
-    /// Say nothing but errors: no progress, no report; --json is printed all the same
+    /// Only print errors: no progress, no report; --json is still printed
     #[arg(short, long, help_heading = "Running")]
     pub(super) quiet: bool,
 }
@@ -205,6 +212,7 @@ impl Arguments {
     /// # Errors
     /// Arguments that are not understood, on one line.
     pub fn parsed() -> Result<Self> {
+        refuse_renamed(std::env::args_os(), &RENAMED)?;
         Self::try_parse().map_err(|error| {
             if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
                 error.exit();
@@ -231,11 +239,11 @@ fn parse_seed(text: &str) -> std::result::Result<u64, String> {
 impl PackArguments {
     /// The settings, with every value checked.
     pub(super) fn checked(&self) -> Result<BodySettings> {
-        let by = match self.by {
+        let basis = match self.basis {
             BasisArgument::Number => Basis::Number,
             BasisArgument::Mass => Basis::Mass,
         };
-        let sizes = Sizes::parse(self.diameter.as_deref().unwrap_or_default(), by)?;
+        let sizes = Sizes::parse(self.diameter.as_deref().unwrap_or_default(), basis)?;
         check_range(
             "--overlap",
             self.overlap,
@@ -243,29 +251,29 @@ impl PackArguments {
             LARGEST_OVERLAP,
             "0.1 to 0.5 is usual",
         )?;
-        if let Some(settle) = self.settle
-            && !(0.0..=LARGEST_SETTLE).contains(&settle)
+        if let Some(densify) = self.densify
+            && !(0.0..=LARGEST_DENSIFY).contains(&densify)
         {
             return Err(Diagnostic::input(
-                "--settle",
+                "--densify",
                 format!(
-                    "{settle} is not at least 0 and at most {LARGEST_SETTLE}: spheres that grow by more jam",
+                    "{densify} is not at least 0 and at most {LARGEST_DENSIFY}: spheres that grow by more jam",
                 ),
                 "0.03 to 0.06 is usual, 0 is the bare front",
             ));
         }
         check_range(
-            "--bond-radius-factor",
-            self.bond_radius_factor,
+            "--bond-radius",
+            self.bond_radius,
             f64::MIN_POSITIVE,
             10.0,
             "1 is usual",
         )?;
         check_range(
-            "--bonding-radius",
-            self.bonding_radius,
+            "--bond-range",
+            self.bond_range,
             f64::MIN_POSITIVE,
-            LARGEST_BONDING_RADIUS * (1.0 + f64::EPSILON),
+            LARGEST_BOND_RANGE * (1.0 + f64::EPSILON),
             "1.0 to 1.2 is usual",
         )?;
         if let Some(wanted) = self.bonds_per_particle
@@ -282,12 +290,12 @@ impl PackArguments {
                 sizes,
                 overlap: self.overlap,
                 seed: self.seed,
-                settle: self.settle,
+                densify: self.densify,
                 seed_point_m: self.seed_point.as_deref().map(parse_point).transpose()?,
             },
-            bonding_radius: self.bonding_radius,
+            bond_range: self.bond_range,
             bonds_per_particle: self.bonds_per_particle,
-            bond_radius_factor: self.bond_radius_factor,
+            bond_radius_factor: self.bond_radius,
             particle_density_kg_m3: checked_density("--particle-density", &self.particle_density)?,
             solid_density_kg_m3: checked_density("--solid-density", &self.solid_density)?,
         })

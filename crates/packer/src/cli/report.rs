@@ -75,7 +75,7 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
     );
     if let Some(search) = &made.density_search {
         text += &format!(
-            "density search   wanted {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",
+            "density search   target {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",
             significant(search.wanted_kg_m3, 5),
             significant(search.found_kg_m3, 5),
             100.0 * search.relative_error,
@@ -87,11 +87,11 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
     text += &mass_text(made);
     let history = &made.history;
     text += &format!(
-        "made by          a front at radii smaller by {} from {} seeds; {} settling steps, {} spheres taken out, {} put into voids, {} voids left for the smallest\n",
-        significant(history.settle, 3),
+        "packed by        an advancing front at radii reduced by {} from {} seeds; {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
+        significant(history.densify, 3),
         history.fronts,
-        history.settling_steps,
-        history.taken_out,
+        history.densify_steps,
+        history.removed,
         history.void_fillers,
         match history.voids_left {
             0 => "0".to_owned(),
@@ -100,9 +100,9 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
         }
     );
     text += &format!(
-        "time             {seconds:.2} s: front {:.2}, settling {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
+        "time             {seconds:.2} s: front {:.2}, densification {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
         history.front_seconds,
-        history.settle_seconds,
+        history.densify_seconds,
         history.fill_seconds,
         made.seconds.bonds,
         made.seconds.report,
@@ -112,10 +112,13 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
         text += &format!("note             {warning}\n");
     }
     text += &match made.quality.warnings.len() {
-        0 => "verdict          sound: nothing to mind\n".to_owned(),
-        1 => "verdict          look at the warning above before the body is used\n".to_owned(),
+        0 => "verdict          sound: no warnings\n".to_owned(),
+        1 => "verdict          doubtful: resolve the warning above before using the body\n"
+            .to_owned(),
         many => {
-            format!("verdict          look at the {many} warnings above before the body is used\n")
+            format!(
+                "verdict          doubtful: resolve the {many} warnings above before using the body\n"
+            )
         }
     };
     text

@@ -60,7 +60,7 @@ impl Retry {
         let settings = job.settings;
         let target = || FillTarget::new(job.solid.surface, &settings.sizes, settings.overlap);
         Self {
-            target: settings.settle.is_none().then(target),
+            target: settings.densify.is_none().then(target),
             fronts: 0,
             jams: 0,
             is_last: false,

@@ -16,7 +16,7 @@ pub struct PackSettings {
     pub seed: u64,
     /// The front runs at radii smaller by this fraction; then they grow to full size. 0: the bare
     /// front. None: by as much as leaves the spheres just short of jamming.
-    pub settle: Option<f64>,
+    pub densify: Option<f64>,
     /// Starting point of the front, in metres; the deepest point if not given. Length 3.
     pub seed_point_m: Option<[f64; 3]>,
 }
@@ -29,7 +29,7 @@ impl PackSettings {
             sizes,
             overlap: 0.25,
             seed: 1,
-            settle: None,
+            densify: None,
             seed_point_m: None,
         }
     }
@@ -43,14 +43,14 @@ pub struct PackHistory {
     /// Diameter of the largest ball that fits into the shape, m.
     pub largest_inscribed_diameter_m: f64,
     /// The radii of the front were smaller by this fraction.
-    pub settle: f64,
+    pub densify: f64,
     /// Fronts started: one for each seed, and one for each part that the ones before could not
     /// reach.
     pub fronts: usize,
     /// Steps of the settling minimiser.
-    pub settling_steps: usize,
-    /// Spheres taken out because they were jammed.
-    pub taken_out: usize,
+    pub densify_steps: usize,
+    /// Spheres removed because they were jammed.
+    pub removed: usize,
     /// Number of fronts run: again with other sizes kept back where filling the voids had distorted
     /// the distribution, or at other radii where it had left too much room for settling or too
     /// little.
@@ -69,7 +69,7 @@ pub struct PackHistory {
     /// Time for the front, s.
     pub front_seconds: f64,
     /// Time for settling, s.
-    pub settle_seconds: f64,
+    pub densify_seconds: f64,
     /// Time for filling voids, s.
     pub fill_seconds: f64,
 }

@@ -75,7 +75,7 @@ pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
         let [spread, _] = settings.sizes.spread_and_skewness();
         (0.044 - 0.05 * spread).max(SHRINK_RANGE[0])
     };
-    rounded(settings.settle.unwrap_or_else(usual))
+    rounded(settings.densify.unwrap_or_else(usual))
 }
 
 /// Rounded to millionths, for the same reason as radii are rounded.

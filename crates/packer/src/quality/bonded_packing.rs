@@ -24,7 +24,7 @@ pub struct BondedPacking<'a> {
     pub bonds: &'a [[u32; 2]],
     /// The bonds are all pairs up to this times the sum of their radii, but for those with surface
     /// between them; 0 if the bonds were chosen otherwise.
-    pub bonding_radius: f64,
+    pub bond_range: f64,
     /// The sizes that were asked for.
     pub sizes: &'a Sizes,
     /// One local unit in metres.
@@ -45,7 +45,7 @@ pub struct BondedPacking<'a> {
     /// Least and largest value that `distance_inside` can have at a point, if that is known for
     /// less than the distance costs.
     pub distance_bounds: &'a (dyn Fn([f64; 3]) -> [f64; 2] + Sync),
-    /// True if surface lies between two spheres; asked only to advise a bonding radius.
+    /// True if surface lies between two spheres; asked only to advise a bond range.
     pub crosses_surface: CrossesSurface<'a>,
     /// Largest gap of a contact, as a fraction of the smaller radius: [`DEFAULT_GAP_LIMIT`].
     pub gap_limit: f64,

@@ -38,7 +38,7 @@ pub(super) fn count(packing: &BondedPacking, depths: &[f64]) -> Result<Contacts>
     // The smaller radius is at most half the sum, so no contact is farther than this.
     let reach = shrink * (1.0 + 0.5 * packing.gap_limit);
     let searched;
-    let pairs = if packing.bonding_radius >= reach {
+    let pairs = if packing.bond_range >= reach {
         packing.bonds
     } else {
         searched = close_pairs(spheres, reach)?;

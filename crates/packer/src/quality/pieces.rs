@@ -9,7 +9,7 @@ pub struct Pieces {
     /// Number of pieces, single particles included.
     pub count: usize,
     /// Fraction of the particles that are in the largest.
-    pub largest_share: f64,
+    pub largest_fraction: f64,
     /// Particles in all others.
     pub outside_largest: usize,
     /// Particles without a bond.
@@ -37,7 +37,7 @@ pub(super) fn find(particles: usize, bonds: &[[u32; 2]]) -> Pieces {
     }
     Pieces {
         count,
-        largest_share: largest as f64 / particles.max(1) as f64,
+        largest_fraction: largest as f64 / particles.max(1) as f64,
         outside_largest: particles - largest,
         without_bond: bonds_of.iter().filter(|n| **n == 0).count(),
         with_one_bond: bonds_of.iter().filter(|n| **n == 1).count(),

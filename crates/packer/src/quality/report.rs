@@ -17,7 +17,7 @@ pub struct Report {
     pub bonds: usize,
     /// They are all pairs up to this times the sum of their radii, but for those with surface
     /// between them; 0 if they were chosen otherwise.
-    pub bonding_radius: f64,
+    pub bond_range: f64,
     /// Mean diameter by number, m.
     pub mean_diameter_m: f64,
     /// Overlap of the packing.
@@ -44,7 +44,7 @@ pub struct Report {
     pub sizes_by_number: Fit,
     /// Sizes placed against sizes asked for, by mass.
     pub sizes_by_mass: Fit,
-    /// Bonds divided by particles, as the thesis counts (4.87).
+    /// Bonds divided by particles, as Platzer 2022 counts (4.87).
     pub bonds_per_particle: f64,
     /// Mean number of bonds that a particle has: twice as many.
     pub mean_coordination: f64,

@@ -3,6 +3,7 @@
 use super::densities::{Fraction, Layer};
 use super::fabric::Fabric;
 use super::report::Report;
+use super::warnings::RARE;
 use crate::sizes::Fit;
 use dem_io::units::{show_length, significant};
 
@@ -50,7 +51,7 @@ fn density_lines(report: &Report) -> Vec<Line> {
         ));
     }
     let packing = format!(
-        "{} of the shape is inside spheres, {:.4} in r_gen",
+        "{} of the shape is inside spheres, {:.4} at the reduced radii r_gen",
         with_error(&report.union_density),
         report.generating_density
     );
@@ -89,16 +90,13 @@ fn profile_lines(report: &Report) -> Vec<Line> {
 /// Bonds and contacts.
 fn bond_lines(report: &Report) -> [Line; 4] {
     let contacts = &report.contacts;
-    let up_to = if report.bonding_radius > 0.0 {
-        format!(
-            " up to bonding radius {}",
-            significant(report.bonding_radius, 5)
-        )
+    let up_to = if report.bond_range > 0.0 {
+        format!(" up to bond range {}", significant(report.bond_range, 5))
     } else {
         String::new()
     };
     let bonds = format!(
-        "{}{up_to}, {} per particle, coordination {}",
+        "{}{up_to}, {} per particle, coordination number {}",
         report.bonds,
         significant(report.bonds_per_particle, 4),
         significant(report.mean_coordination, 4)
@@ -111,15 +109,15 @@ fn bond_lines(report: &Report) -> [Line; 4] {
         100.0 * contacts.rattlers
     );
     let exactness = format!(
-        "overlap in r_gen {}, outside the wall {}",
+        "largest overlap at r_gen {}, largest protrusion through the wall {}",
         of_a_radius(contacts.largest_overlap),
         of_a_radius(contacts.largest_protrusion)
     );
     let pieces = &report.pieces;
     let in_pieces = format!(
-        "{}, the largest with {:.2} % of the particles; {} on one bond, {} on none",
+        "{}, the largest with {:.2} % of the particles; {} particles with one bond, {} unbonded",
         pieces.count,
-        100.0 * pieces.largest_share,
+        100.0 * pieces.largest_fraction,
         pieces.with_one_bond,
         pieces.without_bond
     );
@@ -139,7 +137,7 @@ fn structure_lines(report: &Report) -> Vec<Line> {
         (Some(interior), _) => lines.push(("fabric inside", fabric(interior))),
         (None, Some(all)) => lines.push((
             "fabric",
-            format!("{}; layers along the wall show", fabric(all)),
+            format!("{}; includes the layers along the wall", fabric(all)),
         )),
         (None, None) => {}
     }
@@ -168,20 +166,23 @@ fn value(fraction: Option<&Fraction>) -> String {
 }
 
 fn fit(fit: &Fit) -> String {
-    let verdict = if fit.passes() { "within" } else { "outside" };
+    let verdict = if fit.passes() { "" } else { ", exceeded" };
     format!(
-        "off by {:.4}, {verdict} chance ({:.4})",
+        "KS distance {:.4} (95 % limit {:.4}{verdict})",
         fit.distance, fit.limit_95
     )
 }
 
 fn fabric(fabric: &Fabric) -> String {
     let [a, b, c] = fabric.eigenvalues;
+    let verdict = if fabric.chance < RARE {
+        "anisotropic"
+    } else {
+        "isotropic"
+    };
     format!(
-        "{a:.4} {b:.4} {c:.4}, {:.1} sigma of {:.4} off 1/3; random directions are as far off in {} of cases",
-        fabric.largest_deviation_in_sigma,
-        fabric.sigma,
-        percent(fabric.chance)
+        "eigenvalues {a:.4} {b:.4} {c:.4}: {verdict} (p = {})",
+        probability(fabric.chance)
     )
 }
 
@@ -193,10 +194,10 @@ fn of_a_radius(fraction: f64) -> String {
     }
 }
 
-fn percent(chance: f64) -> String {
+fn probability(chance: f64) -> String {
     if chance < 1e-4 {
-        "< 0.01 %".to_owned()
+        "below 0.0001".to_owned()
     } else {
-        format!("{} %", significant(100.0 * chance, 2))
+        significant(chance, 2)
     }
 }

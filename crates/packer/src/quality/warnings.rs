@@ -14,11 +14,11 @@ const EXACT: f64 = 1e-9;
 /// in 2,000 packings, beyond the limit itself once in 20.
 const CLEARLY_OFF: f64 = 1.5;
 /// A fabric that chance makes more rarely than this is called anisotropic.
-const RARE: f64 = 0.01;
+pub(super) const RARE: f64 = 0.01;
 
 pub(super) fn warnings(
     report: &Report,
-    advised_bonding_radius: Option<f64>,
+    advised_bond_range: Option<f64>,
     parts: usize,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -51,14 +51,14 @@ pub(super) fn warnings(
     let pieces = &report.pieces;
     if pieces.count > parts.max(1) {
         warnings.push(format!(
-            "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bonding-radius or smaller \
+            "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bond-range or smaller \
              particles join them",
             pieces.count, pieces.outside_largest, report.particles
         ));
     }
     if report.particles > 1 && report.bonds_per_particle < ENOUGH_BONDS {
-        let advice = match advised_bonding_radius {
-            Some(radius) => format!("--bonding-radius {radius} gives {WELL_BONDED}"),
+        let advice = match advised_bond_range {
+            Some(radius) => format!("--bond-range {radius} gives {WELL_BONDED}"),
             None => "use smaller particles".to_owned(),
         };
         warnings.push(format!(
@@ -79,7 +79,7 @@ fn statistical_warnings(report: &Report) -> Vec<String> {
     ] {
         if fit.distance > CLEARLY_OFF * fit.limit_95 {
             warnings.push(format!(
-                "sizes are off by {} by {by} (Kolmogorov-Smirnov), chance seldom exceeds {}; use a shape larger beside the \
+                "sizes are off by {} by {by} (Kolmogorov-Smirnov), chance seldom exceeds {}; use a shape that is larger relative to the \
                  particles, or a narrower distribution",
                 significant(fit.distance, 2),
                 significant(fit.limit_95, 2)
@@ -89,7 +89,7 @@ fn statistical_warnings(report: &Report) -> Vec<String> {
     if let Some(fabric) = report.interior_fabric.as_ref().filter(|f| f.chance < RARE) {
         warnings.push(format!(
             "bonds prefer a direction in the interior (eigenvalue {} off by {} sigma, chance {}): cracks will too; another \
-             --seed or a larger --settle helps",
+             --seed or a larger --densify helps",
             significant(fabric.eigenvalues[0], 3),
             significant(fabric.largest_deviation_in_sigma, 2),
             significant(fabric.chance, 1)

@@ -10,7 +10,7 @@ pub(crate) fn settings(diameter: &str, overlap: f64, settle: Option<f64>) -> Pac
         sizes: Sizes::parse(diameter, Basis::Number).unwrap(),
         overlap,
         seed: 1,
-        settle,
+        densify: settle,
         seed_point_m: None,
     }
 }

@@ -78,7 +78,7 @@ fn spheres_touch_three_others_or_two_and_the_wall() {
             "{name}: {found} of {} spheres are unsupported, {free} may be",
             spheres.radii.len()
         );
-        assert_eq!(packing.history.settling_steps, 0);
+        assert_eq!(packing.history.densify_steps, 0);
     }
 }
 

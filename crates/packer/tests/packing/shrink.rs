@@ -18,7 +18,7 @@ fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) 
     };
     let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
     let case = format!("{diameter}, overlap {overlap}, seed {seed}");
-    assert_eq!(packing.history.taken_out, 0, "{case}");
+    assert_eq!(packing.history.removed, 0, "{case}");
     let reduced = packing.spheres.radii.iter().map(|r| r / (1.0 + overlap));
     let filled: f64 = reduced.map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
     filled / FillTarget::new(&surface, &settings.sizes, overlap).volume

@@ -68,14 +68,14 @@ fn numbers_out_of_range() {
     }
     for value in ["0.5", "0.081", "-0.1", "nan"] {
         assert_refused(
-            &["-d", "2mm", "--settle", value],
-            &["--settle", &value.replace("nan", "NaN"), "at most 0.08"],
+            &["-d", "2mm", "--densify", value],
+            &["--densify", &value.replace("nan", "NaN"), "at most 0.08"],
         );
     }
     for value in ["0", "-1", "3", "nan"] {
         assert_refused(
-            &["-d", "2mm", "--bonding-radius", value],
-            &["--bonding-radius", "above 0"],
+            &["-d", "2mm", "--bond-range", value],
+            &["--bond-range", "above 0"],
         );
     }
     for value in ["0", "1000", "nan"] {
@@ -85,10 +85,7 @@ fn numbers_out_of_range() {
         );
     }
     for value in ["0", "nan", "-1"] {
-        assert_refused(
-            &["-d", "2mm", "--bond-radius-factor", value],
-            &["--bond-radius-factor"],
-        );
+        assert_refused(&["-d", "2mm", "--bond-radius", value], &["--bond-radius"]);
     }
     for value in ["0", "nan", "-2 kg/m3", "2 stone"] {
         let option = format!("--particle-density={value}");
@@ -124,10 +121,10 @@ fn options_that_do_not_go_together() {
             "2mm",
             "--bonds-per-particle",
             "5",
-            "--bonding-radius",
+            "--bond-range",
             "1.1",
         ],
-        &["-d", "2mm", "--by", "volume"],
+        &["-d", "2mm", "--basis", "volume"],
         &["-d", "2mm", "--no-such-option"],
         &[],
     ] {

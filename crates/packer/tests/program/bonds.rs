@@ -5,13 +5,13 @@ use crate::helpers::exact::{length, sub};
 use crate::helpers::facets::{cuboid, prism};
 use dem_io::Body;
 
-/// Every pair whose centres are at most `bonding_radius` times the sum of the radii apart.
-fn pairs_within(body: &Body, bonding_radius: f64) -> Vec<[u32; 2]> {
+/// Every pair whose centres are at most `bond_range` times the sum of the radii apart.
+fn pairs_within(body: &Body, bond_range: f64) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
     for a in 0..body.radii.len() {
         for b in a + 1..body.radii.len() {
             if length(sub(body.positions[a], body.positions[b]))
-                <= bonding_radius * (body.radii[a] + body.radii[b])
+                <= bond_range * (body.radii[a] + body.radii[b])
             {
                 pairs.push([a as u32, b as u32]);
             }
@@ -37,10 +37,10 @@ fn assert_bond_numbers(made: &Made, factor: f64) {
 }
 
 #[test]
-fn exactly_the_pairs_within_the_bonding_radius() {
+fn exactly_the_pairs_within_the_bond_range() {
     let bench = Bench::new();
     let file = bench.stl("box.stl", &cuboid([12.0, 9.0, 8.0]));
-    for (bonding_radius, overlap, factor) in [
+    for (bond_range, overlap, factor) in [
         (1.0, 0.25, 1.0),
         (1.1, 0.25, 0.8),
         (1.3, 0.0, 0.5),
@@ -53,20 +53,20 @@ fn exactly_the_pairs_within_the_bonding_radius() {
                 "0.9mm..1.4mm",
                 "--overlap",
                 &overlap.to_string(),
-                "--bonding-radius",
-                &bonding_radius.to_string(),
-                "--bond-radius-factor",
+                "--bond-range",
+                &bond_range.to_string(),
+                "--bond-radius",
                 &factor.to_string(),
             ],
         );
         assert_eq!(
             made.body.bonds,
-            pairs_within(&made.body, bonding_radius),
-            "bonding radius {bonding_radius}"
+            pairs_within(&made.body, bond_range),
+            "bond range {bond_range}"
         );
         assert_bond_numbers(&made, factor);
         assert_eq!(made.count("/quality/bonds"), made.body.bonds.len() as u64);
-        assert_eq!(made.body.about.bonding_radius, Some(bonding_radius));
+        assert_eq!(made.body.about.bond_range, Some(bond_range));
     }
 }
 
@@ -92,7 +92,7 @@ fn the_bonds_per_particle_asked_for() {
         assert!((made.number("/quality/bonds_per_particle") - bonds / count).abs() < 1e-12);
         assert_eq!(
             made.body.bonds,
-            pairs_within(&made.body, made.number("/bonding_radius"))
+            pairs_within(&made.body, made.number("/bond_range"))
         );
     }
 }
@@ -123,7 +123,7 @@ fn two_fingers_stay_two() {
             "1mm..1.5mm",
             "--overlap",
             "0.25",
-            "--bonding-radius",
+            "--bond-range",
             "1.3",
         ],
     );

@@ -10,16 +10,16 @@ const OPTIONS: [&str; 20] = [
     "--scale",
     "--fill-holes",
     "--diameter",
-    "--by",
+    "--basis",
     "--overlap",
     "--particle-density",
     "--solid-density",
     "--seed",
     "--seed-point",
-    "--settle",
-    "--bonding-radius",
+    "--densify",
+    "--bond-range",
     "--bonds-per-particle",
-    "--bond-radius-factor",
+    "--bond-radius",
     "--threads",
     "--json",
     "--quiet",
@@ -122,7 +122,7 @@ fn the_summary_goes_where_the_body_does_not() {
         "exactness",
         "pieces",
         "fabric",
-        "made by",
+        "packed by",
         "time",
         "verdict",
     ] {
@@ -148,7 +148,7 @@ fn the_summary_goes_where_the_body_does_not() {
         let verdict = text.lines().last().unwrap();
         assert_eq!(verdict.contains("sound"), !warned, "{text}");
     }
-    assert!(text.contains(" up to bonding radius 1.1, "), "{text}");
+    assert!(text.contains(" up to bond range 1.1, "), "{text}");
     assert!(
         !other.contains('\u{1b}') && !other.contains('\r'),
         "a progress bar without a terminal"
@@ -188,8 +188,8 @@ fn the_report_as_json_has_its_keys() {
         "/quality/warnings",
         "/history/seed_point_m/2",
         "/history/fronts",
-        "/history/settling_steps",
-        "/bonding_radius",
+        "/history/densify_steps",
+        "/bond_range",
         "/density_search",
         "/repairs/facets_read",
         "/seconds/packing",
@@ -298,4 +298,17 @@ fn the_report_says_what_body_and_shape_weigh() {
         "{mass}"
     );
     assert!(!line(&text, "centre ").contains("moments"), "{text}");
+}
+
+#[test]
+fn options_of_another_name_are_refused_with_the_new_one() {
+    for (old, new) in dem_pack::cli::RENAMED {
+        for argument in [old.to_owned(), format!("{old}=1")] {
+            let done = dem_pack().args(["box.stl", &argument]).output().unwrap();
+            let said = String::from_utf8(done.stderr).unwrap();
+            assert_eq!(done.status.code(), Some(2), "{said}");
+            let expected = format!("error: {old}: is now called {new}; write {new}\n");
+            assert_eq!(said, expected);
+        }
+    }
 }

@@ -77,7 +77,7 @@ fn the_density_is_printed() {
         .find(|line| line.starts_with("density search"))
         .unwrap();
     for part in [
-        "wanted 1650 kg/m3, found 16",
+        "target 1650 kg/m3, found 16",
         " %) at overlap 0.",
         "packings made: ",
         ", fronts: ",
@@ -172,7 +172,7 @@ fn without_overlap_the_two_densities_are_one() {
     for name in ["22", "09"] {
         let made = Bench::new().pack(
             &shape(name),
-            &["-d", "1mm..1.5mm", "--overlap", "0", "--settle", "0"],
+            &["-d", "1mm..1.5mm", "--overlap", "0", "--densify", "0"],
         );
         let [sampled, error, exact] = [
             "/quality/union_density/value",

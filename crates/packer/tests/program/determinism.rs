@@ -26,7 +26,7 @@ fn the_same_bytes_for_any_number_of_threads_and_again() {
             "1mm..1.5mm",
             "--overlap",
             "0.25",
-            "--settle",
+            "--densify",
             settle,
             "--threads",
         ];
@@ -46,7 +46,7 @@ fn the_same_bytes_with_curved_walls_and_spread_sizes() {
     let bench = Bench::new();
     let torus = shape("22");
     for options in [
-        &["-d", "lognormal:2.5mm,0.5mm,1.5mm..4mm", "--by", "mass"][..],
+        &["-d", "lognormal:2.5mm,0.5mm,1.5mm..4mm", "--basis", "mass"][..],
         &["-d", "1.8mm", "--bonds-per-particle", "5"],
     ] {
         let one = bytes_of(&bench, &torus, &[options, &["--threads", "1"]].concat());
@@ -109,7 +109,7 @@ fn the_unit_of_the_file_does_not_matter() {
             let diameter = format!("0.8{unit}..1.2{unit}");
             bench.pack(
                 &file,
-                &["--unit", unit, "-d", &diameter, "--settle", settle],
+                &["--unit", unit, "-d", &diameter, "--densify", settle],
             )
         });
         let body = &made[1].body;

@@ -38,7 +38,7 @@ fn wait_for_handler(child: &Child) {
 fn start(bench: &Bench, diameter: &str, output: &str) -> Child {
     dem_pack()
         .current_dir(bench.folder.path())
-        .args(["box.stl", "-d", diameter, "--settle", "0", "-o", output])
+        .args(["box.stl", "-d", diameter, "--densify", "0", "-o", output])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

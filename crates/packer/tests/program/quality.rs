@@ -2,10 +2,10 @@
 
 use super::{Bench, Made, root};
 
-fn bending_sample(settle: &[&str]) -> Made {
+fn bending_sample(densify: &[&str]) -> Made {
     let file = root().join("data/shapes/bending-sample.stl");
     let options = ["--diameter", "2mm..3mm", "--overlap", "0", "--unit", "mm"];
-    Bench::new().pack(&file, &[&options, settle].concat())
+    Bench::new().pack(&file, &[&options, densify].concat())
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn the_bending_sample_is_dense_isotropic_even_and_true_to_its_sizes() {
 
 #[test]
 fn settling_makes_it_denser_and_takes_the_preferred_direction_away() {
-    let (bare, settled) = (bending_sample(&["--settle", "0"]), bending_sample(&[]));
+    let (bare, settled) = (bending_sample(&["--densify", "0"]), bending_sample(&[]));
     let density = |made: &Made| made.number("/quality/interior_generating_density/value");
     assert!(density(&bare) > 0.595);
     assert!(density(&settled) > density(&bare) + 0.025);

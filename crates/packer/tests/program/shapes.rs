@@ -9,7 +9,7 @@ const OPTIONS: [&str; 6] = [
     "1mm..1.5mm",
     "--overlap",
     "0",
-    "--bonding-radius",
+    "--bond-range",
     "1.3",
 ];
 

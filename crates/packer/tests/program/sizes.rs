@@ -147,7 +147,7 @@ fn every_distribution_is_followed_by_number_and_by_mass() {
     let mut beyond_95 = Vec::new();
     for (diameter, law) in laws(bench.folder.path()) {
         for by in ["number", "mass"] {
-            let made = bench.pack(&file, &["-d", &diameter, "--by", by]);
+            let made = bench.pack(&file, &["-d", &diameter, "--basis", by]);
             let count = made.body.radii.len();
             assert!(
                 (7000..18000).contains(&count),

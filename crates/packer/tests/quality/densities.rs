@@ -41,7 +41,10 @@ fn simple_cubic() {
         ),
         (0.0, 0.0)
     );
-    assert_eq!((report.pieces.count, report.pieces.largest_share), (1, 1.0));
+    assert_eq!(
+        (report.pieces.count, report.pieces.largest_fraction),
+        (1, 1.0)
+    );
     let fabric = report.interior_fabric.unwrap();
     // Three bonds for each of 16^3 particles: one that leaves the interior counts half.
     assert_eq!(fabric.bonds, 3 * 16 * 16 * 16);
@@ -138,7 +141,7 @@ fn overlapping_lattice() {
     // The interior, 2.2 from the walls of a box of 16.4, is twelve cells wide.
     let mut case = Case::new(cubic([16; 3], 0.55), [16.4; 3]);
     case.overlap = 0.1;
-    case.bonding_radius = 1.0;
+    case.bond_range = 1.0;
     let report = case.report();
     assert!((report.generating_density - PI / 6.0 * (16.0 / 16.4_f64).powi(3)).abs() < 1e-12);
     close(report.interior_generating_density.unwrap(), PI / 6.0);

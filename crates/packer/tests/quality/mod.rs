@@ -15,7 +15,7 @@ struct Case {
     spheres: Spheres,
     extent: [f64; 3],
     overlap: f64,
-    bonding_radius: f64,
+    bond_range: f64,
     sizes: String,
     particle_density: Option<f64>,
 }
@@ -27,7 +27,7 @@ impl Case {
             spheres,
             extent,
             overlap: 0.0,
-            bonding_radius: 1.0 + 1e-9,
+            bond_range: 1.0 + 1e-9,
             sizes,
             particle_density: None,
         }
@@ -58,12 +58,12 @@ impl Case {
         distance_inside: &(dyn Fn([f64; 3]) -> f64 + Sync),
     ) -> Report {
         let open = |_: u32, _: u32| false;
-        let bonds = find_bonds(&self.spheres, self.bonding_radius, &open).unwrap();
+        let bonds = find_bonds(&self.spheres, self.bond_range, &open).unwrap();
         assess(&BondedPacking {
             spheres: &self.spheres,
             overlap: self.overlap,
             bonds: &bonds,
-            bonding_radius: self.bonding_radius,
+            bond_range: self.bond_range,
             sizes: &Sizes::parse(&self.sizes, Basis::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: self.extent.iter().product(),

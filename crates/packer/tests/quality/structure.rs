@@ -71,7 +71,7 @@ fn chance_of_a_fabric_is_a_chance() {
             spheres: &spheres,
             overlap: 0.0,
             bonds: &bonds,
-            bonding_radius: 0.0,
+            bond_range: 0.0,
             sizes: &Sizes::parse("1m", Basis::Number).unwrap(),
             unit_m: 1.0,
             shape_volume: 1e9,
@@ -108,7 +108,7 @@ fn pieces_and_rattlers() {
     let report = Case::new(spheres, [16.0, 10.0, 10.0]).report();
     assert_eq!(report.pieces.count, 3);
     assert_eq!(report.pieces.outside_largest, 4);
-    assert!((report.pieces.largest_share - 1000.0 / 1004.0).abs() < 1e-15);
+    assert!((report.pieces.largest_fraction - 1000.0 / 1004.0).abs() < 1e-15);
     assert_eq!(
         (report.pieces.without_bond, report.pieces.with_one_bond),
         (1, 2)
@@ -201,7 +201,7 @@ fn thickness_is_true_where_no_particle_lies_in_the_middle() {
         spheres.positions.retain(|p| distance(*p) >= 0.4);
         spheres.radii.truncate(spheres.positions.len());
         let mut case = Case::new(spheres, extent);
-        case.bonding_radius = 1.6;
+        case.bond_range = 1.6;
         case.report_in(distance).thinnest.unwrap()
     };
     // Mean diameters are 0.8; a diagonal of the lattice is 0.43 of that.

@@ -65,7 +65,7 @@ fn the_same_report_for_any_number_of_threads() {
     }
     let mut case = Case::new(spheres, [24.0, 20.0, 22.0]);
     case.sizes = "0.7m..0.9m".to_owned();
-    case.bonding_radius = 1.3;
+    case.bond_range = 1.3;
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -106,7 +106,7 @@ fn the_text_says_it_in_aligned_lines() {
             || text.contains("warning: 2.81 bonds per particle"),
         "{text}"
     );
-    assert!(text.contains("--bonding-radius 1.42 gives 5"), "{text}");
+    assert!(text.contains("--bond-range 1.42 gives 5"), "{text}");
     assert!(
         text.contains("warning: sizes are off by 1 by number"),
         "{text}"

@@ -91,7 +91,7 @@ fn unstable(
     bodies: &[PlacedBody],
 ) -> Diagnostic {
     let mut problem = format!(
-        "unstable at step {}, {:.6e} s: {:.3e} J have come from nowhere; the time step is {:.4e} s and began at {:.3} of the largest stable one",
+        "unstable at step {}, {:.6e} s: {:.3e} J of energy were created; the time step is {:.4e} s and began at {:.3} of the largest stable one",
         state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
     );
     let contact = contact_culprit(state);
@@ -120,11 +120,11 @@ fn unstable(
         );
     }
     let remedy = if is_unrelaxed {
-        "set relaxation.enabled = true: without it, pieces that part while they overlap are pushed apart with energy that nothing gave them"
+        "set relaxation.enabled = true: without it, fragments that separate while they overlap are pushed apart with spurious energy"
     } else if share_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {
-        "take a smaller run.safety or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
+        "take a smaller run.safety_factor or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
     };
     Diagnostic::unstable("", problem, remedy)
 }

@@ -53,19 +53,19 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "bodies": plan.masses,
                 "time_step_s": plan.step.step_s,
                 "limit_s": plan.step.limit.step_s,
-                "foreseen_limit_s": plan.step.foreseen_s,
+                "limit_at_impact_s": plan.step.foreseen_s,
                 "impact_speed_m_s": plan.step.impact_speed_m_s,
                 "notes": plan.notes,
                 "warnings": plan.warnings.iter().chain(&plan.forecast.warnings).collect::<Vec<_>>(),
                 "first_contacts": plan.forecast.first_contacts,
-                "to_come": plan.forecast.to_come,
+                "to_be_fed": plan.forecast.to_come,
                 "inputs": plan.inputs,
                 "limit_undamped_s": plan.step.limit.undamped_step_s,
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
-                "thesis_s": plan.step.thesis_s.is_finite().then_some(plan.step.thesis_s),
+                "platzer_eq_15_s": plan.step.platzer_eq_15_s.is_finite().then_some(plan.step.platzer_eq_15_s),
                 "steps": steps,
                 "stages": of_stages(true),
-                "left_out": of_stages(false),
+                "inactive": of_stages(false),
                 "memory_bytes": bytes,
                 "predicted_run_time_s": per_step_s.map(|s| steps * s),
             });
@@ -95,7 +95,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
         },
     );
     for stage in &plan.stages {
-        let name = if stage.needed { "does" } else { "leaves out" };
+        let name = if stage.needed { "active" } else { "inactive" };
         line(name, stage_text(stage, state, trial));
     }
     for note in &plan.notes {
@@ -107,7 +107,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     let fed_bytes: f64 = plan.forecast.to_come.iter().map(|fed| fed.bytes).sum();
     let with_fed = if fed_bytes > 0.0 {
         let most = size_text((bytes as f64 + fed_bytes) as usize);
-        format!(" at the start, {most} if all that is fed is bonded and none leaves")
+        format!(" at the start, {most} if all that is fed is bonded and none is discharged")
     } else {
         String::new()
     };
@@ -115,10 +115,10 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     line(
         "run time",
         trial.map(|trial| trial.per_step_s).map_or(
-            "not foreseen: bodies come, go, or become others".to_owned(),
+            "not predicted: bodies are fed, discharged or replaced".to_owned(),
             |s| {
                 let run_s = significant(steps * s, 2);
-                format!("about {run_s} s, if this machine stays as it is")
+                format!("about {run_s} s on this machine")
             },
         ),
     );
@@ -154,9 +154,9 @@ fn contents(plan: &Plan) -> String {
     }
     for fed in &plan.forecast.to_come {
         line(
-            "to come",
+            "to be fed",
             format!(
-                "{} bodies through the inlet '{}' until the end: {} spheres and {} bonds once they are bonded",
+                "{} bodies by the inlet '{}' until the end: {} spheres and {} bonds once they are bonded",
                 fed.bodies,
                 fed.inlet,
                 fed.spheres.round(),
@@ -188,7 +188,7 @@ fn time_step(plan: &Plan) -> String {
             choice.limit.iterations,
         )
     } else {
-        "nothing vibrates, so none is too large".to_owned()
+        "no limit, as nothing vibrates".to_owned()
     };
     line("time step", format!("{step} s {why}: {limit}"));
     if plan.is_adaptive {
@@ -200,14 +200,14 @@ fn time_step(plan: &Plan) -> String {
         };
         line(
             "",
-            format!("adaptive: that is the first one, it follows the limit{replaced}"),
+            format!("adaptive: this is the first step, it follows the limit{replaced}"),
         );
     }
     if choice.foreseen_s < choice.limit.step_s {
         line(
             "",
             format!(
-                "at rest the largest would be {} s; impacts at {} m/s are foreseen",
+                "{} s without impacts; impacts at {} m/s are predicted",
                 significant(choice.limit.step_s, 5),
                 significant(choice.impact_speed_m_s, 3)
             ),
@@ -217,12 +217,12 @@ fn time_step(plan: &Plan) -> String {
         line(
             "",
             format!(
-                "without damping the largest would be {} s",
+                "{} s without damping",
                 significant(choice.limit.undamped_step_s, 5)
             ),
         );
     }
-    let beside = |name: &str, step_s: f64| {
+    let estimate = |name: &str, step_s: f64| {
         if step_s.is_finite() {
             let share = significant(step_s / choice.limit.step_s, 3);
             let of_limit = if choice.limit.step_s.is_finite() {
@@ -233,15 +233,21 @@ fn time_step(plan: &Plan) -> String {
             format!("{name} {} s{of_limit}", significant(step_s, 5))
         } else {
             match state.smallest_radius_m().is_finite() {
-                true => format!("{name} unknown: no elastic modulus of a material is given"),
-                false => format!("{name} unknown: no particle is there or will be fed"),
+                true => format!("{name} unknown: no material has an elastic modulus"),
+                false => format!("{name} unknown: there are no particles and none will be fed"),
             }
         }
     };
-    line("", beside("Rayleigh's estimate", choice.rayleigh_s));
-    line("", beside("20 % of it", 0.2 * choice.rayleigh_s));
-    if choice.thesis_s.is_finite() {
-        line("", beside("0.17 sqrt(m/K)", choice.thesis_s));
+    line("", estimate("Rayleigh's estimate", choice.rayleigh_s));
+    line("", estimate("20 % of it", 0.2 * choice.rayleigh_s));
+    if choice.platzer_eq_15_s.is_finite() {
+        line(
+            "",
+            estimate(
+                "Platzer 2022, eq. 15: 0.17 sqrt(m/K) =",
+                choice.platzer_eq_15_s,
+            ),
+        );
     }
     text
 }
@@ -255,7 +261,7 @@ fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> Str
             costs.push(size_text(stage.bytes));
         }
         costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(time_text));
-        costs.extend((stage.stage.within).map(|other| format!("its time is in that of {other}")));
+        costs.extend((stage.stage.within).map(|other| format!("timed with {other}")));
     } else if let Some(saved) = (stage.stage.saving)(state) {
         if saved.bytes > 0 {
             costs.push(size_text(saved.bytes));

@@ -20,19 +20,19 @@ use crate::run::snapshot::Snapshot;
 pub(super) struct FragmentArguments {
     /// The folder of results of a run
     results: PathBuf,
-    /// Number of the fragment: the array cluster of the frames, the id of fragments.csv
+    /// Fragment id, as in the frames and in fragments.csv
     #[arg(long, required_unless_present = "largest", conflicts_with = "largest")]
     id: Option<u32>,
-    /// The heaviest fragment
+    /// Take the heaviest fragment
     #[arg(long)]
     largest: bool,
     /// Number of the frame, from 0; the last one unless given
     #[arg(long, value_name = "K")]
     frame: Option<usize>,
-    /// Body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
+    /// The body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
-    /// Say nothing unless something is wrong
+    /// Only print warnings and errors
     #[arg(long, short)]
     quiet: bool,
 }

@@ -11,7 +11,7 @@ use crate::plan::masses;
 use crate::run::statics::Outlook;
 
 /// Keys and tables that mean nothing to such a scene.
-const UNUSED: &str = "run.rest, run.time_step, run.safety, run.adaptive, run.particle_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
+const UNUSED: &str = "run.rest_energy_ratio, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
 
 /// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state
 /// take.
@@ -62,7 +62,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
             }
         };
         line("by", &format!("Newton's method; {factor}"))?;
-        line("does not use", UNUSED)?;
+        line("not used", UNUSED)?;
         for note in &plan.notes {
             line("note", note)?;
         }

@@ -15,16 +15,16 @@ use crate::stress::verdict::{CaseResult, try_case};
 
 #[derive(Debug, Args)]
 pub(super) struct StressArguments {
-    /// Cases to try; all unless given
+    /// Cases to run; all unless given
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Threads; all cores unless given. The results are the same for any number
+    /// Number of threads; all cores unless given. The results are the same for any number
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Say all runs as JSON
+    /// Print all runs as JSON
     #[arg(long)]
     json: bool,
-    /// Say nothing but errors: no progress, no table; --json is printed all the same
+    /// Only print errors: no progress, no table; --json is still printed
     #[arg(long, short)]
     quiet: bool,
 }

@@ -36,37 +36,37 @@ use dem_study::want::{Want, fastest};
 pub(super) struct SweepArguments {
     /// The study (.toml): a scene, what varies, what is measured
     study: PathBuf,
-    /// Folder for the runs and what comes of them; the study's name with -sweep unless given
+    /// Folder for the runs and results; the study's name with -sweep unless given
     #[arg(long, short, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Runs at a time. More than one disturb each other's times
+    output: Option<PathBuf>,
+    /// Number of simultaneous runs. More than one disturb each other's times
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
-    /// Go on with an interrupted sweep: what is done is kept
+    /// Resume an interrupted sweep: finished runs are kept
     #[arg(long, conflicts_with = "force")]
     resume: bool,
-    /// Replace the sweep that is in the folder
+    /// Overwrite the sweep in the folder
     #[arg(long)]
     force: bool,
-    /// Do more than 10000 runs
+    /// Allow more than 10000 runs
     #[arg(long)]
     yes: bool,
-    /// Run nothing: print one command for sh per run that is to be done
-    #[arg(long, conflicts_with_all = ["collect", "want", "json", "quiet"])]
+    /// Run nothing: print one sh command for each remaining run
+    #[arg(long, conflicts_with_all = ["collect", "max_error", "json", "quiet"])]
     list: bool,
-    /// Run nothing: make the tables and pages of what is there
+    /// Run nothing: collect the finished runs into tables and pages
     #[arg(long, conflicts_with_all = ["force", "resume"])]
     collect: bool,
-    /// Say the fastest setting with such errors: error=1% for all measures, or NAME=1%
-    #[arg(long, value_name = "NAME=SHARE")]
-    want: Vec<String>,
-    /// Write the scene with that setting
-    #[arg(long, value_name = "FILE", requires = "want")]
+    /// Find the fastest setting whose errors are at most this: all=1% for all measures, or NAME=1%
+    #[arg(long, value_name = "NAME=ERROR")]
+    max_error: Vec<String>,
+    /// Write the scene with the fastest setting to this file
+    #[arg(long, value_name = "FILE", requires = "max_error")]
     write: Option<PathBuf>,
-    /// Say all of it as JSON
+    /// Print the table as JSON
     #[arg(long)]
     json: bool,
-    /// Say nothing but errors: no progress, no table; --json is printed all the same
+    /// Only print errors: no progress, no table; --json is still printed
     #[arg(long, short)]
     quiet: bool,
 }
@@ -93,10 +93,13 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     let scene_text = text_of(&study.scene, "a scene")
         .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
     let names: Vec<&str> = study.measures.iter().map(|m| m.name.as_str()).collect();
-    let wants = options.want.iter().map(|text| Want::parse(text, &names));
+    let wants = options
+        .max_error
+        .iter()
+        .map(|text| Want::parse(text, &names));
     let wants = wants.collect::<Result<Vec<_>>>()?;
     let all = runs(&study, options.yes)?;
-    let path = options.out.clone().unwrap_or_else(|| {
+    let path = options.output.clone().unwrap_or_else(|| {
         let stem = options.study.file_stem().unwrap_or_default();
         PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
     });

@@ -28,7 +28,7 @@ pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<S
         .unwrap_or(test.stroke_m / (test.periods * period_s));
     let rate = faster * rate;
     let ramp = Factor::Ramp { until_s: period_s };
-    for name in &test.moves {
+    for name in &test.crosshead {
         if let Some(wall) = scene.walls.get_mut(name) {
             wall.motion = WallMotion::Velocity {
                 velocity_m_s: test.direction.map(|c| rate * c),
@@ -38,7 +38,7 @@ pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<S
             continue;
         }
         let support = Support {
-            of: name.clone(),
+            group: name.clone(),
             holds: pulled(&test, rate),
             factor: ramp.clone(),
             end_s: None,
@@ -100,7 +100,7 @@ pub fn lowest_in_test_hz(
         Diagnostic::input(
             format!("{}: [test]", scene.source),
             format!("the body '{}' has no bonds, so nothing to test", test.body),
-            "make it with bonds: dem-pack --bonding-radius 1.1",
+            "make it with bonds: dem-pack --bond-range 1.1",
         )
     })?;
     Ok(Some(match test.kind {

@@ -74,27 +74,30 @@ pub struct Crack {
     /// Whether it is.
     pub is_within: bool,
     /// Fraction of the broken bonds of which each by itself is.
+    #[serde(rename = "fraction_within")]
     pub share_within: f64,
 }
 
 /// What came of a test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestResult {
-    /// Its kind, as in the scene.
+    /// Its type, as in the scene.
+    #[serde(rename = "type")]
     pub kind: String,
     /// Whether the body broke: the load fell below half of its largest.
     pub broken: bool,
     /// Bonds that broke, and all that there were.
     pub broken_bonds: [usize; 2],
     /// Strength that the scene names, Pa.
-    pub strength_wanted_pa: Option<f64>,
+    pub target_strength_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
-    /// Velocity of what loads, m/s.
+    /// Crosshead velocity, m/s.
     pub rate_m_s: f64,
     /// Dimensions by which it is evaluated.
     pub dimensions: Vec<Figure>,
     /// Results.
+    #[serde(rename = "results")]
     pub figures: Vec<Figure>,
     /// What the bonds would need for the body to have the modulus and the strength that the scene
     /// names.
@@ -105,6 +108,7 @@ pub struct TestResult {
     pub crack: Option<Crack>,
     /// By how much half the rate changes the figures: (slow - fast)/fast. Empty: it was not
     /// checked.
+    #[serde(rename = "changes_at_half_the_rate")]
     pub half_the_rate_changes: Vec<Figure>,
 }
 
@@ -232,7 +236,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let play_m = play_m(rows);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
     measured.add(
-        "failure travel",
+        "crosshead travel at failure",
         travel.filter(|_| evidence.broken),
         "m",
         None,
@@ -248,7 +252,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
         broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
-        strength_wanted_pa: test.strength_pa,
+        target_strength_pa: test.strength_pa,
         lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
         dimensions: measured.dimensions,
@@ -289,9 +293,9 @@ impl Measured {
     }
 
     fn beam(&mut self, beam: &Beam, nu: f64) {
-        self.dimension("span", beam.span_m, "m");
-        if beam.load_distance_m > 0.0 {
-            self.dimension("load distance", beam.load_distance_m, "m");
+        self.dimension("support span", beam.span_m, "m");
+        if beam.loading_span_m > 0.0 {
+            self.dimension("loading span", beam.loading_span_m, "m");
         }
         self.dimension("width", beam.width_m, "m");
         self.dimension("height", beam.height_m, "m");
@@ -300,7 +304,7 @@ impl Measured {
             .modulus_pa
             .map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
         self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
-        self.add("stiffness of the body", self.of_body_n_m, "N/m", theory);
+        self.add("specimen stiffness", self.of_body_n_m, "N/m", theory);
         let bending = |k: f64| k / shape;
         let with_shear = |k: f64| k * (1.0 + shear) / shape;
         self.add(
@@ -346,7 +350,7 @@ impl Measured {
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
         // Pressed, the measured places come nearer to each other.
         let of_body = self.of_body_n_m.map(f64::abs);
-        self.add("stiffness of the body", of_body, "N/m", theory);
+        self.add("specimen stiffness", of_body, "N/m", theory);
         let of_gauge = |k: f64| k * gauge_m / area_m2;
         self.add(MODULUS, of_body.map(of_gauge), "Pa", self.modulus_pa);
         let stress = |force: f64| bar_stress_pa(force, area_m2);
@@ -360,7 +364,7 @@ impl Measured {
 pub(super) const STIFFNESS: &str = "stiffness";
 const EQ_18: &str = "modulus without shear";
 /// Modulus of the body by its own deflection or elongation, shear counted.
-pub const MODULUS: &str = "modulus of the body";
+pub const MODULUS: &str = "specimen modulus";
 /// Largest load before the body broke.
 pub const FAILURE_FORCE: &str = "failure force";
 /// Stress at that force by the formula of the test.
@@ -377,36 +381,38 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
     if let Some(modulus) = result.figure(MODULUS) {
         let factor = modulus / bonds.young_modulus_pa;
         found.push(Figure::new(
-            "modulus over that of the bonds",
+            "specimen modulus over bond modulus",
             factor,
             "",
             None,
         ));
         if let Some(wanted) = test.young_modulus_pa {
-            let name = "modulus of bonds for that wanted";
+            let name = "bond modulus for the target";
             found.push(Figure::new(name, wanted / factor, "Pa", None));
         }
     }
     // As in Platzer 2022, section 4.5.3.3, with all that gives way at the pins in it.
     if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
-        let name = "the same by eq. 18";
+        let name = "bond modulus by eq. 18";
         let value = wanted / modulus * bonds.young_modulus_pa;
         found.push(Figure::new(name, value, "Pa", None));
     }
     let failure = &bonds.failure;
-    let of_bonds = failure.von_mises_pa.or(failure.tension_pa);
-    let of_bonds = of_bonds.or(failure.compression_pa);
+    let of_bonds = failure
+        .von_mises_strength_pa
+        .or(failure.tensile_strength_pa);
+    let of_bonds = of_bonds.or(failure.compressive_strength_pa);
     let of_bonds = of_bonds.filter(|strength| *strength > 0.0);
     if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
         let factor = strength / of_bonds;
         found.push(Figure::new(
-            "strength over that of the bonds",
+            "specimen strength over bond strength",
             factor,
             "",
             None,
         ));
         if let Some(wanted) = test.strength_pa {
-            let name = "strength of bonds for that wanted";
+            let name = "bond strength for the target";
             found.push(Figure::new(name, wanted / factor, "Pa", None));
         }
     }

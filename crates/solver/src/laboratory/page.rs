@@ -79,24 +79,24 @@ pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
         rows.iter().map(|row| [way(row), row.load_n()]).collect()
     };
     let mut lines = vec![Line {
-        name: "travel of what loads".to_owned(),
+        name: "crosshead travel".to_owned(),
         points: points(&|row| row.travel_m - play_m),
         dashed: false,
     }];
     let of_body = slope(rows, |row| row.deflection_m);
-    if let (Some(of_body), true) = (of_body, named(result, "stiffness of the body").is_some()) {
+    if let (Some(of_body), true) = (of_body, named(result, "specimen stiffness").is_some()) {
         let sign = of_body.stiffness_n_m.signum();
         let way = |row: &Row| sign * (row.deflection_m - of_body.start_m);
         // After it has broken the body has no deflection.
         let until = peak(rows).map_or(f64::INFINITY, |row| row.time_s);
         let whole = rows.iter().filter(|row| row.time_s <= until);
         lines.push(Line {
-            name: "deflection of the body".to_owned(),
+            name: "deflection of the specimen".to_owned(),
             points: whole.map(|row| [way(row), row.load_n()]).collect(),
             dashed: false,
         });
     }
-    let theory = ["stiffness of the body", "stiffness"]
+    let theory = ["specimen stiffness", "stiffness"]
         .iter()
         .find_map(|name| named(result, name)?.theory);
     if let (Some(stiffness), Some(peak)) = (theory, peak(rows)) {

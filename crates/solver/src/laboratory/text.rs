@@ -14,7 +14,7 @@ impl TestResult {
     /// What speaks against the test. Empty: nothing.
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
-        if self.strength_wanted_pa.is_some() && !self.broken {
+        if self.target_strength_pa.is_some() && !self.broken {
             let although = match self.broken_share() {
                 0.0 => "; no bond broke".to_owned(),
                 share => format!(
@@ -28,12 +28,12 @@ impl TestResult {
         }
         if self.figure(STIFFNESS).is_none_or(|found| found <= 0.0) {
             doubts.push(
-                "no stiffness can be told, the load did not rise steadily: look at force-displacement.csv"
+                "the stiffness could not be determined, as the load did not rise steadily: see force-displacement.csv"
                     .to_owned(),
             );
         }
         if self.crack.as_ref().is_some_and(|crack| !crack.is_within) {
-            doubts.push("the crack is not where the test wants it".to_owned());
+            doubts.push("the crack is outside the region that the test requires".to_owned());
         }
         for figure in &self.half_the_rate_changes {
             if figure.value.abs() > MUCH {
@@ -80,7 +80,7 @@ impl TestResult {
             say(
                 "first bond",
                 format!(
-                    "at {}, {} of travel, by {} at [{place}] mm",
+                    "at {}, crosshead travel {}, in {} at [{place}] mm",
                     shown(first.force_n, "N"),
                     shown(first.travel_m, "m"),
                     first.cause.name().replace('_', " "),
@@ -96,7 +96,7 @@ impl TestResult {
             say(
                 "crack",
                 format!(
-                    "{} bonds {} from the middle, +- {}; {is} {}, where {:.0} % of them are",
+                    "{} broken bonds, mean {} from the middle, standard deviation {}; {is} {}, as are {:.0} % of them",
                     crack.bonds,
                     shown(crack.offset_m, "m"),
                     shown(crack.spread_m, "m"),

@@ -45,8 +45,8 @@ impl<'a> Watch<'a> {
     ) -> Self {
         let state = &plan.state;
         let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
-        let walls = scene.walls.keys().map(|name| test.moves.contains(name));
-        let grips: Vec<String> = test.moves.iter().map(|name| support_of(name)).collect();
+        let walls = scene.walls.keys().map(|name| test.crosshead.contains(name));
+        let grips: Vec<String> = test.crosshead.iter().map(|name| support_of(name)).collect();
         let supports = scene.supports.keys().map(|name| grips.contains(name));
         let ([walls, other_walls], [supports, other_supports]) = (split(walls), split(supports));
         let moving = Holders { walls, supports };

@@ -70,7 +70,7 @@ pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     write_fragment_tree(&folder.fragment_tree(), rows)
 }
 
-/// What one of the clusters that are or were broke into, for a person: `cluster 3 -> 7, 8 (1204 +
+/// What one of the clusters that are or were broke into, for a person: `fragment 3 -> 7, 8 (1204 +
 /// 38 particles)`. The largest stand first, and of many only some are named.
 pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     let particles = |id: u32| history[id as usize].particles;
@@ -81,7 +81,7 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     let ids: Vec<String> = named.iter().map(u32::to_string).collect();
     let counts: Vec<String> = named.iter().map(|id| particles(*id).to_string()).collect();
     let mut text = format!(
-        "cluster {} -> {} ({} particles)",
+        "fragment {} -> {} ({} particles)",
         split.parent,
         ids.join(", "),
         counts.join(" + ")

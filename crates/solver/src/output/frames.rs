@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use dem_io::Result;
-use dem_io::results::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, CLUSTER, DENSITY, RADIUS};
+use dem_io::results::stored_frame::{
+    BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS,
+};
 use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
 
 use crate::measure::{load, utilisation_under};
@@ -138,7 +140,7 @@ impl FrameOrder {
         }
         if state.clusters.is_some() {
             // With these a fragment can be taken out as a body.
-            particle_arrays.push(counts(CLUSTER, &cluster));
+            particle_arrays.push(counts(FRAGMENT_ID, &cluster));
             particle_arrays.push(scalars(DENSITY, &density));
             bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
         }

@@ -87,7 +87,7 @@ pub struct Summary {
     /// Largest stable step, s.
     pub limit_s: f64,
     /// Step over limit.
-    pub share_of_limit: f64,
+    pub fraction_of_limit: f64,
     /// Steps per second of wall time.
     pub steps_per_s: f64,
     /// Bonds times steps per second of wall time.
@@ -98,8 +98,8 @@ pub struct Summary {
     pub momentum_error: f64,
     /// Largest relative angular momentum error of the run.
     pub angular_momentum_error: f64,
-    /// The ledger at the end.
-    pub ledger: Balance,
+    /// Energies, works and momenta at the end.
+    pub balance: Balance,
     /// What was measured; by name in JSON.
     #[serde(serialize_with = "by_name")]
     pub measures: Vec<Measured>,
@@ -107,7 +107,7 @@ pub struct Summary {
     #[serde(serialize_with = "pairs_by_name")]
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
-    pub left_out: Vec<String>,
+    pub inactive_stages: Vec<String>,
     /// What is odd about the scene but harmless.
     pub notes: Vec<String>,
     /// Whether the result can be trusted.
@@ -182,22 +182,22 @@ pub struct PopulationSummary {
     pub replaced: u32,
     /// Clusters and fragments that became rigid clumps again.
     pub restored: u32,
-    /// Bodies that came through inlets.
-    pub came: u32,
+    /// Bodies fed by inlets.
+    pub fed: u32,
     /// Their mass, kg.
-    pub came_kg: f64,
+    pub fed_kg: f64,
     /// Bodies that had to wait until a place was free.
     pub delayed: u32,
     /// Bodies that an inlet still owes at the end.
     pub waiting: u32,
-    /// Bodies and fragments that went through outlets.
-    pub left: u32,
+    /// Bodies and fragments discharged through outlets.
+    pub discharged: u32,
     /// Their mass, kg.
-    pub left_kg: f64,
-    /// Fraction of bonds times steps that was left out because bodies were clumps.
-    pub bonds_left_out: f64,
+    pub discharged_kg: f64,
+    /// Fraction of bond updates that was skipped because bodies were clumps.
+    pub bond_updates_skipped: f64,
     /// Fraction of the spheres of a clump that no other can touch, the mean of all templates.
-    pub inner_spheres: f64,
+    pub inner_sphere_fraction: f64,
 }
 
 /// Between what an adaptive step went.
@@ -216,8 +216,8 @@ pub struct AdaptiveSummary {
 pub struct SleepSummary {
     /// Bodies that sleep at the end.
     pub bodies: usize,
-    /// Fraction of particles times steps that was left out because their bodies slept.
-    pub left_out: f64,
+    /// Fraction of particle updates that was skipped because their bodies slept.
+    pub particle_updates_skipped: f64,
 }
 
 impl SleepSummary {
@@ -226,7 +226,7 @@ impl SleepSummary {
         let [done, left_out] = sleep.particle_steps.map(|count| count as f64);
         Self {
             bodies: sleep.bodies,
-            left_out: over(left_out, done + left_out),
+            particle_updates_skipped: over(left_out, done + left_out),
         }
     }
 }
@@ -251,17 +251,17 @@ impl PopulationSummary {
             single_spheres: single,
             replaced: population.replaced,
             restored: population.restored,
-            came: population.inlets.iter().map(|come| come.bodies).sum(),
-            came_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
+            fed: population.inlets.iter().map(|come| come.bodies).sum(),
+            fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
             delayed: population.inlets.iter().map(|come| come.delayed).sum(),
             waiting: (rules.inlets.iter().zip(&population.inlets))
                 // Of what is due at the very end nothing has been tried.
                 .map(|(inlet, come)| inlet.owed(come, state.time_s - state.time_step_s))
                 .sum(),
-            left: population.outlets.iter().map(|left| left.bodies).sum(),
-            left_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
-            bonds_left_out: over(left_out, done + left_out),
-            inner_spheres: over(inner, clumps.templates.len() as f64),
+            discharged: population.outlets.iter().map(|left| left.bodies).sum(),
+            discharged_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
+            bond_updates_skipped: over(left_out, done + left_out),
+            inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
         })
     }
 }
@@ -282,7 +282,7 @@ impl Summary {
             self.steps,
             significant(self.time_step_s, 4),
             if self.limit_s.is_finite() {
-                format!("{} of the limit", significant(self.share_of_limit, 3))
+                format!("{} of the limit", significant(self.fraction_of_limit, 3))
             } else {
                 "without a limit".to_owned()
             },
@@ -322,29 +322,29 @@ impl Summary {
         };
         writeln!(
             f,
-            "bodies       {} came ({} kg), {} replaced, {} rigid again, {} left ({} kg), {} clumps{} at the end",
-            p.came,
-            significant(p.came_kg, 4),
+            "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged ({} kg), {} clumps{} at the end",
+            p.fed,
+            significant(p.fed_kg, 4),
             p.replaced,
             p.restored,
-            p.left,
-            significant(p.left_kg, 4),
+            p.discharged,
+            significant(p.discharged_kg, 4),
             p.clumps,
             match p.single_spheres {
                 0 => String::new(),
                 count => format!(" and {count} single spheres"),
             },
         )?;
-        let hidden = match 100.0 * p.inner_spheres {
-            share if share >= 0.5 => {
-                format!("; {share:.0} % of the spheres of clumps, which nothing can touch")
+        let hidden = match 100.0 * p.inner_sphere_fraction {
+            fraction if fraction >= 0.5 => {
+                format!("; {fraction:.0} % of the spheres of clumps, which nothing can touch")
             }
             _ => String::new(),
         };
         writeln!(
             f,
-            "saved        {:.0} % of bonds times steps, as their bodies were rigid{hidden}",
-            100.0 * p.bonds_left_out,
+            "skipped      {:.0} % of bond updates, as their bodies were rigid{hidden}",
+            100.0 * p.bond_updates_skipped,
         )
     }
 
@@ -407,12 +407,12 @@ impl Summary {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
-                "the energy is off by {} of the largest energy: take a smaller step (run.safety)",
+                "the energy is off by {} of the largest energy: take a smaller step (run.safety_factor)",
                 significant(self.energy_error, 2)
             ));
         }
-        if self.share_of_limit > 1.0 {
-            doubts.push("the step is above the largest stable one".to_owned());
+        if self.fraction_of_limit > 1.0 {
+            doubts.push("the time step is above the largest stable one".to_owned());
         }
         if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
             let waiting = match population.waiting {
@@ -505,13 +505,13 @@ impl fmt::Display for Summary {
         if let Some(sleep) = &self.sleep {
             writeln!(
                 f,
-                "asleep       {} bodies at the end; {:.0} % of particles times steps left out",
+                "asleep       {} bodies at the end; {:.0} % of particle updates skipped",
                 sleep.bodies,
-                100.0 * sleep.left_out,
+                100.0 * sleep.particle_updates_skipped,
             )?;
         }
         let strained = [
-            ("bonds", self.largest_bond_strain, "of strain at the edge"),
+            ("bonds", self.largest_bond_strain, "edge strain"),
             ("contacts", self.largest_overlap, "of the smaller radius"),
         ];
         let strained: Vec<String> = (strained.iter().filter(|(_, largest, _)| *largest > 0.0))
@@ -529,7 +529,7 @@ impl fmt::Display for Summary {
             )?;
         }
         self.write_masses(f)?;
-        writeln!(f, "left out     {}", self.left_out.join(", "))?;
+        writeln!(f, "inactive     {}", self.inactive_stages.join(", "))?;
         self.write_verdict(f)
     }
 }

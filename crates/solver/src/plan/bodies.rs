@@ -228,7 +228,7 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     Err(Diagnostic::input(
         format!("particle {number}"),
         format!(
-            "with a radius of {:.3e} m and a mass of {:.3e} kg it is nothing that a program can reckon with",
+            "its radius of {:.3e} m and mass of {:.3e} kg are outside the range of floating-point numbers",
             particles.poses[i].radius_m(),
             1.0 / inert[0]
         ),
@@ -358,7 +358,7 @@ fn check_bond(
     if distance_m == 0.0 {
         return Err(Diagnostic::input(
             format!("bond {number}"),
-            "its two particles stand at the same place",
+            "its two particles are at the same place",
             "move one of them, or remove the bond",
         ));
     }
@@ -378,7 +378,7 @@ fn check_bond(
     Err(Diagnostic::input(
         format!("bond {number}"),
         format!(
-            "{distance_m:.3e} m long and {:.3e} N/m stiff, it would take a time step of {step_s:.3e} s, with which no program can reckon",
+            "{distance_m:.3e} m long and {:.3e} N/m stiff, it would need a time step of {step_s:.3e} s, which is too small to integrate",
             answer.normal
         ),
         "check the units of places, radii, density and modulus",
@@ -387,7 +387,9 @@ fn check_bond(
 
 fn model(model: SceneModel) -> BondModel {
     match model {
-        SceneModel::Parallel { kappa } => BondModel::Parallel { kappa },
+        SceneModel::Parallel {
+            stiffness_ratio: kappa,
+        } => BondModel::Parallel { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
@@ -398,17 +400,19 @@ fn model(model: SceneModel) -> BondModel {
 fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
     let strengths = [
-        failure.tension_pa,
-        failure.compression_pa,
-        failure.shear_pa,
-        failure.von_mises_pa,
+        failure.tensile_strength_pa,
+        failure.compressive_strength_pa,
+        failure.shear_strength_pa,
+        failure.von_mises_strength_pa,
     ];
     let [tension_pa, compression_pa, shear_pa, von_mises_pa] =
         strengths.map(|s| s.unwrap_or(f64::INFINITY));
     let damping = &kind.damping;
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
-        damped: damping.viscous > 0.0 || damping.force_n_s_m > 0.0 || damping.torque > 0.0,
+        damped: damping.damping_ratio > 0.0
+            || damping.damping_coefficient_n_s_m > 0.0
+            || damping.torque_factor > 0.0,
         criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
             tension_pa,
             compression_pa,
@@ -416,7 +420,7 @@ fn rule(kind: &BondKind) -> BondRule {
             von_mises_pa,
         }),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
-        rate_of: failure.rate_of,
+        rate_of: failure.strain_rate_measure,
     }
 }
 
@@ -431,15 +435,15 @@ fn damping(
         ends.map(|end| particles.motions[end].inverse_mass),
         ends.map(|end| particles.motions[end].inverse_inertia),
     );
-    let damping_ratio = damping.viscous;
-    let by_ratio: &dyn DampingModel = if damping.each_mode {
+    let damping_ratio = damping.damping_ratio;
+    let by_ratio: &dyn DampingModel = if damping.per_mode {
         &ChenByMode { damping_ratio }
     } else {
         &Chen { damping_ratio }
     };
     let by_coefficient = Platzer {
-        coefficient_n_s_m: damping.force_n_s_m,
-        moment_factor: damping.torque,
+        coefficient_n_s_m: damping.damping_coefficient_n_s_m,
+        moment_factor: damping.torque_factor,
     };
     let models = [by_ratio, &by_coefficient];
     let [one, other] = models.map(|model| model.coefficients(answer, &reduced));

@@ -238,7 +238,7 @@ pub(super) fn refuse_unbreakable(scene: &Scene, templates: &[Arc<Template>]) -> 
             return Err(Diagnostic::input(
                 format!("{}: [replacement.{}]", scene.source, template.body),
                 "the body has no bonds, so it cannot break",
-                "make it with bonds: dem-pack --bonding-radius 1.1",
+                "make it with bonds: dem-pack --bond-range 1.1",
             ));
         }
     }

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::{Contact, ContactLaw, Material, Rolling as SceneRolling, Scene, StartOverlap};
+use dem_io::scene::{
+    Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene,
+};
 use dem_io::{Diagnostic, Result};
 
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
@@ -87,7 +89,7 @@ impl<'a> Kinds<'a> {
         let [a, b] = pair.map(|material| self.names[material]);
         Err(Diagnostic::input(
             format!("{}: [contacts]", scene.source),
-            format!("nothing is said of {a} with {b}, which {who}"),
+            format!("no contact law for the material pair {a}-{b}, which {who}"),
             format!("add {a}-{b} = {{ restitution = 0.5, friction = 0.5 }} to [contacts]"),
         ))
     }
@@ -116,7 +118,7 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
             }
             ContactLaw::Linear {
                 normal_n_m,
-                tangential_ratio,
+                tangential_stiffness_ratio: tangential_ratio,
             } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &pair_input)),
         },
         rolling: match contact.rolling {
@@ -173,7 +175,7 @@ pub(super) fn place_contacts(
     let mut contacts = Contacts {
         // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
         model: Arc::new(ContactModel {
-            relaxes: scene.run.start_overlap != StartOverlap::Keep,
+            relaxes: scene.run.initial_overlap != InitialOverlap::Keep,
             ..model.clone()
         }),
         materials,
@@ -185,10 +187,10 @@ pub(super) fn place_contacts(
     let skin_m = contacts.skin_m;
     list_contacts(&mut contacts, &clusters.of_particle, p, skin_m);
     refuse_same_place(scene, &contacts, bodies, state)?;
-    match scene.run.start_overlap {
-        StartOverlap::Refuse => refuse_overlaps(scene, &contacts, bodies, state)?,
-        StartOverlap::Relax => {}
-        StartOverlap::Keep => {
+    match scene.run.initial_overlap {
+        InitialOverlap::Refuse => refuse_overlaps(scene, &contacts, bodies, state)?,
+        InitialOverlap::Relax => {}
+        InitialOverlap::Keep => {
             refuse_swallowed(scene, &contacts, bodies, state)?;
             keep_overlaps(&mut contacts, state);
         }
@@ -282,7 +284,7 @@ fn refuse_same_place(
     let [a, b] = pair.map(|i| called(bodies, &state.clumps, i));
     Err(Diagnostic::input(
         &scene.source,
-        format!("{a} and {b} stand at the same place"),
+        format!("{a} and {b} are at the same place"),
         "move one of the bodies",
     ))
 }
@@ -311,7 +313,7 @@ fn refuse_swallowed(
             dem_io::units::show_length(overlap_m(poses, pair)),
             dem_io::units::show_length(smaller_m(pair))
         ),
-        "move the bodies apart: run.start_overlap = \"keep\" is for bodies that rest on each other",
+        "move the bodies apart: run.initial_overlap = \"keep\" is for bodies that rest on each other",
     ))
 }
 
@@ -346,6 +348,6 @@ fn refuse_overlaps(
             "{a} and {b} overlap by {} at the start although no bond joins them{more}",
             dem_io::units::show_length(*overlap)
         ),
-        "move the bodies apart; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it",
+        "move the bodies apart; or run.initial_overlap = \"relax\" takes the overlap as the origin of the contact law, and \"keep\" applies the full contact force",
     ))
 }

@@ -68,7 +68,7 @@ fn displace(
             "write formulation = \"total\" in [bonds], or remove displacement",
         ));
     }
-    for &i in particles_of(sets, &initial.of) {
+    for &i in particles_of(sets, &initial.group) {
         let pose = &mut state.particles.poses[i as usize];
         pose.put_at((pose.place() + by_m).into());
         check_place(pose, || called(bodies, &state.clumps, i))
@@ -105,7 +105,7 @@ fn set_moving(
     held: &BTreeMap<u32, [bool; 6]>,
     state: &mut State,
 ) -> Result<()> {
-    let particles = particles_of(sets, &initial.of);
+    let particles = particles_of(sets, &initial.group);
     let p = &mut state.particles;
     let (mut mass_kg, mut moment) = (0.0, Vector3::zeros());
     for &i in particles {
@@ -126,7 +126,7 @@ fn set_moving(
                 place,
                 format!(
                     "it gives a particle of '{}' {} {}, where a support holds it",
-                    initial.of, six[k], MOTIONS[k]
+                    initial.group, six[k], MOTIONS[k]
                 ),
                 "set particles in motion that can move, or let the support move them",
             ));

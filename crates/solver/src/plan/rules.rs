@@ -34,16 +34,16 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
             force_n: rule.force_n,
             impact_energy_j: rule.impact_energy_j,
             time_s: rule.time_s,
-            needs_all: rule.needs_all,
+            needs_all: rule.requires_all,
         })
     });
     let restores = templates.iter().map(|template| {
-        let back = scene.replacement.get(&template.body)?.back.as_ref()?;
+        let back = scene.replacement.get(&template.body)?.restore.as_ref()?;
         Some(Restore {
             leaves: number(&back.leaves)?,
             min_particles: back.min_particles,
             strain_energy_j_kg: back.strain_energy_j_kg,
-            inner_speed_m_s: back.inner_speed_m_s,
+            inner_speed_m_s: back.fluctuation_velocity_m_s,
         })
     });
     let starts = templates.iter().map(|template| {
@@ -207,7 +207,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
         {
             if is_apart(&gate, &state.model.rules.regions[outlet.region].bounds()) {
                 doubts.push(format!(
-                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed at once",
+                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed immediately",
                     outlet.name, inlet.name
                 ));
             }

@@ -25,8 +25,8 @@ pub fn resolve_sets(
         numbers.sort_unstable();
         sets.insert(body.name.clone(), numbers);
     }
-    for (name, set) in &scene.sets {
-        let place = format!("{}: [sets.{name}]", scene.source);
+    for (name, set) in &scene.groups {
+        let place = format!("{}: [groups.{name}]", scene.source);
         let mut picked = if let Pick::Particles(numbers) = &set.pick {
             by_number(&place, numbers, set.body.as_deref(), bodies)?
         } else {

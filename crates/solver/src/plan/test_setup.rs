@@ -141,7 +141,7 @@ fn beam(
     let (loads, supports): (Vec<_>, Vec<_>) = scene
         .walls
         .iter()
-        .partition(|(name, _)| test.moves.contains(name));
+        .partition(|(name, _)| test.crosshead.contains(name));
     let wanted = if test.kind == TestKind::FourPointBending {
         2
     } else {
@@ -188,16 +188,16 @@ fn beam(
     };
     let (loaded, held) = (place(&loads), place(&supports));
     let beam = Beam {
-        span_m: test.span_m.unwrap_or(held[1] - held[0]),
-        load_distance_m: match loaded[..] {
-            [left, right] => test.load_distance_m.unwrap_or(right - left),
+        span_m: test.support_span_m.unwrap_or(held[1] - held[0]),
+        loading_span_m: match loaded[..] {
+            [left, right] => test.loading_span_m.unwrap_or(right - left),
             _ => 0.0,
         },
         width_m: test.width_m.unwrap_or_else(|| size(extent(&across))),
         height_m: test.height_m.unwrap_or_else(|| size(extent(&direction))),
     };
     let [low, high] = extent(&along);
-    if !(low < held[1] && high > held[0]) || beam.span_m <= beam.load_distance_m {
+    if !(low < held[1] && high > held[0]) || beam.span_m <= beam.loading_span_m {
         let remedy =
             "the supports are further apart than the loading pins, and the body lies on them";
         return Err((
@@ -210,7 +210,7 @@ fn beam(
         + middle(extent(&direction)) * direction;
     // A crack of three-point bending starts under the pin: it may stray by half the height.
     let crack_within_m = if loaded.len() == 2 {
-        0.5 * beam.load_distance_m
+        0.5 * beam.loading_span_m
     } else {
         0.5 * beam.height_m
     };
@@ -242,8 +242,7 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f6
 
 /// Where a point of a wall's shape stands at the start.
 fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
-    let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, wall.tilt_rad, 0.0));
-    let turned = tilted * UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
+    let turned = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
     let pivot = Vector3::from(wall.pivot_m);
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
@@ -251,7 +250,7 @@ fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
 /// Refuses walls that load by moving away from the body. Of an STL it is not known where it would
 /// meet the body.
 fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
-    for name in &test.moves {
+    for name in &test.crosshead {
         let Some(wall) = scene.walls.get(name) else {
             continue;
         };
@@ -370,7 +369,7 @@ fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
         Specimen::Beam(beam) => {
             let spot = (SPOT * beam.height_m).max(2.0 * setup.mean_radius_m);
             let at = |place: f64| pick(&|x, z| (x.abs() - place).abs() < spot && z.abs() < spot);
-            setup.moving = at(0.5 * beam.load_distance_m);
+            setup.moving = at(0.5 * beam.loading_span_m);
             setup.resting = at(0.5 * beam.span_m);
         }
         Specimen::Bar { length_m, .. } => {

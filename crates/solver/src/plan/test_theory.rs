@@ -7,7 +7,7 @@ pub struct Beam {
     /// Distance of the supports, m. Platzer 2022 calls it the length of the sample.
     pub span_m: f64,
     /// Distance of the two loading pins, m; 0: one pin.
-    pub load_distance_m: f64,
+    pub loading_span_m: f64,
     /// Of the section, across the load, m.
     pub width_m: f64,
     /// Of the section, along the load, m.
@@ -30,13 +30,13 @@ impl Beam {
 
     /// Distance of a support from the next loading pin, m.
     pub fn arm_m(&self) -> f64 {
-        0.5 * (self.span_m - self.load_distance_m)
+        0.5 * (self.span_m - self.loading_span_m)
     }
 
     /// Stiffness in bending of a body of modulus 1 Pa: force over the deflection at the loading
     /// pins, m. Platzer 2022, eq. 18.
     pub fn bending_shape_m(&self) -> f64 {
-        let (span, load) = (self.span_m, self.load_distance_m);
+        let (span, load) = (self.span_m, self.loading_span_m);
         48.0 * self.second_moment_m4() / ((span - load).powi(2) * (span + 2.0 * load))
     }
 
@@ -80,7 +80,7 @@ impl Beam {
     /// Largest bending stress under a force on all loading pins together, Pa. Platzer 2022, eq. 19;
     /// 3 F L/(2 b h^2) for one pin.
     pub fn stress_pa(&self, force_n: f64) -> f64 {
-        1.5 * force_n * (self.span_m - self.load_distance_m)
+        1.5 * force_n * (self.span_m - self.loading_span_m)
             / (self.width_m * self.height_m * self.height_m)
     }
 

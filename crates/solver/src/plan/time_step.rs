@@ -1,7 +1,7 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use
 //! beside it.
 
-use dem_io::scene::{Factor, SAFETY, Scene, StartOverlap, WallMotion};
+use dem_io::scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ pub struct StepChoice {
     /// Rayleigh's estimate (Platzer 2022, eq. 14), s; infinite where no modulus is known.
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) (Platzer 2022, eq. 15), s; infinite without bonds.
-    pub thesis_s: f64,
+    pub platzer_eq_15_s: f64,
     /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
     /// by, unless it is adaptive.
     pub replaced: Outlook,
@@ -89,14 +89,17 @@ impl Outlook {
         };
         // A contact that is pressed now is on its way: an adaptive step must not rise before its
         // end. What is pressed from the start on is followed like an impact, too.
-        let keeps = run.start_overlap == StartOverlap::Keep;
+        let keeps = run.initial_overlap == InitialOverlap::Keep;
         let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
         } else {
             [0.0; 2]
         };
-        let step_s = (run.safety * foreseen_s)
-            .min(share_of_impact(state, run.safety) * safe_step(k.max(pressed_k), c.max(pressed_c)))
+        let step_s = (run.safety_factor * foreseen_s)
+            .min(
+                share_of_impact(state, run.safety_factor)
+                    * safe_step(k.max(pressed_k), c.max(pressed_c)),
+            )
             .min(run.end_time_s / 100.0)
             .min(across);
         Self {
@@ -135,7 +138,7 @@ impl StepChoice {
             impact_speed_m_s: 0.0,
             contact_rate_1_s2: 0.0,
             rayleigh_s: f64::INFINITY,
-            thesis_s: f64::INFINITY,
+            platzer_eq_15_s: f64::INFINITY,
             replaced: nothing,
         }
     }
@@ -169,12 +172,12 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             "check the units of places, radii, density, modulus and damping",
         ));
     }
-    if run.time_step_s.is_none() && run.safety >= 1.0 && !allow_any_step {
+    if run.time_step_s.is_none() && run.safety_factor >= 1.0 && !allow_any_step {
         return Err(Diagnostic::input(
-            format!("{}: run.safety", scene.source),
+            format!("{}: run.safety_factor", scene.source),
             format!(
-                "{} is no share of the largest stable step that is stable",
-                run.safety
+                "{} of the largest stable step is not stable",
+                run.safety_factor
             ),
             "write 0.9, or --force-step to see what happens",
         ));
@@ -210,7 +213,7 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         impact_speed_m_s: outlook.impact_speed_m_s,
         contact_rate_1_s2: outlook.contact_rate_1_s2,
         rayleigh_s: f64::INFINITY,
-        thesis_s: thesis_s(state),
+        platzer_eq_15_s: platzer_eq_15_s(state),
         replaced,
     })
 }
@@ -334,7 +337,7 @@ pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
 
 /// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all
 /// bonds (Platzer 2022, eq. 15).
-fn thesis_s(state: &State) -> f64 {
+fn platzer_eq_15_s(state: &State) -> f64 {
     let motions = &state.particles.motions;
     let bonds = &state.bonds;
     (0..bonds.len())
@@ -400,7 +403,7 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
         }
         WallMotion::Displacement {
             displacement_m,
-            turn_rad,
+            angular_displacement_rad: turn_rad,
             factor,
         } => {
             let steepest_1_s = match factor {
@@ -414,7 +417,7 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             steepest_1_s * speed(displacement_m, turn_rad)
         }
         WallMotion::Servo {
-            largest_velocity_m_s,
+            max_velocity_m_s: largest_velocity_m_s,
             ..
         } => *largest_velocity_m_s,
     }

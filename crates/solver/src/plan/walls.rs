@@ -4,7 +4,7 @@ mod surface;
 
 use std::sync::Arc;
 
-use dem_io::scene::{Scene, StartOverlap, Wall as SceneWall, WallShape};
+use dem_io::scene::{InitialOverlap, Scene, Wall as SceneWall, WallShape};
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
@@ -68,12 +68,12 @@ pub(super) fn place_walls(
             kinds: kinds.kinds.clone(),
         };
         let mut wall = Wall::new(Arc::new(model), frame);
-        let keeps = scene.run.start_overlap == StartOverlap::Keep;
+        let keeps = scene.run.initial_overlap == InitialOverlap::Keep;
         // What only touches presses by so little that it is left out, unless it is to be kept.
         let least_share = if keeps { 0.0 } else { ROUNDING };
         let touches = starting_touches(&wall, state, least_share);
         let is_through = touches.iter().any(|(_, touch)| touch.distance_m < 0.0);
-        if is_through || scene.run.start_overlap == StartOverlap::Refuse {
+        if is_through || scene.run.initial_overlap == InitialOverlap::Refuse {
             refuse_touches(&place, name, &wall, &touches, bodies, state)?;
         }
         wall.touching = touches
@@ -151,15 +151,12 @@ fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Resul
     ))
 }
 
-/// Turned as `rotation` says, then tilted about y, both about the pivot.
+/// Rotated about the pivot as `rotation` says.
 fn frame(entry: &SceneWall) -> Frame {
     let upright = [0.0, 0.0, 0.0, 1.0];
     Frame {
         position_m: entry.pivot_m,
-        turned: turn(
-            turn(upright, entry.rotation_rad),
-            [0.0, entry.tilt_rad, 0.0],
-        ),
+        turned: turn(upright, entry.rotation_rad),
     }
 }
 
@@ -216,7 +213,7 @@ fn refuse_touches(
         }
         (_, true) => "move the body or the wall: its centre is inside",
         _ => {
-            "move the body or the wall; or run.start_overlap = \"relax\" takes the overlap as the place where they begin to press, and \"keep\" lets them press with all of it"
+            "move the body or the wall; or run.initial_overlap = \"relax\" takes the overlap as the origin of the contact law, and \"keep\" applies the full contact force"
         }
     };
     Err(Diagnostic::input(

@@ -86,7 +86,7 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 place_m,
                 Some(kinetic_after - kinetic),
                 format!(
-                    "cluster {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
+                    "fragment {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
                 ),
             ),
             PopulationEvent::Restored {
@@ -100,7 +100,7 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 "quiet",
                 place_m,
                 Some(*lost_j),
-                format!("cluster {cluster} ({body}): {particles} particles"),
+                format!("fragment {cluster} ({body}): {particles} particles"),
             ),
             PopulationEvent::Came {
                 cluster,
@@ -108,11 +108,11 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 inlet,
                 place_m,
             } => (
-                "came",
+                "fed",
                 inlet.as_str(),
                 place_m,
                 None,
-                format!("cluster {cluster} ({body})"),
+                format!("fragment {cluster} ({body})"),
             ),
             PopulationEvent::Left {
                 cluster,
@@ -120,11 +120,11 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 mass_kg,
                 place_m,
             } => (
-                "left",
+                "discharged",
                 outlet.as_str(),
                 place_m,
                 None,
-                format!("cluster {cluster}: {mass_kg:e} kg"),
+                format!("fragment {cluster}: {mass_kg:e} kg"),
             ),
         };
         files.events.append(&[Event {

@@ -115,7 +115,7 @@ pub(super) fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnost
             "go on with the same command and --resume: '{}' holds its state",
             files.folder.checkpoint().display()
         ),
-        None => "with --out FOLDER its state would have been kept".to_owned(),
+        None => "with --output FOLDER its state would have been kept".to_owned(),
     };
     Diagnostic::interrupted(
         format!(

@@ -69,7 +69,11 @@ impl<'a> Limits<'a> {
         Self {
             smallest_radius_m: state.smallest_radius_m(),
             extremes: extremes(state),
-            safety: scene.run.time_step_s.is_none().then_some(scene.run.safety),
+            safety: scene
+                .run
+                .time_step_s
+                .is_none()
+                .then_some(scene.run.safety_factor),
             end_s: scene.run.end_time_s,
             adaptive: scene.run.adaptive.then(|| Adaptive {
                 scene,
@@ -187,7 +191,8 @@ impl<'a> Limits<'a> {
             progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
             progress.strain = progress.bound_strain;
             let is_larger = outlook.step_s >= LARGER * state.time_step_s;
-            let is_unstable = state.time_step_s > adaptive.scene.run.safety * outlook.foreseen_s;
+            let is_unstable =
+                state.time_step_s > adaptive.scene.run.safety_factor * outlook.foreseen_s;
             if is_larger || is_unstable || state.time_step_s > SMALLER * outlook.step_s {
                 self.set(state, outlook.step_s, "adaptive", progress, files)?;
             }

@@ -152,7 +152,7 @@ impl Progress {
         if self.rested && rhythm.rest == self.rhythm.rest {
             return Some((
                 format!("this run has come to rest at {before_s:.6e} s"),
-                "set a smaller run.rest",
+                "set a smaller run.rest_energy_ratio",
             ));
         }
         self.broke.then(|| {

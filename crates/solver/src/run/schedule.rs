@@ -52,7 +52,7 @@ impl OutputSchedule {
             row_s: output.series_s.unwrap_or(usual),
             frame_s: output.frames_s,
             checkpoint_s: output.checkpoint_s,
-            rest: scene.run.rest,
+            rest: scene.run.rest_energy_ratio,
         }
     }
 }

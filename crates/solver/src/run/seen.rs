@@ -253,7 +253,7 @@ impl Seen {
                     .map(|time| format!("the time {} s", significant(time, 4))),
             ];
             let trigger: Vec<String> = trigger.into_iter().flatten().collect();
-            let joined = trigger.join(if rule.needs_all { " and " } else { " or " });
+            let joined = trigger.join(if rule.requires_all { " and " } else { " or " });
             warnings.push(format!(
                 "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break"
             ));

@@ -96,7 +96,12 @@ impl<'a> Snapshot<'a> {
     /// Says what has changed.
     pub fn check_scene(&self, scene: &str) -> Result<()> {
         let may_change = |key: &str| {
-            const RUN: [&str; 4] = ["run.end_time", "run.rest", "run.time_step", "run.safety"];
+            const RUN: [&str; 4] = [
+                "run.end_time",
+                "run.rest_energy_ratio",
+                "run.time_step",
+                "run.safety_factor",
+            ];
             RUN.contains(&key) || key.starts_with("output") || key.ends_with(".file")
         };
         let values = |text: &str| -> BTreeMap<String, String> {

@@ -1,7 +1,7 @@
 //! Bonds that have reached their strength break: checked once more by themselves, with the rate of
 //! their elongation where it strengthens them.
 
-use dem_io::scene::RateOf;
+use dem_io::scene::StrainRateMeasure;
 use nalgebra::Vector3;
 
 use super::bonds::bonds_to_come;
@@ -39,7 +39,7 @@ pub const FAILURE: Stage = Stage {
 
 /// Their strength by the rate of strain.
 pub const RATES: Stage = Stage {
-    name: "strength by rate",
+    name: "rate strengthening",
     within: Some(FAILURE.name),
     need: |state, _| {
         let mut rules = state.bonds.rules.iter();
@@ -55,7 +55,7 @@ pub const RATES: Stage = Stage {
 
 /// Strengths that vary from bond to bond.
 pub const SCATTER: Stage = Stage {
-    name: "scattered strength",
+    name: "strength scatter",
     within: Some(FAILURE.name),
     need: |state, _| {
         let mut templates = state.clumps.templates.iter();
@@ -185,8 +185,10 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
         let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
         let length_m = bonds.initial_length_m(at);
         let rate_1_s = match rule.rate_of {
-            RateOf::Elongation => elongation_rate(&c, &velocities, length_m),
-            RateOf::RelativeVelocity => (velocities[1] - velocities[0]).norm() / length_m,
+            StrainRateMeasure::Elongation => elongation_rate(&c, &velocities, length_m),
+            StrainRateMeasure::RelativeVelocity => {
+                (velocities[1] - velocities[0]).norm() / length_m
+            }
         };
         dynamic_increase_factor(rate_1_s, from)
     });

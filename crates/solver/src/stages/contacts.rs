@@ -27,7 +27,7 @@ use crate::state::particles::{Particles, Wrench};
 
 /// Contacts of particles.
 pub const CONTACTS: Stage = Stage {
-    name: "contacts of particles",
+    name: "particle contacts",
     within: None,
     need: |state, scene| {
         let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());

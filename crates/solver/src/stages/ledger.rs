@@ -21,7 +21,7 @@ use serde::Serialize;
 
 /// The ledgers of energy and momentum.
 pub const LEDGER: Stage = Stage {
-    name: "ledger",
+    name: "energy balance",
     within: None,
     need: |_, _| Need::Needed("energy and momentum".to_owned()),
     bytes: |_| 0,
@@ -147,7 +147,7 @@ pub struct Balance {
     /// Dissipated by damping of bonds, J.
     pub bond_damping_j: f64,
     /// Dissipated by damping of particles, J.
-    pub particle_damping_j: f64,
+    pub local_damping_j: f64,
     /// Elastic, of contacts, J.
     pub contact_elastic_j: f64,
     /// Dissipated by damping of contacts, J.
@@ -155,11 +155,11 @@ pub struct Balance {
     /// Dissipated by friction of contacts, sliding and rolling, J.
     pub friction_j: f64,
     /// Released by bonds that broke, J.
-    pub released_j: f64,
+    pub bond_breakage_j: f64,
     /// That bodies brought which came, less what those took along that went, and what clumps and
     /// clusters gained as they took each other's place; less the motion that bodies had when they
     /// fell asleep, J.
-    pub brought_j: f64,
+    pub flow_energy_j: f64,
     /// What is there less what should be, J.
     pub energy_error_j: f64,
     /// The same over the largest energy or work so far.
@@ -360,12 +360,12 @@ pub fn balance(state: &mut State) -> Balance {
         support_work_j: work.supports,
         wall_work_j: wall_work,
         bond_damping_j: work.bond_damping,
-        particle_damping_j: work.particle_damping,
+        local_damping_j: work.particle_damping,
         contact_elastic_j: contact_elastic,
         contact_damping_j: contact_damping,
         friction_j: friction,
-        released_j: ledger.released_j,
-        brought_j: ledger.brought_j,
+        bond_breakage_j: ledger.released_j,
+        flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),
         energy_scale_j: ledger.scale_j,

@@ -17,7 +17,7 @@ const PARTICLE_DAMPING_NS: f64 = 37.6;
 
 /// Damping of particles.
 pub const PARTICLE_DAMPING: Stage = Stage {
-    name: "particle damping",
+    name: "local damping",
     within: None,
     need: |state, _| {
         let gamma = state.model.particle_damping;

@@ -472,7 +472,7 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
         }
         WallMotion::Displacement {
             displacement_m,
-            turn_rad,
+            angular_displacement_rad: turn_rad,
             factor,
         } => {
             let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
@@ -484,7 +484,7 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
         WallMotion::Servo {
             force_n,
             direction,
-            largest_velocity_m_s,
+            max_velocity_m_s: largest_velocity_m_s,
             factor,
         } => {
             // Without damping, which follows from the wall's own velocity: in a circle the two

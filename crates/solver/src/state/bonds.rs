@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use dem_io::scene::RateOf;
+use dem_io::scene::StrainRateMeasure;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub struct BondRule {
     /// Strain rate from which strengths rise with the rate, 1/s. None: never.
     pub strengthening_from_1_s: Option<f64>,
     /// What that rate is of.
-    pub rate_of: RateOf,
+    pub rate_of: StrainRateMeasure,
 }
 
 /// Bonds in a block.

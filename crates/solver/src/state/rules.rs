@@ -48,7 +48,7 @@ pub enum Feed {
 pub struct Inlet {
     /// Its name in the scene.
     pub name: String,
-    /// Templates and their shares by number, which add up to 1.
+    /// Templates and their proportions by number, which add up to 1.
     pub templates: Vec<(u32, f64)>,
     /// Where centres of mass are put: number in [`Rules::regions`].
     pub region: usize,

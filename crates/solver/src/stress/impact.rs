@@ -132,7 +132,7 @@ materials.m = {{ density = {}, young_modulus = {:e}, poisson_ratio = 0.3 }}
 contacts.m-m = {{ restitution = {} }}
 bodies.ball = {{ particles = [[0, 0, {:e}, {:e}]], material = \"m\", velocity = [0, 0, {}], start_as = \"{}\" }}
 measures.rebound = {{ of = \"ball\", quantity = \"velocity_z\" }}
-measures.lowest_place = {{ of = \"ball\", quantity = \"position_z\", at = \"smallest\" }}
+measures.lowest_place = {{ of = \"ball\", quantity = \"position_z\", statistic = \"smallest\" }}
 measures.last_place = {{ of = \"ball\", quantity = \"position_z\" }}
 output = {{ series = {:e} }}
 ",

@@ -103,19 +103,29 @@ pub fn map() -> Result<Vec<Member>> {
     for model in models {
         for eta in etas {
             for formulation in ["total", "incremental"] {
-                members.push(of(model, formulation, &format!("viscous = {eta}"), "0")?);
+                members.push(of(
+                    model,
+                    formulation,
+                    &format!("damping_ratio = {eta}"),
+                    "0",
+                )?);
             }
         }
     }
     for damping in [
-        "viscous = 0.3, each_mode = true",
-        "viscous = 10, each_mode = true",
-        "force = \"30 N s/m\", torque = 1",
+        "damping_ratio = 0.3, per_mode = true",
+        "damping_ratio = 10, per_mode = true",
+        "damping_coefficient = \"30 N s/m\", torque_factor = 1",
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
-    for particle_damping in ["0.1", "0.5", "0.9"] {
-        members.push(of("timoshenko", "total", "viscous = 0", particle_damping)?);
+    for local_damping in ["0.1", "0.5", "0.9"] {
+        members.push(of(
+            "timoshenko",
+            "total",
+            "damping_ratio = 0",
+            local_damping,
+        )?);
     }
     Ok(members)
 }
@@ -124,10 +134,10 @@ pub fn map() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
-pub fn of(model: &str, formulation: &str, damping: &str, particle_damping: &str) -> Result<Member> {
+pub fn of(model: &str, formulation: &str, damping: &str, local_damping: &str) -> Result<Member> {
     let scene = format!(
         "version = 1
-run = {{ end_time = \"1 s\", particle_damping = {particle_damping} }}
+run = {{ end_time = \"1 s\", local_damping = {local_damping} }}
 materials.rock.density = 2500
 bonds.rock = {{ model = \"{model}\", formulation = \"{formulation}\", young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ {damping} }} }}
 bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
@@ -137,9 +147,9 @@ bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
         bodies: vec![("block.vtp", block(3, 0.0, DISTURBANCE)?)],
         ..Trial::of(scene)
     };
-    let of_particles = match particle_damping {
+    let of_particles = match local_damping {
         "0" => String::new(),
-        gamma => format!(", particle_damping = {gamma}"),
+        gamma => format!(", local_damping = {gamma}"),
     };
     let name = match formulation {
         "total" => model.to_owned(),
@@ -221,9 +231,9 @@ pub fn beside_the_limit() -> Result<Vec<Member>> {
                 "version = 1
 run = {{ end_time = {end_s:e}, time_step = {time_step} }}
 materials.rock.density = 2500
-bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
+bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = {eta} }} }}
 bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
-measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"largest\" }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"largest\" }}
 "
             )
         };
@@ -261,7 +271,7 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"largest\" }}
             trial: trial(&above, end_s, true)?,
             way: Way::Run,
             prediction: Prediction::Stopped(vec![
-                "have come from nowhere".to_owned(),
+                "of energy were created".to_owned(),
                 "began at 1.020 of the largest stable one".to_owned(),
             ]),
         });

@@ -62,8 +62,8 @@ pub fn spin() -> Result<Vec<Member>> {
             "version = 1
 run = {{ end_time = {:e}, time_step = {step_s:e} }}
 materials.rock.density = {density}
-bonds.rock = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.25, damping = {{ viscous = {eta} }} }}
-measures.elastic_energy = {{ quantity = \"elastic_energy\", at = \"{}\" }}
+bonds.rock = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.25, damping = {{ damping_ratio = {eta} }} }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"{}\" }}
 [bodies.pair]
 particles = [[0, 0, 0, {radius_m:e}], [{length_m:e}, 0, 0, {radius_m:e}]]
 bond_list = [[0, 1]]
@@ -126,7 +126,7 @@ pub fn rest(interrupted: &AtomicBool) -> Result<Vec<Member>> {
 run = {{ end_time = {end_s:e}, time_step = {REST_STEP_S}, gravity = {gravity} }}
 materials.m = {{ density = {density}, young_modulus = {young_pa:e}, poisson_ratio = 0.3 }}
 contacts.m-m = {{ restitution = 0.3, friction = 0.6 }}
-bonds.m = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.3, damping = {{ viscous = 0.3 }} }}
+bonds.m = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.3, damping = {{ damping_ratio = 0.3 }} }}
 walls.floor = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"m\" }}
 measures.height = {{ quantity = \"position_z\" }}
 measures.way = {{ quantity = \"position_x\" }}

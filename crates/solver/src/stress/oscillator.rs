@@ -184,7 +184,7 @@ bodies.row = {{ file = \"row.vtp\", material = \"m\", bonds = \"b\" }}
             x += self.distances_m.get(i).copied().unwrap_or(0.0);
             let name = ["first", "second", "third"][i.min(2)];
             text += &format!(
-                "sets.{name} = {{ body = \"row\", particles = [{i}] }}
+                "groups.{name} = {{ body = \"row\", particles = [{i}] }}
 measures.{name}_moved = {{ of = \"{name}\", quantity = \"displacement_x\" }}
 "
             );

@@ -110,7 +110,7 @@ fn pair_of_steel() -> Reduced {
 }
 
 #[test]
-fn the_thesis_damps_with_its_equations_7_and_9() {
+fn platzer_damps_with_its_equations_7_and_9() {
     let (k, pair) = (
         steel(BondModel::ShearCoefficient { alpha: 0.9 }),
         pair_of_steel(),

@@ -289,7 +289,7 @@ fn each_edge_has_a_strength_of_its_own() {
         }
     }
     // The equivalent stress leaves out the axial part only.
-    let thesis = Criteria {
+    let platzer = Criteria {
         von_mises_pa: 2.0,
         ..NONE
     };
@@ -298,8 +298,8 @@ fn each_edge_has_a_strength_of_its_own() {
         bending_pa: 1.0,
         ..Stresses::default()
     };
-    assert_eq!(utilisation(&thesis, &bent(-3.0), ONE), 0.5);
-    assert_eq!(utilisation(&thesis, &bent(3.0), ONE), 2.0);
+    assert_eq!(utilisation(&platzer, &bent(-3.0), ONE), 0.5);
+    assert_eq!(utilisation(&platzer, &bent(3.0), ONE), 2.0);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! branches meet.
 
 use dem_run::physics::bond::strain_rate::{
-    THESIS_FROM_1_S, dynamic_increase_factor, elongation_rate,
+    PLATZER_LOWEST_RATE_1_S, dynamic_increase_factor, elongation_rate,
 };
 use nalgebra::Vector3;
 
@@ -60,12 +60,12 @@ fn the_printed_fit_dips_above_a_tenth_per_second() {
 #[test]
 fn shortening_and_slow_bonds_are_not_strengthened() {
     for rate in [-1e3, -1.0, -1e-9, 0.0, 1e-9, 1.0] {
-        assert_eq!(dynamic_increase_factor(rate, THESIS_FROM_1_S), 1.0);
+        assert_eq!(dynamic_increase_factor(rate, PLATZER_LOWEST_RATE_1_S), 1.0);
     }
     for rate in [-1e3, -1e-9, 0.0] {
         assert_eq!(dynamic_increase_factor(rate, 0.0), 1.0);
     }
-    let there = dynamic_increase_factor(THESIS_FROM_1_S, THESIS_FROM_1_S);
+    let there = dynamic_increase_factor(PLATZER_LOWEST_RATE_1_S, PLATZER_LOWEST_RATE_1_S);
     assert!((there - 1.652).abs() < 5e-4, "{there}");
 }
 

@@ -17,10 +17,10 @@ fn busy(threads: usize) -> Plan {
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.01] }")
         .replace("rate = 60", "rate = 400")
         .replace("min = [-1, -1, -1], max = [1, 1, 0.014]", "min = [-1, -1, 2e-3], max = [1, 1, 0.014]")
-        .replace("when = { enters = \"low\" }", "when = { enters = \"low\" }\nback = { leaves = \"low\", min_particles = 2, strain_energy = 10, inner_speed = 1 }")
+        .replace("when = { enters = \"low\" }", "when = { enters = \"low\" }\nrestore = { leaves = \"low\", min_particles = 2, strain_energy = 10, fluctuation_velocity = 1 }")
         .replace(
             "1e7, damping",
-            "1e7, failure = { tension = 1e4, shear = 1e4, weibull_modulus = 5 }, damping",
+            "1e7, failure = { tensile_strength = 1e4, shear_strength = 1e4, weibull_modulus = 5 }, damping",
         );
     let mut plan = planned(&text);
     let state = &mut plan.state;

@@ -12,7 +12,7 @@ use super::{HEAD, lump, planned};
 /// it and go.
 pub(crate) fn feed(restitution: f64, outlet: &str) -> String {
     let head = HEAD
-        .replace("1e9,", "1e7, damping = { viscous = 0.1 },")
+        .replace("1e9,", "1e7, damping = { damping_ratio = 0.1 },")
         .replace("1e8", "1e7");
     let fed = lump("lump", "start_as = \"clump\"");
     format!(
@@ -197,7 +197,7 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     let fed = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
     let text = fed.replace(
         "1e7, damping",
-        "1e7, failure = { tension = 1e3, shear = 1e3 }, damping",
+        "1e7, failure = { tensile_strength = 1e3, shear_strength = 1e3 }, damping",
     );
     let Plan {
         mut state,

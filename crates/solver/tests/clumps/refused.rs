@@ -43,8 +43,8 @@ fn replacement_without_bonds() {
 fn particle_damping() {
     let body = lump("lump", "start_as = \"clump\"");
     refused(
-        &format!("{HEAD}run.particle_damping = 0.2\n{body}"),
-        "run.particle_damping",
+        &format!("{HEAD}run.local_damping = 0.2\n{body}"),
+        "run.local_damping",
         "clumps",
         "leave it out",
     );

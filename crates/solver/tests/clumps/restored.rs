@@ -21,7 +21,7 @@ fn flying() -> State {
     );
     let mut state = planned(&format!(
         "{HEAD}{body}[replacement.lump]\nwhen = {{ time = 0 }}\n\
-         back = {{ leaves = \"far\", min_particles = 2, strain_energy = 1e3, inner_speed = 10 }}\n\
+         restore = {{ leaves = \"far\", min_particles = 2, strain_energy = 1e3, fluctuation_velocity = 10 }}\n\
          [regions.far]\nbox = {{ min = [10, 10, 10], max = [11, 11, 11] }}\n"
     ))
     .state;
@@ -155,7 +155,7 @@ fn books_hold_over_what_becomes_rigid_again() {
         )
         .replace(
             "when = { enters = \"low\" }",
-            "when = { enters = \"low\" }\nback = { leaves = \"low\", min_particles = 2 }",
+            "when = { enters = \"low\" }\nrestore = { leaves = \"low\", min_particles = 2 }",
         );
     let books = [4e-6, 2e-6].map(|step_s| booked(&text, step_s, 0.2));
     for books in &books {

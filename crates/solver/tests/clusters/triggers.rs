@@ -19,7 +19,7 @@ fn searches(triggers: Triggers, breaks: &[u64]) -> Vec<u64> {
 const BREAKS: [u64; 6] = [3, 3, 7, 60, 170, 390];
 
 #[test]
-fn the_four_triggers_of_the_thesis() {
+fn the_four_triggers_of_platzer() {
     assert_eq!(
         searches(Triggers::every_step(), &BREAKS),
         [3, 7, 60, 170, 390]

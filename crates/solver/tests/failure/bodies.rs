@@ -50,7 +50,7 @@ pub(crate) const SHEAR: Criteria = Criteria {
     shear_pa: 0.6 * STRENGTH_PA,
     ..NONE
 };
-/// The thesis' equivalent stress.
+/// The equivalent stress of Platzer 2022, eq. 13.
 pub(crate) const VON_MISES: Criteria = Criteria {
     von_mises_pa: 1.1 * STRENGTH_PA,
     ..NONE
@@ -92,7 +92,7 @@ pub(crate) fn bonded(
             damped: false,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
-            rate_of: dem_io::scene::RateOf::Elongation,
+            rate_of: dem_io::scene::StrainRateMeasure::Elongation,
         }]),
         ..Bonds::default()
     };

@@ -106,7 +106,7 @@ fn books_stay_closed_through_breaks() {
                 for (_, momentum, broken, last) in &found {
                     assert!(*momentum < 1e-12, "{what}: momentum off by {momentum}");
                     assert!(
-                        *broken >= 3 && last.released_j > 0.0,
+                        *broken >= 3 && last.bond_breakage_j > 0.0,
                         "{what}: {broken} breaks"
                     );
                 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::RateOf;
+use dem_io::scene::StrainRateMeasure;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{advance, interact};
 
@@ -26,7 +26,7 @@ fn pulled(
         criteria,
         from_1_s,
         incremental,
-        RateOf::Elongation,
+        StrainRateMeasure::Elongation,
     )
 }
 
@@ -36,7 +36,7 @@ fn pulled_by(
     criteria: Criteria,
     from_1_s: Option<f64>,
     incremental: bool,
-    rate_of: RateOf,
+    rate_of: StrainRateMeasure,
 ) -> Option<(f64, Cause)> {
     let mut state = rod(1, criteria, incremental);
     Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = from_1_s;
@@ -67,7 +67,7 @@ fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what
     );
 }
 
-/// Worked by hand from the thesis' eq. 20 with its parentheses.
+/// Worked by hand from Platzer 2022, eq. 20, with its parentheses.
 const TABLE: [(f64, f64); 9] = [
     (1e-6, 1.0),
     (4.64e-6, 1.0),
@@ -119,7 +119,10 @@ fn below_the_rate_that_is_set_nothing_is_strengthened() {
 fn pressed_bonds_are_not_strengthened() {
     on_one_thread(|| {
         for rate in [-1e-3, -1.0, -10.0] {
-            for rate_of in [RateOf::Elongation, RateOf::RelativeVelocity] {
+            for rate_of in [
+                StrainRateMeasure::Elongation,
+                StrainRateMeasure::RelativeVelocity,
+            ] {
                 for incremental in [false, true] {
                     let found = pulled_by(rate, PRESSED, Some(0.0), incremental, rate_of);
                     let what = format!("{rate}/s, {rate_of:?}");
@@ -159,7 +162,7 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
 #[test]
 fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {
-        let breaks = |rate_of: RateOf| {
+        let breaks = |rate_of: StrainRateMeasure| {
             let mut state = rod(1, NORMAL, false);
             Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(1.0);
             Arc::make_mut(&mut state.bonds.rules)[0].rate_of = rate_of;
@@ -188,7 +191,7 @@ fn turning_strengthens_by_the_printed_rate_alone() {
             }
             false
         };
-        assert!(breaks(RateOf::Elongation));
-        assert!(!breaks(RateOf::RelativeVelocity));
+        assert!(breaks(StrainRateMeasure::Elongation));
+        assert!(!breaks(StrainRateMeasure::RelativeVelocity));
     });
 }

@@ -149,7 +149,7 @@ fn scene_of(names: &[&str], more: &str) -> String {
         materials.stuff = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }\n\
         contacts.stuff-stuff = { restitution = 0.5, friction = 0.5 }\n\
         bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25, \
-        failure = { tension = 1e6, weibull_modulus = 5 } }\n"
+        failure = { tensile_strength = 1e6, weibull_modulus = 5 } }\n"
         .to_owned();
     for (x, name) in names.iter().enumerate() {
         let own = if *name == "lump" { more } else { "" };

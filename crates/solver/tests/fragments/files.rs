@@ -236,19 +236,19 @@ fn the_text_of_a_split_is_short_however_many_pieces_there_are() {
     let few = clusters(&[9, 9, 9, 1242, 38, 1204]);
     assert_eq!(
         split_text(&split(4..6), &few),
-        "cluster 3 -> 5, 4 (1204 + 38 particles)"
+        "fragment 3 -> 5, 4 (1204 + 38 particles)"
     );
     let nine = clusters(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
     assert_eq!(
         split_text(&split(0..9), &nine),
-        "cluster 3 -> 8, 7, 6, 5, 4, 3, 2, 1 (9 + 8 + 7 + 6 + 5 + 4 + 3 + 2 particles) and 1 more (1 particle)"
+        "fragment 3 -> 8, 7, 6, 5, 4, 3, 2, 1 (9 + 8 + 7 + 6 + 5 + 4 + 3 + 2 particles) and 1 more (1 particle)"
     );
     let mut dust = vec![1; 100_000];
     dust[70_000] = 500;
     let text = split_text(&split(0..100_000), &clusters(&dust));
     assert_eq!(
         text,
-        "cluster 3 -> 70000, 0, 1, 2, 3, 4, 5, 6 (500 + 1 + 1 + 1 + 1 + 1 + 1 + 1 particles) and 99992 more (99992 particles)"
+        "fragment 3 -> 70000, 0, 1, 2, 3, 4, 5, 6 (500 + 1 + 1 + 1 + 1 + 1 + 1 + 1 particles) and 99992 more (99992 particles)"
     );
 }
 

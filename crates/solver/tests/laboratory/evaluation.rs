@@ -11,7 +11,7 @@ use dem_run::plan::test_theory::{Beam, KAPPA};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,
-    load_distance_m: 0.08,
+    loading_span_m: 0.08,
     width_m: 0.03,
     height_m: 0.035,
 };
@@ -26,7 +26,7 @@ pub(crate) fn test(kind: TestKind) -> Test {
     Test {
         kind,
         body: "bar".to_owned(),
-        moves: vec!["pin".to_owned()],
+        crosshead: vec!["pin".to_owned()],
         direction: [0.0, 0.0, -1.0],
         stroke_m: 0.005,
         rate_m_s: Some(0.01),
@@ -35,8 +35,8 @@ pub(crate) fn test(kind: TestKind) -> Test {
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
-        span_m: None,
-        load_distance_m: None,
+        support_span_m: None,
+        loading_span_m: None,
         width_m: None,
         height_m: None,
         length_m: None,
@@ -131,7 +131,7 @@ density = 2000
 [bonds.clay]
 young_modulus = "15 MPa"
 poisson_ratio = 0.3
-failure = { von_mises = "0.185 MPa" }
+failure = { von_mises_strength = "0.185 MPa" }
 [bodies.bar]
 particles = [[0, 0, 0, 1]]
 material = "clay"
@@ -156,18 +156,21 @@ fn a_beam_by_its_force_and_way() {
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
     let by_travel = 1.0 / (1.0 / stiffness + SOFT);
     assert_near(result.figure("stiffness"), by_travel);
-    assert_near(result.figure("stiffness of the body"), stiffness);
-    assert_near(result.figure("modulus of the body"), 1.1 * MODULUS);
+    assert_near(result.figure("specimen stiffness"), stiffness);
+    assert_near(result.figure("specimen modulus"), 1.1 * MODULUS);
     let shear = BEAM.shear_over_bending(0.3, KAPPA);
     let without = by_travel / stiffness * 1.1 * MODULUS / (1.0 + shear);
     assert_near(result.figure("modulus without shear"), without);
     assert_near(result.figure("modulus with shear"), without * (1.0 + shear));
     assert_near(result.figure("failure force"), force);
     assert_near(result.figure("strength"), 1.1 * STRENGTH);
-    assert_near(result.figure("failure travel"), force / by_travel);
+    assert_near(
+        result.figure("crosshead travel at failure"),
+        force / by_travel,
+    );
     for name in [
-        "stiffness of the body",
-        "modulus of the body",
+        "specimen stiffness",
+        "specimen modulus",
         "failure force",
         "strength",
     ] {
@@ -179,13 +182,10 @@ fn a_beam_by_its_force_and_way() {
         found.map(|figure| figure.value)
     };
     assert_near(
-        calibrated("modulus of bonds for that wanted"),
+        calibrated("bond modulus for the target"),
         15e6 * MODULUS / (1.1 * MODULUS),
     );
-    assert_near(
-        calibrated("strength of bonds for that wanted"),
-        0.185e6 / 1.1,
-    );
+    assert_near(calibrated("bond strength for the target"), 0.185e6 / 1.1);
 
     let first = result.first_broken.clone().unwrap();
     assert_near(Some(first.force_n), 0.8 * force);
@@ -213,7 +213,7 @@ fn inertia_of_the_body_is_no_load() {
         row.reaction_n -= inertia_n;
     }
     let [slow, shaken] = [slow, shaken].map(|record| evaluated(&test, &setup, &record, true));
-    for name in ["stiffness", "modulus of the body", "failure force"] {
+    for name in ["stiffness", "specimen modulus", "failure force"] {
         assert_near(shaken.figure(name), slow.figure(name).unwrap());
     }
 }
@@ -232,7 +232,7 @@ fn fast_oscillations_are_left_out() {
         row.reaction_n += swing_n;
     }
     let result = evaluated_at(10.0, &test, &setup, &record, true);
-    assert_near(result.figure("stiffness of the body"), 2e4);
+    assert_near(result.figure("specimen stiffness"), 2e4);
     // The mean over five rows that end with the fall.
     assert_near(result.figure("failure force"), 50.0 * 0.998);
     let raw = evaluated(&test, &setup, &record, true);
@@ -271,7 +271,7 @@ fn a_body_that_holds_has_no_strength() {
     let test = test(TestKind::FourPointBending);
     let record = record(2e4, 50.0);
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, false);
-    for name in ["failure force", "strength", "failure travel"] {
+    for name in ["failure force", "strength", "crosshead travel at failure"] {
         assert_eq!(result.figure(name), None, "{name}");
     }
     assert_near(result.figure("largest force"), 50.0);
@@ -329,7 +329,10 @@ fn an_empty_record_has_no_figures() {
     let result = evaluated(&test, &setup(bar), &empty, false);
     assert!(result.figures.is_empty(), "{:?}", result.figures);
     let doubts = result.doubts().join("; ");
-    assert!(doubts.contains("no stiffness can be told"), "{doubts}");
+    assert!(
+        doubts.contains("the stiffness could not be determined"),
+        "{doubts}"
+    );
 }
 
 #[test]
@@ -341,7 +344,7 @@ fn bars_and_discs() {
         let result = evaluated(&test(kind), &setup(bar), &record, true);
         assert_near(result.figure("strength"), 200.0 / 0.0009);
         // By the elongation of the middle, which is 50 mm long.
-        assert_near(result.figure("modulus of the body"), 3e5 * 0.05 / 0.0009);
+        assert_near(result.figure("specimen modulus"), 3e5 * 0.05 / 0.0009);
         assert_near(result.figure("stiffness"), 1.0 / (1.0 / 3e5 + SOFT));
     }
     let disc = Specimen::Disc {

@@ -12,7 +12,7 @@ use super::evaluation::{PLACES, evaluated, record, setup, test};
 
 const BEAM: Beam = Beam {
     span_m: 0.17,
-    load_distance_m: 0.08,
+    loading_span_m: 0.08,
     width_m: 0.03,
     height_m: 0.035,
 };
@@ -26,7 +26,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
     assert_eq!(
         names,
-        ["travel of what loads", "deflection of the body", "theory"]
+        ["crosshead travel", "deflection of the specimen", "theory"]
     );
     // The body's line goes through the origin and ends where it broke.
     let of_body = &plot.lines[1].points;

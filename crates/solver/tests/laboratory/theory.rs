@@ -53,7 +53,7 @@ fn reference() -> (Reference, Beam) {
     let read: Reference = serde_json::from_str(include_str!("data/bending.json")).unwrap();
     let beam = Beam {
         span_m: read.input.L,
-        load_distance_m: read.input.d,
+        loading_span_m: read.input.d,
         width_m: read.input.b,
         height_m: read.input.h,
     };
@@ -131,7 +131,7 @@ fn finite_elements_agree_with_the_beam_with_shear() {
 fn one_pin_is_the_beam_of_the_text_books() {
     let beam = Beam {
         span_m: 0.16,
-        load_distance_m: 0.0,
+        loading_span_m: 0.0,
         width_m: 0.03,
         height_m: 0.02,
     };

@@ -71,28 +71,28 @@ fn of_bonds() {
     );
     expect(
         "damping of bonds",
-        &scene("", ", damping = { viscous = 0.1 }", "", ""),
+        &scene("", ", damping = { damping_ratio = 0.1 }", "", ""),
         &with(&FREE, &["bond damping"]),
         &with(&FREE, &["bond damping"]),
     );
     expect(
         "failure",
-        &scene("", ", failure = { tension = 1e12 }", "", ""),
+        &scene("", ", failure = { tensile_strength = 1e12 }", "", ""),
         &with(&FREE, &["failure"]),
         &with(&FREE, &["cluster search"]),
     );
     expect(
-        "scattered strength",
+        "strength scatter",
         &scene(
             "",
-            ", failure = { tension = 1e12, weibull_modulus = 5 }",
+            ", failure = { tensile_strength = 1e12, weibull_modulus = 5 }",
             "",
             "",
         ),
-        &with(&FREE, &["failure", "scattered strength"]),
-        &with(&FREE, &["cluster search", "scattered strength"]),
+        &with(&FREE, &["failure", "strength scatter"]),
+        &with(&FREE, &["cluster search", "strength scatter"]),
     );
-    let rate = ", failure = { tension = 1e12, rate_strengthening = true }";
+    let rate = ", failure = { tensile_strength = 1e12, rate_strengthening = true }";
     expect(
         "strength by rate, where no bond would break without it",
         &scene("", rate, "", ""),
@@ -102,7 +102,7 @@ fn of_bonds() {
     expect(
         "strength by rate, where bonds would",
         &scene("", &rate.replace("1e12", "1"), "", ""),
-        &with(&FREE, &["failure", "strength by rate", "cluster search"]),
+        &with(&FREE, &["failure", "rate strengthening", "cluster search"]),
         &with(&FREE, &["cluster search"]),
     );
 }
@@ -117,9 +117,9 @@ fn of_what_acts_on_particles() {
     );
     expect(
         "damping of particles",
-        &scene(", particle_damping = 0.1", "", "", ""),
-        &with(&FREE, &["particle damping"]),
-        &with(&FREE, &["particle damping"]),
+        &scene(", local_damping = 0.1", "", "", ""),
+        &with(&FREE, &["local damping"]),
+        &with(&FREE, &["local damping"]),
     );
     expect(
         "a load",
@@ -175,7 +175,7 @@ fn of_what_touches() {
         &searches,
         &searches,
     );
-    let touches = with(&searches, &["contacts of particles"]);
+    let touches = with(&searches, &["particle contacts"]);
     expect(
         "another that is touched",
         &scene("", "", "", &other(0.02, "")),
@@ -197,9 +197,9 @@ fn of_what_touches() {
     // Neighbours overlap; the pull tears them.
     let tears = scene(
         "",
-        ", failure = { tension = 10 }",
+        ", failure = { tensile_strength = 10 }",
         "",
-        &format!("{MEETS}[sets.end]\nbody = \"row\"\nparticles = [2]\n[loads.pull]\nof = \"end\"\nforce = [0.1, 0, 0]\n"),
+        &format!("{MEETS}[groups.end]\nbody = \"row\"\nparticles = [2]\n[loads.pull]\nof = \"end\"\nforce = [0.1, 0, 0]\n"),
     )
     .replace("0.02, 0, 0, 0.01", "0.019, 0, 0, 0.01");
     let parts = ["failure", "cluster search", "relaxation", "loads"];

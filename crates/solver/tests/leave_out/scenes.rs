@@ -34,7 +34,7 @@ fn assert_same(one: &State, other: &State) {
 fn spheres_that_meet_where_there_is_nothing_else_meet() {
     let (_, plan) = planned(
         "version = 1
-run = { end_time = 1, safety = 0.1 }
+run = { end_time = 1, safety_factor = 0.1 }
 materials.m = { density = 2000, young_modulus = 1e7 }
 contacts.m-m = { restitution = 1, friction = 0 }
 bodies.a = { particles = [[0, 0, 0, 1e-3]], material = \"m\", velocity = [1, 0, 0] }

@@ -17,7 +17,7 @@ fn mass_kg() -> f64 {
 fn ball(speed_m_s: f64, with: &str, law: &str, more: &str) -> String {
     let mut text = format!(
         "version = 1
-run = {{ end_time = 1, safety = 0.05 }}
+run = {{ end_time = 1, safety_factor = 0.05 }}
 materials.m = {{ density = {DENSITY}, young_modulus = {YOUNG_PA}, poisson_ratio = {POISSON} }}
 contacts.m-m = {{ restitution = 1, friction = 0{law} }}
 bodies.ball = {{ particles = [[0, 0, 6e-3, {RADIUS_M}]], material = \"m\", velocity = [0, 0, {}] }}
@@ -33,21 +33,21 @@ bodies.ball = {{ particles = [[0, 0, 6e-3, {RADIUS_M}]], material = \"m\", veloc
         ("contact_duration", "end"),
     ] {
         text += &format!(
-            "measures.{quantity} = {{ of = \"ball\", with = \"{with}\", quantity = \"{quantity}\", at = \"{at}\" }}\n"
+            "measures.{quantity} = {{ of = \"ball\", with = \"{with}\", quantity = \"{quantity}\", statistic = \"{at}\" }}\n"
         );
     }
     for quantity in ["force", "force_z"] {
         text += &format!(
-            "measures.{quantity} = {{ of = \"ball\", quantity = \"{quantity}\", at = \"largest\" }}\n"
+            "measures.{quantity} = {{ of = \"ball\", quantity = \"{quantity}\", statistic = \"largest\" }}\n"
         );
     }
-    text += "measures.impulse = { of = \"ball\", quantity = \"force_z\", at = \"mean\" }\n";
+    text += "measures.impulse = { of = \"ball\", quantity = \"force_z\", statistic = \"mean\" }\n";
     text
 }
 
 const FLOOR: &str =
     "walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"m\" }
-measures.on_floor = { of = \"floor\", quantity = \"force_z\", at = \"smallest\" }";
+measures.on_floor = { of = \"floor\", quantity = \"force_z\", statistic = \"smallest\" }";
 
 /// Largest force, largest overlap and duration, each to 1 %; and the force on the ball as such.
 fn assert_impact(text: &str, [force_n, overlap_m, duration_s]: [f64; 3], end_s: f64) {
@@ -122,10 +122,10 @@ start_as = \"clump\"
 [replacement.lump]
 when = { time = 3e-4 }
 [measures]
-force_x = { of = \"lump\", quantity = \"force_x\", at = \"mean\" }
-force_z = { of = \"lump\", quantity = \"force_z\", at = \"mean\" }
-with_floor = { of = \"lump\", with = \"floor\", quantity = \"contact_force_z\", at = \"mean\" }
-deepest = { of = \"lump\", with = \"floor\", quantity = \"contact_overlap\", at = \"largest\" }
+force_x = { of = \"lump\", quantity = \"force_x\", statistic = \"mean\" }
+force_z = { of = \"lump\", quantity = \"force_z\", statistic = \"mean\" }
+with_floor = { of = \"lump\", with = \"floor\", quantity = \"contact_force_z\", statistic = \"mean\" }
+deepest = { of = \"lump\", with = \"floor\", quantity = \"contact_overlap\", statistic = \"largest\" }
 duration = { of = \"lump\", with = \"floor\", quantity = \"contact_duration\" }
 speed_x = { of = \"lump\", quantity = \"velocity_x\" }
 speed_z = { of = \"lump\", quantity = \"velocity_z\" }
@@ -151,19 +151,19 @@ speed_z = { of = \"lump\", quantity = \"velocity_z\" }
 #[test]
 fn what_two_do_to_each_other_is_opposite() {
     let text = "version = 1
-run = { end_time = 1, safety = 0.3 }
+run = { end_time = 1, safety_factor = 0.3 }
 materials.m = { density = 2000, young_modulus = 1e7 }
 contacts.m-m = { restitution = 0.8, friction = 0.5 }
 bodies.a = { particles = [[0, 0, 0, 5e-3]], material = \"m\", velocity = [0, 0, 1], angular_velocity = [0, 90, 0] }
 bodies.b = { particles = [[1e-3, 0, 10.1e-3, 5e-3]], material = \"m\" }
 bodies.c = { particles = [[1e-3, 0, 20.2e-3, 5e-3]], material = \"m\" }
 [measures]
-ab = { of = \"a\", with = \"b\", quantity = \"contact_force_x\", at = \"mean\" }
-ba = { of = \"b\", with = \"a\", quantity = \"contact_force_x\", at = \"mean\" }
-bc = { of = \"b\", with = \"c\", quantity = \"contact_force_x\", at = \"mean\" }
-b = { of = \"b\", quantity = \"force_x\", at = \"mean\" }
+ab = { of = \"a\", with = \"b\", quantity = \"contact_force_x\", statistic = \"mean\" }
+ba = { of = \"b\", with = \"a\", quantity = \"contact_force_x\", statistic = \"mean\" }
+bc = { of = \"b\", with = \"c\", quantity = \"contact_force_x\", statistic = \"mean\" }
+b = { of = \"b\", quantity = \"force_x\", statistic = \"mean\" }
 ac = { of = \"a\", with = \"c\", quantity = \"contact_duration\" }
-all = { quantity = \"force\", at = \"largest\" }
+all = { quantity = \"force\", statistic = \"largest\" }
 ";
     let values = Measured::new(text).run(4e-3);
     let size = values["ab"].abs();

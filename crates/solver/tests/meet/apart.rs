@@ -49,7 +49,7 @@ fn cube(overlap: f64, extra: &str) -> String {
         "version = 1\nrun.end_time = 1\n\
          materials.cake = {{ density = 2000, young_modulus = \"10 MPa\" }}\n\
          contacts.cake-cake = {{ restitution = 0.5, friction = 0.5 }}\n\
-         bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ tension = 1e9 }} }}\n\
+         bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ tensile_strength = 1e9 }} }}\n\
          bodies.cube = {{ material = \"cake\", bonds = \"cake\", particles = [{particles}], bond_list = [{bonds}] }}\n{extra}"
     )
 }
@@ -64,7 +64,7 @@ fn vanish(state: &mut State, at: usize) {
 fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
     for overlap in [0.25, 0.5] {
         for per_step in [usize::MAX, 1] {
-            let Plan { mut state, .. } = planned(&cube(overlap, "run.safety = 0.05"));
+            let Plan { mut state, .. } = planned(&cube(overlap, "run.safety_factor = 0.05"));
             let start = state.particles.poses.clone();
             let bonds = state.bonds.len();
             let mut next = 0;
@@ -99,7 +99,7 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
 fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
     let text = cube(
         overlap,
-        &format!("clusters.interval = 1\nrun.safety = {safety}"),
+        &format!("clusters.interval = 1\nrun.safety_factor = {safety}"),
     );
     let Plan { mut state, .. } = planned(&text);
     let mut any = scattered();
@@ -159,9 +159,9 @@ const AWAY: [f64; 3] = [-0.5, 0.0, 0.0];
 fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Vec<Vector3<f64>> {
     let bonded = failure.is_some();
     let list = if bonded { ", bond_list = [[0, 1]]" } else { "" };
-    let failure = failure.unwrap_or("tension = 1");
+    let failure = failure.unwrap_or("tensile_strength = 1");
     let text = format!(
-        "version = 1\nrun.end_time = 1\nrun.time_step = {time_step_s}\nrun.start_overlap = \"relax\"\nclusters.interval = 1\n\
+        "version = 1\nrun.end_time = 1\nrun.time_step = {time_step_s}\nrun.initial_overlap = \"relax\"\nclusters.interval = 1\n\
          materials.cake = {{ density = 2000, young_modulus = \"10 MPa\" }}\n\
          contacts.cake-cake = {{ restitution = 0.5, friction = 0.5 }}\n\
          bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ {failure} }} }}\n\
@@ -184,10 +184,10 @@ fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Ve
 #[test]
 fn a_bond_without_strength_is_none() {
     for failure in [
-        "tension = 1e-3, shear = 1e-3",
-        "tension = 0, shear = \"0 Pa\"",
-        "von_mises = 0, tension = 0",
-        "tension = 0, shear = 0, rate_strengthening = true, weibull_modulus = 3",
+        "tensile_strength = 1e-3, shear_strength = 1e-3",
+        "tensile_strength = 0, shear_strength = \"0 Pa\"",
+        "von_mises_strength = 0, tensile_strength = 0",
+        "tensile_strength = 0, shear_strength = 0, rate_strengthening = true, weibull_modulus = 3",
     ] {
         for velocity_m_s in [INTO_EACH_OTHER, BY_EACH_OTHER, AWAY] {
             // It acts until it is looked at for the second time, and its cluster is searched a step
@@ -214,7 +214,10 @@ fn a_bond_without_strength_is_none() {
 /// It carries nothing: nothing of no strength is used.
 #[test]
 fn a_bond_without_strength_holds_a_body_at_rest_together() {
-    let text = cube(0.25, "").replace("tension = 1e9", "tension = 0, von_mises = 0");
+    let text = cube(0.25, "").replace(
+        "tensile_strength = 1e9",
+        "tensile_strength = 0, von_mises_strength = 0",
+    );
     let Plan { mut state, .. } = planned(&text);
     interact(&mut state);
     for at in 0..state.bonds.len() {
@@ -259,7 +262,10 @@ fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search
     let extra = "clusters.interval = 1\nrun.gravity = [0, 0, -9.81]\n\
          walls.floor = { plane = { point = [0, 0, -4e-3], normal = [0.2, 0.1, 1] }, material = \"cake\" }";
     let text = cube(0.25, extra)
-        .replace("tension = 1e9", "tension = 5e4, weibull_modulus = 2")
+        .replace(
+            "tensile_strength = 1e9",
+            "tensile_strength = 5e4, weibull_modulus = 2",
+        )
         .replace("bodies.cube = {", "bodies.cube = { velocity = [0, 0, -2],");
     let Plan { mut state, .. } = planned(&text);
     let mut looks = 0;

@@ -16,7 +16,7 @@ const HALF_M: f64 = 0.02;
 /// The sphere stands on the highest point of a wall, at the origin.
 fn scene(wall: &str) -> String {
     format!(
-        "version = 1\nrun.end_time = 1\nrun.safety = 0.2\nrun.gravity = [0, 0, -9.81]\n\
+        "version = 1\nrun.end_time = 1\nrun.safety_factor = 0.2\nrun.gravity = [0, 0, -9.81]\n\
          materials.glass = {{ density = 2500, young_modulus = \"50 MPa\", poisson_ratio = 0.25 }}\n\
          contacts.glass-glass = {{ restitution = 0.05, friction = 0.5 }}\n\
          bodies.ball = {{ particles = [[0, 0, {RADIUS_M}, {RADIUS_M}]], material = \"glass\" }}\n\
@@ -124,7 +124,7 @@ fn a_servo_pushes_as_hard_as_it_is_told() {
          bodies.ball = { particles = [[0, 0, 5e-3, 5e-3]], material = \"glass\" }\n\
          walls.ground = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"glass\" }\n\
          walls.press = { plane = { point = [0, 0, 10.1e-3], normal = [0, 0, -1] }, material = \"glass\", \
-         servo = { force = 2.5, direction = [0, 0, -1], velocity = 0.02 } }\n";
+         servo = { force = 2.5, direction = [0, 0, -1], max_velocity = 0.02 } }\n";
     let Plan { mut state, .. } = planned(text);
     while state.time_s < 0.1 {
         step(&mut state);
@@ -190,7 +190,7 @@ fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
         ("angular_velocity = [0, -10, 0]", 0.5),
         ("displacement = [0, 0, 0.05]\nramp = 0.1", 0.5),
         (
-            "turn = { axis = [0, 1, 0], angle = \"-45 deg\" }\nramp = 0.1",
+            "angular_displacement = { axis = [0, 1, 0], angle = \"-45 deg\" }\nramp = 0.1",
             0.39,
         ),
     ] {
@@ -207,14 +207,14 @@ fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
 #[test]
 fn half_the_safety_halves_the_step_of_impacts() {
     let plate = "plane = { point = [0, 0, -1], normal = [0, 0, 1] }";
-    let hertz = scene(plate).replace("run.safety = 0.2\n", "");
+    let hertz = scene(plate).replace("run.safety_factor = 0.2\n", "");
     let linear = hertz.replace(
         "friction",
         "law = \"linear\", normal_stiffness = 1e5, friction",
     );
     for text in [hertz, linear] {
         let with = |safety: f64| {
-            let safety = format!("run.end_time = 1\nrun.safety = {safety}");
+            let safety = format!("run.end_time = 1\nrun.safety_factor = {safety}");
             planned(&text.replace("run.end_time = 1", &safety))
         };
         let usual = planned(&text);

@@ -164,7 +164,7 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
         ("[0.01, 0.02, -0.002, 5e-3]", "7 mm", ""),
     ] {
         for overlap in ["refuse", "relax"] {
-            let run = format!("run.start_overlap = \"{overlap}\"");
+            let run = format!("run.initial_overlap = \"{overlap}\"");
             let error = tried(&scene(&solid, ball, &run)).err().unwrap();
             assert_eq!(error.exit_code(), 2);
             let said = error.to_string();
@@ -241,7 +241,9 @@ fn a_belt_moves_along_its_plane() {
             "write surface_velocity = [3, 0, 0], which is its part along the plane",
         ),
         (
-            format!("{level}\ntilt = \"30 deg\"\nsurface_velocity = [1, 0, 0]"),
+            format!(
+                "{level}\nrotation = {{ axis = [0, 1, 0], angle = \"30 deg\" }}\nsurface_velocity = [1, 0, 0]"
+            ),
             "write surface_velocity = [0.75, 0, -0.433012702]",
         ),
     ] {
@@ -256,7 +258,7 @@ fn a_belt_moves_along_its_plane() {
     for wall in [
         format!("{level}\nsurface_velocity = [3, -2, 0]"),
         format!("{level}\nsurface_velocity = [3, 0, 1e-7]"),
-        format!("{level}\ntilt = \"30 deg\"\nsurface_velocity = [0.75, 0, -0.433012702]"),
+        format!("{level}\nrotation = {{ axis = [0, 1, 0], angle = \"30 deg\" }}\nsurface_velocity = [0.75, 0, -0.433012702]"),
         // Of these, each side takes its part.
         "box = { min = [-1, -1, -1], max = [1, 1, 0] }\nsurface_velocity = [1, 0, 1]".to_owned(),
         "cylinder = { from = [0, -1, -1], to = [0, 1, -1], radius = 0.5 }\nsurface_velocity = [1, 0, 1]"

@@ -78,7 +78,7 @@ fn the_books_balance_whatever_the_walls_do() {
     };
     let shaken = WallMotion::Displacement {
         displacement_m: [1e-3, 0.0, 0.5e-3],
-        turn_rad: [0.0; 3],
+        angular_displacement_rad: [0.0; 3],
         factor: Factor::Ramp { until_s: 3e-3 },
     };
     let block = SolidBox::new([-4e-3, -4e-3, -12e-3], [4e-3, 4e-3, -5e-3]).unwrap();

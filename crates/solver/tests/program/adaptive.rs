@@ -29,7 +29,7 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
         summary(
             &bench,
             &good("following.toml"),
-            &["--out", out, "--set", &set],
+            &["--output", out, "--set", &set],
         )
     };
     let (following, falling) = (run("following", "true"), run("falling", "false"));
@@ -66,17 +66,17 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
 const DUMBBELL: &str = "version = 1
 run = { end_time = 4, ADAPTIVE }
 materials.stuff = { density = 2500 }
-bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25, failure = { tension = 1e5 } }
+bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25, failure = { tensile_strength = 1e5 } }
 [bodies.dumbbell]
 particles = [[0, 0, 0, 0.01], [0.02, 0, 0, 0.01]]
 bond_list = [[0, 1]]
 material = \"stuff\"
 bonds = \"stiff\"
-[sets.right]
+[groups.right]
 body = \"dumbbell\"
 particles = [1]
 [loads.pull]
-of = \"right\"
+group = \"right\"
 force = [100, 0, 0]
 [measures.right]
 of = \"right\"
@@ -88,7 +88,7 @@ fn without_anything_that_vibrates_steps_are_large_and_a_flight_is_the_same() {
     let bench = Bench::new();
     let run = |name: &str, adaptive: &str| {
         let scene = bench.write(name, DUMBBELL.replace("ADAPTIVE", adaptive));
-        summary(&bench, &scene, &["--out", &format!("{name}-out")])
+        summary(&bench, &scene, &["--output", &format!("{name}-out")])
     };
     let (following, falling) = (
         run("a.toml", "adaptive = true"),
@@ -175,7 +175,7 @@ hard-hard = { restitution = 1.0 }
 model="timoshenko"
 young_modulus="200 MPa"
 poisson_ratio=0.3
-failure={tension="1 GPa"}
+failure={tensile_strength="1 GPa"}
 [search]
 skin = 0.1
 [bodies.a]
@@ -190,7 +190,7 @@ velocity = [-1, 0, 0]
 model="timoshenko"
 young_modulus="1 kPa"
 poisson_ratio=0.3
-failure={tension="1 GPa"}
+failure={tensile_strength="1 GPa"}
 [bodies.stay]
 material = "gel"
 bonds = "soft"
@@ -212,10 +212,10 @@ quantity = "velocity_x"
 [measures.zz]
 of="a"
 quantity="position_x"
-at="largest"
+statistic="largest"
 [measures.e]
 quantity = "elastic_energy"
-at = "largest"
+statistic = "largest"
 "#;
 
 #[test]

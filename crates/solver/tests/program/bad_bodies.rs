@@ -21,7 +21,7 @@ fn assert_refused(bytes: &[u8], parts: &[&str]) {
     let bench = Bench::new();
     let scene = bench.write("scene.toml", SCENE);
     bench.write("sample.vtp", bytes);
-    let said = bench.bad(&scene, &["--out", "out"], 2);
+    let said = bench.bad(&scene, &["--output", "out"], 2);
     for part in ["scene.toml: [bodies.sample]: ", "sample.vtp: "]
         .iter()
         .chain(parts)
@@ -105,7 +105,7 @@ fn two_bonded_particles_at_one_place() {
     assert_eq!(
         said,
         format!(
-            "error: {}: [bodies.sample]: {}: bond 0: its two particles stand at the same place; move one of them, or remove the bond",
+            "error: {}: [bodies.sample]: {}: bond 0: its two particles are at the same place; move one of them, or remove the bond",
             scene.display(),
             file.display()
         )
@@ -161,9 +161,9 @@ fn what_a_scene_lacks_for_a_body() {
     // A density in the body's file will do.
     bench.write("sample.vtp", vtp_bytes(&row(5)));
     bench.good(&scene, &["--quiet"]);
-    let said = bench.bad(&scene, &["--set", "sets.one.particles=[5]"], 2);
+    let said = bench.bad(&scene, &["--set", "groups.one.particles=[5]"], 2);
     assert!(
-        said.contains("[sets.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
+        said.contains("[groups.one]: particle 5 does not exist: the body has 5 particles; use numbers from 0 to 4"),
         "{said}"
     );
 }
@@ -188,20 +188,25 @@ fn of_two_tables_the_right_one_is_named() {
         ("1,0,0,1", "line 4: its radius is 0 m"),
         ("1,0,1,-2", "line 4: its initial length is -2 m"),
     ] {
-        let bonds = format!("a,b,radius_m,initial_length_m\n0,1,1,2\n\n{bond}\n");
+        let bonds =
+            format!("particle_a,particle_b,bond_radius_m,initial_length_m\n0,1,1,2\n\n{bond}\n");
         let said = said_of_tables("csv", particles, &bonds);
         assert!(said.contains(&format!("x.bonds.csv: {place}")), "{said}");
     }
     let said = said_of_tables(
         "csv",
         &particles.replace("2,0,0,1", "2,0,0,0"),
-        "a,b\n0,1\n",
+        "particle_a,particle_b\n0,1\n",
     );
     assert!(
         said.contains("x.particles.csv: line 3: its radius is 0 m"),
         "{said}"
     );
-    let said = said_of_tables("csv", &particles.replace("2,", "0,"), "a,b\n0,1\n");
+    let said = said_of_tables(
+        "csv",
+        &particles.replace("2,", "0,"),
+        "particle_a,particle_b\n0,1\n",
+    );
     assert!(
         said.contains("x.bonds.csv: bond 0: its initial length is 0 m"),
         "{said}"

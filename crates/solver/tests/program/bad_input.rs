@@ -73,7 +73,7 @@ fn options() {
             &["--set run.end_time=soon", "soon"],
         ),
         (&["--set", "run.end_time=1 parsec"], &["parsec"]),
-        (&["--set", "loads.tip.of=top"], &["top"]),
+        (&["--set", "loads.tip.group=top"], &["top"]),
         (&["--body", "bar="], &["--body bar=", "no file is named"]),
         (&["--body", ""], &["no file is named"]),
         (&["--body", "rod=row.vtp"], &["no body 'rod'", "bar"]),
@@ -113,7 +113,7 @@ fn options() {
         &["--body a=none.vtp: the body 'a' has its file from --body a=row.vtp already"],
     );
     for option in [
-        &["--out", "x"][..],
+        &["--output", "x"][..],
         &["--set", "a=1"],
         &["--force"],
         &["--resume"],

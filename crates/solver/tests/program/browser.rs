@@ -78,7 +78,7 @@ fn the_page_of_a_sweep_can_be_read() {
             .current_dir(bench.path(""))
             .arg("sweep")
             .arg(study)
-            .args(["--quiet", "--force", "--out", "swept"])
+            .args(["--quiet", "--force", "--output", "swept"])
             .output()
             .unwrap();
         assert!(output.status.success(), "{output:?}");

@@ -24,8 +24,8 @@ fn says_the_step_and_why_stages_memory_and_time() {
         "11 particles, 10 bonds",
         "5.1651e-5 s chosen: 0.9 of the largest stable one",
         "Rayleigh's estimate",
-        "does           bond forces: 10 bonds",
-        "leaves out     gravity: no gravity",
+        "active         bond forces: 10 bonds",
+        "inactive       gravity: no gravity",
         "memory         about ",
         "run time       about ",
         "\nloads.tip.force ",
@@ -48,8 +48,8 @@ fn says_the_step_and_why_stages_memory_and_time() {
     assert!(
         bonds["bytes"].as_u64().unwrap() > 10 * 8 && bonds["ns_per_step"].as_f64().unwrap() > 0.0
     );
-    assert!(named("left_out", "bond history")["bytes"].as_u64().unwrap() > 0);
-    assert!(named("left_out", "walls")["bytes"].is_null());
+    assert!(named("inactive", "bond history")["bytes"].as_u64().unwrap() > 0);
+    assert!(named("inactive", "walls")["bytes"].is_null());
     for number in [
         "limit_s",
         "memory_bytes",
@@ -97,7 +97,7 @@ fn only_scenes_can_be_checked() {
         let output = dem_run().arg("check").args(options).output().unwrap();
         let (said, code) = super::refused(&output);
         assert_eq!(code, 2);
-        assert!(said.contains("this is no scene (.toml)"), "{said}");
+        assert!(said.contains("this is not a scene (.toml)"), "{said}");
     }
 }
 

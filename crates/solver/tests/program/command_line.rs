@@ -27,7 +27,7 @@ fn help_man_page_and_completions_name_every_option() {
             "--body",
             "--set",
             "--force-step",
-            "--out",
+            "--output",
             "--resume",
             "--quiet",
             "--json",
@@ -56,4 +56,17 @@ fn a_shell_that_is_none_is_refused() {
     let output = dem_run().args(["completions", "word"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn options_of_another_name_are_refused_with_the_new_one() {
+    for (old, new) in dem_run::cli::RENAMED {
+        for argument in [old.to_owned(), format!("{old}=1")] {
+            let done = dem_run().args(["scene.toml", &argument]).output().unwrap();
+            let said = String::from_utf8(done.stderr).unwrap();
+            assert_eq!(done.status.code(), Some(2), "{said}");
+            let expected = format!("error: {old}: is now called {new}; write {new}\n");
+            assert_eq!(said, expected);
+        }
+    }
 }

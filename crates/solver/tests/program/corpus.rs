@@ -19,7 +19,7 @@ fn every_bad_scene_is_refused_with_its_message() {
             .filter_map(|line| Some(line.split_once("#! ")?.1))
             .collect();
         assert_eq!(messages.len(), 1, "{name}: messages expected");
-        let said = bench.bad(&here, &["--out", "out"], 2);
+        let said = bench.bad(&here, &["--output", "out"], 2);
         let expected = format!("error: {}: {}", here.display(), messages[0])
             .replace("HERE", &bench.path("").display().to_string())
             .replace("//", "/");

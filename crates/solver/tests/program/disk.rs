@@ -31,7 +31,7 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
     let bench = Bench::new();
     let scene = good("breaking.toml");
     let script = format!(
-        "$DEM_RUN {} --out disk/out --set 'output.series=1e-9'; code=$?; cp -r disk/out kept; exit $code",
+        "$DEM_RUN {} --output disk/out --set 'output.series=1e-9'; code=$?; cp -r disk/out kept; exit $code",
         scene.display()
     );
     let Some(output) = on_a_small_disk(&bench, "300k", &script) else {
@@ -55,9 +55,18 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
     assert!(series.ends_with('\n'));
     bench.good(
         &scene,
-        &["--out", "kept", "--set", "output.series=1e-9", "--resume"],
+        &[
+            "--output",
+            "kept",
+            "--set",
+            "output.series=1e-9",
+            "--resume",
+        ],
     );
-    bench.good(&scene, &["--out", "whole", "--set", "output.series=1e-9"]);
+    bench.good(
+        &scene,
+        &["--output", "whole", "--set", "output.series=1e-9"],
+    );
     super::assert_same(&bench.path("kept"), &bench.path("whole"));
 }
 
@@ -66,7 +75,7 @@ fn a_disk_that_is_read_only() {
     for out in ["disk/empty", "disk/new"] {
         let bench = Bench::new();
         let script = format!(
-            "mkdir disk/empty && mount -o remount,ro disk && $DEM_RUN {} --out {out}",
+            "mkdir disk/empty && mount -o remount,ro disk && $DEM_RUN {} --output {out}",
             good("alone.toml").display()
         );
         let Some(output) = on_a_small_disk(&bench, "300k", &script) else {
@@ -86,12 +95,12 @@ fn a_folder_that_may_not_be_written_to() {
     let may_anyway = fs::write(bench.path("locked/try"), "").is_ok();
     if may_anyway {
         // The superuser may write anywhere; /proc takes no files from anyone.
-        let said = bench.bad(&good("alone.toml"), &["--out", "/proc/out"], 1);
+        let said = bench.bad(&good("alone.toml"), &["--output", "/proc/out"], 1);
         assert!(said.contains("/proc/out"), "{said}");
         return;
     }
     for out in ["locked", "locked/out"] {
-        let said = bench.bad(&good("alone.toml"), &["--out", out], 1);
+        let said = bench.bad(&good("alone.toml"), &["--output", out], 1);
         assert!(said.contains(out) && said.contains("permission"), "{said}");
     }
 }
@@ -101,7 +110,7 @@ fn a_full_disk_behind_standard_output() {
     let bench = Bench::new();
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
     let output = bench
-        .command(&good("alone.toml"), &["--out", "out"])
+        .command(&good("alone.toml"), &["--output", "out"])
         .stdout(full)
         .output()
         .unwrap();
@@ -120,7 +129,10 @@ fn a_standard_error_that_takes_nothing() {
     let codes = dem_testing::codes_without_standard_error(dem_run().arg("none.toml"));
     assert_eq!(codes, [Some(2); 2]);
     let bench = Bench::new();
-    let mut command = bench.command(&good("alone.toml"), &["--quiet", "--out", "out", "--force"]);
+    let mut command = bench.command(
+        &good("alone.toml"),
+        &["--quiet", "--output", "out", "--force"],
+    );
     let codes = dem_testing::codes_without_standard_error(&mut command);
     assert_eq!(codes, [Some(0); 2]);
 }
@@ -128,12 +140,12 @@ fn a_standard_error_that_takes_nothing() {
 #[test]
 fn folders_that_cannot_be_made() {
     let bench = Bench::new();
-    let said = bench.bad(&good("alone.toml"), &["--out", "/proc/out"], 1);
+    let said = bench.bad(&good("alone.toml"), &["--output", "/proc/out"], 1);
     assert!(
         said.starts_with("error: /proc/out: cannot be written: ") && said.contains("os error"),
         "{said}"
     );
-    let said = bench.bad(&good("alone.toml"), &["--out", "none/out"], 1);
+    let said = bench.bad(&good("alone.toml"), &["--output", "none/out"], 1);
     assert!(
         said.contains("none/out: there is no folder 'none'; make it first"),
         "{said}"
@@ -145,7 +157,7 @@ fn folders_that_cannot_be_made() {
 fn a_file_beyond_the_limit_of_the_shell() {
     let bench = Bench::new();
     let script = format!(
-        "ulimit -f 8; exec {} {} --out out --set output.series=1e-9",
+        "ulimit -f 8; exec {} {} --output out --set output.series=1e-9",
         dem_run().get_program().display(),
         good("breaking.toml").display()
     );
@@ -176,7 +188,7 @@ fn remnants_of_a_killed_run_go_with_the_next() {
     bench.write("out/checkpoint.dem", "");
     bench.write("out/.unfinished-a1B2c3", "half");
     bench.write("here.vtp", "");
-    bench.good(&good("breaking.toml"), &["--out", "out", "--force"]);
+    bench.good(&good("breaking.toml"), &["--output", "out", "--force"]);
     let files = names_in(&bench.path("out"));
     assert!(
         !files.iter().any(|name| name.starts_with(".unfinished")),

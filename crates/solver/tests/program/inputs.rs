@@ -39,7 +39,7 @@ fn results_do_not_take_the_place_of_inputs() {
     ] {
         scene(&bench, file, PLANE);
         for option in ["--force", "--resume"] {
-            let said = bench.bad(Path::new("scene.toml"), &["--out", ".", option], 2);
+            let said = bench.bad(Path::new("scene.toml"), &["--output", ".", option], 2);
             assert!(
                 said.starts_with(&format!("error: {file}: this is an input of the run, and results in '.' would take its place; name another folder")),
                 "{said}"
@@ -51,7 +51,7 @@ fn results_do_not_take_the_place_of_inputs() {
     scene(&bench, "elsewhere/body.vtp", PLANE);
     for name in ["series.csv", "summary.json"] {
         std::os::unix::fs::symlink(&kept, bench.path(name)).unwrap();
-        let said = bench.bad(Path::new("scene.toml"), &["--out", ".", "--force"], 2);
+        let said = bench.bad(Path::new("scene.toml"), &["--output", ".", "--force"], 2);
         assert!(
             said.contains("elsewhere/body.vtp: this is an input of the run"),
             "{said}"
@@ -59,7 +59,7 @@ fn results_do_not_take_the_place_of_inputs() {
         fs::remove_file(bench.path(name)).unwrap();
     }
     std::os::unix::fs::symlink(bench.path("scene.toml"), bench.path("events.csv")).unwrap();
-    let said = bench.bad(Path::new("scene.toml"), &["--out", ".", "--force"], 2);
+    let said = bench.bad(Path::new("scene.toml"), &["--output", ".", "--force"], 2);
     assert!(
         said.contains("scene.toml: this is an input of the run"),
         "{said}"
@@ -71,7 +71,7 @@ fn results_do_not_take_the_place_of_inputs() {
     let text = fs::read(bench.path("scene.toml")).unwrap();
     bench.good(
         Path::new("scene.toml"),
-        &["--out", ".", "--force", "--quiet"],
+        &["--output", ".", "--force", "--quiet"],
     );
     assert_eq!(fs::read(bench.path("own.vtp")).unwrap(), body);
     assert_eq!(fs::read(bench.path("scene.toml")).unwrap(), text);
@@ -84,7 +84,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     bench.write("row.vtp", vtp_bytes(&row(5)));
     bench.write("other.vtp", vtp_bytes(&row(4)));
     scene(&bench, "row.vtp", PLANE);
-    bench.good(Path::new("scene.toml"), &["--out", "out", "--quiet"]);
+    bench.good(Path::new("scene.toml"), &["--output", "out", "--quiet"]);
     let frame = names_in(&bench.path("out/frames")).remove(0);
     let frame = format!("out/frames/{frame}");
     std::os::unix::fs::symlink(bench.path(&frame), bench.path("link.vtp")).unwrap();
@@ -121,7 +121,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     // The body that was named on the command line is known from the checkpoint.
     bench.good(
         Path::new("scene.toml"),
-        &["--out", "other", "--body", "other.vtp", "--quiet"],
+        &["--output", "other", "--body", "other.vtp", "--quiet"],
     );
     assert!(fragment("other", "other.vtp").contains("'other.vtp' is read here"));
     // Others may be written, and written again.
@@ -144,7 +144,7 @@ fn a_step_limits_how_often_is_written() {
     // As many frames as steps, which are few, however short the interval is.
     bench.good(
         &good("alone.toml"),
-        &["--out", "out", "--set", "output.frames=1e-300 s"],
+        &["--output", "out", "--set", "output.frames=1e-300 s"],
     );
     let frames = names_in(&bench.path("out/frames")).len();
     assert!((2..100_000).contains(&frames), "{frames}");

@@ -87,7 +87,7 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
         &scene_of_data("cantilever.toml"),
         &[
             "--set",
-            "run.rest=1e-300",
+            "run.rest_energy_ratio=1e-300",
             "--set",
             "run.end_time=1000 s",
             "--quiet",
@@ -114,7 +114,7 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
         said
     );
     assert!(
-        said.ends_with("with --out FOLDER its state would have been kept"),
+        said.ends_with("with --output FOLDER its state would have been kept"),
         "{said}"
     );
     assert!(bench.files().is_empty());
@@ -133,13 +133,13 @@ fn a_folder_is_written_to_by_one_run_at_a_time() {
         "output.frames=1 s",
         "--set",
         "output.checkpoint=1 s",
-        "--out",
+        "--output",
         "out",
     ];
     let mut first = start(bench.command(&scene, &long));
     wait_until(&mut first, || lines(&bench.path("out/series.csv")) > 1);
     for option in [&[][..], &["--force"], &["--resume"]] {
-        let said = bench.bad(&scene, &[&["--out", "out"], option].concat(), 2);
+        let said = bench.bad(&scene, &[&["--output", "out"], option].concat(), 2);
         assert!(
             said.starts_with("error: out: another run is writing into it; wait"),
             "{said}"
@@ -149,7 +149,7 @@ fn a_folder_is_written_to_by_one_run_at_a_time() {
     send("-KILL", &first);
     first.wait().unwrap();
     // The lock went with the run.
-    bench.good(&scene, &["--out", "out", "--force"]);
+    bench.good(&scene, &["--output", "out", "--force"]);
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn before_a_run_nothing_is_waited_for() {
 #[test]
 fn a_checkpoint_stays_when_the_next_run_is_interrupted_too() {
     let bench = Bench::new();
-    let all = ["--set", "run.safety=0.02", "--out", "out"];
+    let all = ["--set", "run.safety_factor=0.02", "--output", "out"];
     let scene = good("breaking.toml");
     let first = interrupt(bench.command(&scene, &all), "-INT", &bench.path("out"), 5);
     assert!(first.is_some());

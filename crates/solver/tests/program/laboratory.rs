@@ -23,22 +23,22 @@ density = 2000
 [bonds.clay]
 young_modulus = "15 MPa"
 poisson_ratio = 0.3
-failure = {{ tension = "0.2 MPa" }}
+failure = {{ tensile_strength = "0.2 MPa" }}
 [bodies.bar]
 particles = [{}]
 bond_list = [{}]
 material = "clay"
 bonds = "clay"
-[sets.foot]
+[groups.foot]
 particles = [0]
-[sets.head]
+[groups.head]
 particles = [10]
 [supports.foot]
-of = "foot"
+group = "foot"
 fixed = true
 [test]
-kind = "tension"
-moves = ["head"]
+type = "tension"
+crosshead = ["head"]
 direction = [0, 0, 1]
 stroke = "1 mm"
 length = "40 mm"
@@ -54,10 +54,10 @@ strength = "0.2 MPa"
 
 fn figure<'a>(test: &'a Value, name: &str) -> &'a Value {
     [
-        "figures",
+        "results",
         "calibration",
         "dimensions",
-        "half_the_rate_changes",
+        "changes_at_half_the_rate",
     ]
     .iter()
     .flat_map(|part| test[part].as_array().unwrap())
@@ -77,23 +77,23 @@ fn summary(text: &str) -> Value {
 fn a_bar_that_is_pulled_has_the_modulus_and_the_strength_of_its_bonds() {
     let bench = Bench::new();
     let scene = bench.write("bar.toml", bar());
-    let said = summary(&bench.good(&scene, &["--json", "--out", "out"]));
+    let said = summary(&bench.good(&scene, &["--json", "--output", "out"]));
     assert_eq!(said["ended_by"], "breakage");
     let test = &said["test"];
     assert_eq!(test["broken"], true);
     for (name, wanted, tolerance) in [
-        ("modulus of the body", 15e6, 2e-3),
+        ("specimen modulus", 15e6, 2e-3),
         ("stiffness", 15e6 * PI * 4e-6 / 0.04, 2e-3),
         ("failure force", 0.2e6 * PI * 4e-6, 5e-3),
         ("strength", 0.2e6, 5e-3),
-        ("failure travel", 0.2 / 15.0 * 0.04, 1e-2),
-        ("strength over that of the bonds", 1.0, 5e-3),
+        ("crosshead travel at failure", 0.2 / 15.0 * 0.04, 1e-2),
+        ("specimen strength over bond strength", 1.0, 5e-3),
     ] {
         let off = value(test, name) / wanted - 1.0;
         assert!(off.abs() < tolerance, "{name}: {off}");
     }
     assert_eq!(test["first_broken"]["cause"], "tension");
-    let changes = test["half_the_rate_changes"].as_array().unwrap();
+    let changes = test["changes_at_half_the_rate"].as_array().unwrap();
     assert!(changes.len() >= 4, "{changes:?}");
     assert!(
         value_of_change(changes, "failure force").abs() < 0.01,
@@ -118,7 +118,13 @@ fn a_bar_that_is_pulled_has_the_modulus_and_the_strength_of_its_bonds() {
     // All of it can be replaced.
     bench.good(
         &scene,
-        &["--out", "out", "--force", "--set", "test.rate_check=false"],
+        &[
+            "--output",
+            "out",
+            "--force",
+            "--set",
+            "test.rate_check=false",
+        ],
     );
 }
 
@@ -131,20 +137,20 @@ fn value_of_change(changes: &[Value], name: &str) -> f64 {
 fn a_test_that_goes_on_says_the_same() {
     let bench = Bench::new();
     let scene = bench.write("bar.toml", bar());
-    let once = ["--set", "test.rate_check=false", "--json", "--out"];
+    let once = ["--set", "test.rate_check=false", "--json", "--output"];
     let whole = summary(&bench.good(&scene, &[&once[..], &["whole"]].concat()));
     let end_s = whole["simulated_s"].as_f64().unwrap();
     let half = format!("run.end_time={}", 0.7 * end_s);
     let first = summary(&bench.good(&scene, &[&once[..], &["parts", "--set", &half]].concat()));
     assert_eq!(first["test"]["broken"], false);
-    assert_eq!(first["test"]["strength_wanted_pa"], 0.2e6);
+    assert_eq!(first["test"]["target_strength_pa"], 0.2e6);
     let parts = summary(&bench.good(&scene, &[&once[..], &["parts", "--resume"]].concat()));
     // The step fits the end of the run, which was another one at first.
     for name in [
         "stiffness",
-        "modulus of the body",
+        "specimen modulus",
         "failure force",
-        "failure travel",
+        "crosshead travel at failure",
     ] {
         let off = value(&parts["test"], name) / value(&whole["test"], name) - 1.0;
         assert!(off.abs() < 2e-3, "{name}: {off}");
@@ -162,7 +168,7 @@ fn a_sample_is_bent_by_four_pins() {
     let sizes = ["--diameter", "5mm..7mm", "--overlap", "0.296"];
     dem_pack(
         &root().join("data/shapes/bending-sample.stl"),
-        &[&sizes[..], &["--bonding-radius", "1.0"]].concat(),
+        &[&sizes[..], &["--bond-range", "1.0"]].concat(),
         &bench.path("sample.vtp"),
     );
     let scene = scene_of_data("four-point-bending.toml");
@@ -171,7 +177,7 @@ fn a_sample_is_bent_by_four_pins() {
         "--body",
         "sample=sample.vtp",
         "--json",
-        "--out",
+        "--output",
         "out",
         "--quiet",
     ];
@@ -183,7 +189,7 @@ fn a_sample_is_bent_by_four_pins() {
     let test = &said["test"];
     for (name, wanted) in [
         ("span", 0.17),
-        ("load distance", 0.08),
+        ("loading span", 0.08),
         ("width", 0.03),
         ("height", 0.035),
     ] {
@@ -214,7 +220,7 @@ fn a_sample_is_bent_by_four_pins() {
     );
     let force = value(test, "failure force");
     // The body by itself is stiffer than with what gives way at the pins.
-    assert!(value(test, "stiffness of the body") > value(test, "stiffness"));
+    assert!(value(test, "specimen stiffness") > value(test, "stiffness"));
     let figure = figure(test, "failure force");
     let off = force / figure["theory"].as_f64().unwrap() - 1.0;
     assert!((figure["error"].as_f64().unwrap() - off).abs() < 1e-12);
@@ -237,8 +243,8 @@ fn what_a_test_cannot_be_made_of() {
     );
 
     let bent = text
-        .replace("kind = \"tension\"", "kind = \"three-point-bending\"")
-        .replace("moves = [\"head\"]", "moves = [\"plate\"]")
+        .replace("type = \"tension\"", "type = \"three-point-bending\"")
+        .replace("crosshead = [\"head\"]", "crosshead = [\"plate\"]")
         .replace("length = \"40 mm\"", "rate_check = false")
         .replace("area = ", "periods = 9 # ")
         .replace(
@@ -282,8 +288,8 @@ fn what_a_test_cannot_be_made_of() {
 
     // A bar is no disc: 180 mm by 35 mm across the load and along it.
     let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
-    let disc = "test.kind='brazilian-disc'";
-    let options = ["--body", &body, "--set", disc, "--out", "disc-out"];
+    let disc = "test.type='brazilian-disc'";
+    let options = ["--body", &body, "--set", disc, "--output", "disc-out"];
     let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);
     let wanted = "the body 'sample' is no disc: 35 mm along the load, 180 mm across it";
     assert!(said.contains(wanted), "{said}");
@@ -292,7 +298,7 @@ fn what_a_test_cannot_be_made_of() {
     // Speeds and times of which no time step follows.
     for key in ["rate", "stroke"] {
         let set = format!("test.{key}=1e300");
-        let options = ["--body", &body, "--set", &set, "--out", "fast-out"];
+        let options = ["--body", &body, "--set", &set, "--output", "fast-out"];
         let said = bench.bad(&scene_of_data("four-point-bending.toml"), &options, 2);
         assert!(
             said.contains("check the units of speeds, rates and times"),

@@ -50,7 +50,7 @@ fn mass_of_spheres_and_of_the_shape() {
     let [text, _] = said(&bench, &["check", "scene.toml"]);
     let lines = format!("mass           {mass}\n               {centre}\n");
     assert!(text.contains(&lines), "{text}");
-    let [text, errors] = said(&bench, &["scene.toml", "--out", "out"]);
+    let [text, errors] = said(&bench, &["scene.toml", "--output", "out"]);
     let lines = format!("mass         {mass}\n             {centre}\n");
     assert!(text.contains(&lines), "{text}");
     let remedy = "body 'row' weighs 8.587e-5 kg, -16 % against its shape filled with 2050 kg/m3: bodies.row.body_density = \"2050 kg/m3\" gives it that mass";
@@ -136,7 +136,7 @@ fn a_plate_carries_the_weight() {
 [run]
 end_time = "0.5 s"
 gravity = [0, 0, -10]
-particle_damping = 0.7
+local_damping = 0.7
 [materials.any]
 young_modulus = "10 MPa"
 [contacts.any-any]

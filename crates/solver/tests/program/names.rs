@@ -69,21 +69,21 @@ fn of_files_are_shown_in_what_is_said_and_on_pages() {
     let scene = Path::new(scene.file_name().unwrap());
     let out = format!("out{NASTY}");
     let run = |options: &[&str]| bench.run(scene, options);
-    let said = plain("run", &run(&["--out", &out]));
+    let said = plain("run", &run(&["--output", &out]));
     assert!(
         said.contains("\\u{1b}[31mred\\u{a}\\u{9b}2J\\u{202e}\\u{2066}<script>alert(1)<.toml"),
         "{said}"
     );
     assert_pages_plain(&bench.path(&out));
     // All kinds of refusals name the scene or the folder.
-    plain("not empty", &run(&["--out", &out]));
+    plain("not empty", &run(&["--output", &out]));
     plain("no such value", &run(&["--set", &format!("run.{NASTY}=1")]));
     plain(
         "no such body",
         &run(&["--body", &format!("bar={NASTY}.vtp")]),
     );
-    plain("over", &run(&["--out", &out, "--resume"]));
-    let json = run(&["--json", "--out", &out, "--force"]);
+    plain("over", &run(&["--output", &out, "--resume"]));
+    let json = run(&["--json", "--output", &out, "--force"]);
     plain("json", &json);
     let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
     assert_eq!(json["scene"], format!("{NASTY}.toml"));
@@ -117,7 +117,7 @@ fn of_files_are_shown_in_what_is_said_and_on_pages() {
 fn of_a_test_are_shown_on_its_page() {
     let bench = Bench::new();
     let scene = bench.write(&format!("{NASTY}.toml"), super::laboratory::bar());
-    let output = bench.run(Path::new(scene.file_name().unwrap()), &["--out", "out"]);
+    let output = bench.run(Path::new(scene.file_name().unwrap()), &["--output", "out"]);
     let said = plain("run", &output);
     assert!(output.status.success(), "{said}");
     assert!(assert_pages_plain(&bench.path("out")) > 2);
@@ -136,7 +136,7 @@ fn in_a_scene_are_refused_and_shown() {
     let text = fs::read_to_string(good("breaking.toml")).unwrap();
     for (table, old) in [
         ("bodies", "[bodies.bar]"),
-        ("sets", "[sets.left]"),
+        ("sets", "[groups.left]"),
         ("measures", "[measures.pull]"),
         ("materials", "[materials.cake]"),
         ("supports", "[supports.left]"),

@@ -34,7 +34,7 @@ fn inked(pixels: &[u8]) -> f64 {
 #[test]
 fn are_taken_at_their_times_and_at_the_end() {
     let bench = Bench::new();
-    let options = ["--set", "output.pictures=5 ms", "--out", "out"];
+    let options = ["--set", "output.pictures=5 ms", "--output", "out"];
     bench.good(&good("meeting.toml"), &options);
     // At 0, 5, 10 and 12 ms.
     let names: Vec<String> = (0..4).map(|k| format!("picture-0000{k}.png")).collect();
@@ -58,7 +58,7 @@ fn are_taken_at_their_times_and_at_the_end() {
 #[test]
 fn there_are_none_unless_asked_for() {
     let bench = Bench::new();
-    bench.good(&good("breaking.toml"), &["--out", "out"]);
+    bench.good(&good("breaking.toml"), &["--output", "out"]);
     let names = results(&bench.path("out"));
     assert!(!names.keys().any(|name| name.ends_with(".png")));
     assert!(!bench.path("out/pictures").exists());
@@ -68,7 +68,7 @@ fn there_are_none_unless_asked_for() {
 fn the_view_can_be_chosen() {
     let bench = Bench::new();
     let picture = |out: &str, view: &[&str]| {
-        let options = ["--set", "run.end_time=1 us", "--out", out];
+        let options = ["--set", "run.end_time=1 us", "--output", out];
         bench.good(&good("meeting.toml"), &[&options[..], view].concat());
         decoded(&bench.path(out).join("pictures/picture-00000.png")).1
     };
@@ -88,7 +88,7 @@ fn the_earlier_ones_are_replaced_or_gone_on_from() {
             &end,
             "--set",
             "output.pictures=1 ms",
-            "--out",
+            "--output",
             "out",
         ];
         bench.run(&scene, &[&options[..], more].concat())

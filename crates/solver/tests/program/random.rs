@@ -76,12 +76,12 @@ prop_compose! {
     ) -> String {
         let mut text = String::new();
         if let Some(spin) = spin { text += &format!("angular_velocity = [0, {spin:e}, 1]\n"); }
-        if let Some((at, how)) = support { text += &format!("[sets.s]\nparticles = [{at}]\n[supports.s]\nof = \"s\"\n{how}\n"); }
-        if let Some((at, force)) = load { text += &format!("[sets.l]\nparticles = [{at}]\n[loads.l]\nof = \"l\"\nforce = [{force:e}, 0, 1]\n"); }
+        if let Some((at, how)) = support { text += &format!("[groups.s]\nparticles = [{at}]\n[supports.s]\nof = \"s\"\n{how}\n"); }
+        if let Some((at, force)) = load { text += &format!("[groups.l]\nparticles = [{at}]\n[loads.l]\nof = \"l\"\nforce = [{force:e}, 0, 1]\n"); }
         if let Some(what) = measure { text += &format!("[measures.m]\nquantity = \"{what}\"\n"); }
         let mut run = String::new();
         if let Some(g) = gravity { run += &format!("run.gravity = [0, 0, {g:e}]\n"); }
-        if let Some(gamma) = damping { run += &format!("run.particle_damping = {gamma:e}\n"); }
+        if let Some(gamma) = damping { run += &format!("run.local_damping = {gamma:e}\n"); }
         format!("{run}#BODY\n{text}")
     }
 }
@@ -107,10 +107,10 @@ prop_compose! {
         // A given step bounds the time that a case can take.
         if given || !(1e-5..1e-2).contains(&end) { text += &format!("run.time_step = {:e}\n", end / steps); }
         text += &format!("[bonds.k]\nmodel = \"{model}\"\nformulation = \"{formulation}\"\nyoung_modulus = {modulus:e}\npoisson_ratio = {poisson:e}\n");
-        if let Some(eta) = viscous { text += &format!("damping = {{ viscous = {eta:e} }}\n"); }
+        if let Some(eta) = viscous { text += &format!("damping = {{ damping_ratio = {eta:e} }}\n"); }
         if let Some(strength) = strength {
             let scatter = weibull.map_or(String::new(), |m| format!(", weibull_modulus = {m:e}"));
-            text += &format!("failure = {{ tension = {strength:e}, shear = {strength:e}{scatter} }}\n");
+            text += &format!("failure = {{ tensile_strength = {strength:e}, shear_strength = {strength:e}{scatter} }}\n");
         }
         text + "[bodies.b]\nmaterial = \"m\"\n" + &body + rest
     }
@@ -120,7 +120,7 @@ prop_compose! {
 fn run(scene: &str, forced: bool) -> Result<i32, TestCaseError> {
     let bench = Bench::new();
     let path = bench.write("scene.toml", scene);
-    let mut command = bench.command(&path, &["--threads", "1", "--out", "out"]);
+    let mut command = bench.command(&path, &["--threads", "1", "--output", "out"]);
     if forced {
         command.arg("--force-step");
     }

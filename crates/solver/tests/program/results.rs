@@ -9,7 +9,7 @@ use super::{Bench, good, names_in, numbers, results, scene_of_data, table};
 
 fn breaking() -> Bench {
     let bench = Bench::new();
-    bench.good(&good("breaking.toml"), &["--out", "out"]);
+    bench.good(&good("breaking.toml"), &["--output", "out"]);
     bench
 }
 
@@ -61,7 +61,7 @@ fn events_tell_every_bond_that_broke() {
     let (columns, rows) = table(&bench.path("out/events.csv"));
     assert_eq!(
         columns.join(","),
-        "step,time_s,kind,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail"
+        "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail"
     );
     let rows: Vec<_> = rows
         .into_iter()
@@ -95,7 +95,7 @@ fn events_tell_every_bond_that_broke() {
         released += row[10].parse::<f64>().unwrap();
         assert_eq!(row[11], "bar");
     }
-    let booked = summary["ledger"]["released_j"].as_f64().unwrap();
+    let booked = summary["balance"]["bond_breakage_j"].as_f64().unwrap();
     assert!((released / booked - 1.0).abs() < 1e-12);
     let broken = numbers(&bench.path("out/series.csv"), "broken_bonds");
     assert_eq!(broken[broken.len() - 1], rows.len() as f64);
@@ -107,8 +107,8 @@ fn events_of_several_bodies_have_each_bodys_numbers() {
     let bench = Bench::new();
     let options = [
         "--set",
-        "bonds.brittle.failure.tension=3 kPa",
-        "--out",
+        "bonds.brittle.failure.tensile_strength=3 kPa",
+        "--output",
         "out",
     ];
     bench.good(&good("bodies.toml"), &options);
@@ -154,7 +154,7 @@ fn series_have_a_row_at_every_time_asked_for() {
 #[test]
 fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     let bench = Bench::new();
-    bench.good(&good("every-measure.toml"), &["--out", "out"]);
+    bench.good(&good("every-measure.toml"), &["--output", "out"]);
     let (columns, _) = table(&bench.path("out/series.csv"));
     let mut unique = columns.clone();
     unique.sort();
@@ -247,7 +247,7 @@ fn frames_have_every_array_at_full_length() {
 fn a_folder_with_something_in_it_is_refused_or_replaced() {
     let bench = breaking();
     let before = results(&bench.path("out"));
-    let said = bench.bad(&good("bodies.toml"), &["--out", "out"], 2);
+    let said = bench.bad(&good("bodies.toml"), &["--output", "out"], 2);
     assert!(
         said.contains("out: this folder is not empty")
             && said.contains("--force")
@@ -259,7 +259,7 @@ fn a_folder_with_something_in_it_is_refused_or_replaced() {
     bench.write("out/notes.txt", "mine");
     bench.write("out/frames/frame_mine.vtp", "mine");
     bench.write("out/plots/mine.svg", "<svg/>");
-    bench.good(&good("bodies.toml"), &["--out", "out", "--force"]);
+    bench.good(&good("bodies.toml"), &["--output", "out", "--force"]);
     for mine in [
         "out/notes.txt",
         "out/frames/frame_mine.vtp",
@@ -273,7 +273,7 @@ fn a_folder_with_something_in_it_is_refused_or_replaced() {
     let before = results(&bench.path("out"));
     bench.bad(
         &good("bodies.toml"),
-        &["--out", "out", "--force", "--set", "run.time_step=1 ms"],
+        &["--output", "out", "--force", "--set", "run.time_step=1 ms"],
         2,
     );
     assert!(before == results(&bench.path("out")));
@@ -283,13 +283,13 @@ fn a_folder_with_something_in_it_is_refused_or_replaced() {
 fn folders_that_cannot_be() {
     let bench = Bench::new();
     let scene = good("alone.toml");
-    let said = bench.bad(&scene, &["--out", "none/out"], 1);
+    let said = bench.bad(&scene, &["--output", "none/out"], 1);
     assert!(
         said.contains("none/out: there is no folder 'none'"),
         "{said}"
     );
     bench.write("file", "mine");
-    let said = bench.bad(&scene, &["--out", "file"], 1);
+    let said = bench.bad(&scene, &["--output", "file"], 1);
     assert!(
         said.contains("file: this is a file, where a folder is needed"),
         "{said}"

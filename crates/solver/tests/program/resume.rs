@@ -20,12 +20,12 @@ const SCENES: [(&str, &str, &str); 7] = [
 /// Makes a scene take longer, so that a signal meets it half way.
 fn slow(name: &str) -> &'static str {
     match name {
-        "breaking.toml" => "run.safety=0.02",
-        "incremental.toml" => "run.safety=0.03",
-        "bodies.toml" => "run.safety=0.02",
-        "rest.toml" => "run.safety=0.01",
-        "meeting.toml" => "run.safety=0.05",
-        "following.toml" => "run.safety=0.1",
+        "breaking.toml" => "run.safety_factor=0.02",
+        "incremental.toml" => "run.safety_factor=0.03",
+        "bodies.toml" => "run.safety_factor=0.02",
+        "rest.toml" => "run.safety_factor=0.01",
+        "meeting.toml" => "run.safety_factor=0.05",
+        "following.toml" => "run.safety_factor=0.1",
         _ => "run.seed=0",
     }
 }
@@ -35,13 +35,23 @@ fn after_a_signal_a_run_goes_on_as_if_nothing_had_been() {
     for (name, signal, threads) in SCENES {
         let bench = Bench::new();
         let options = ["--set", slow(name), "--threads", "1"];
-        bench.good(&good(name), &[&options[..], &["--out", "whole"]].concat());
+        bench.good(
+            &good(name),
+            &[&options[..], &["--output", "whole"]].concat(),
+        );
         let mut times = 0;
         // Again and again: each time it is interrupted a little later.
         let (mut rows, mut resume) = (10, false);
         loop {
             let first: &[&str] = if resume { &["--resume"] } else { &[] };
-            let all = ["--set", slow(name), "--threads", threads, "--out", "part"];
+            let all = [
+                "--set",
+                slow(name),
+                "--threads",
+                threads,
+                "--output",
+                "part",
+            ];
             let command = bench.command(&good(name), &[&all[..], first].concat());
             let Some(said) = interrupt(command, signal, &bench.path("part"), rows) else {
                 break;
@@ -68,8 +78,11 @@ fn after_a_kill_a_run_goes_on_from_its_last_checkpoint() {
     for name in ["breaking.toml", "bodies.toml", "strained.toml"] {
         let bench = Bench::new();
         let options = ["--set", slow(name), "--threads", "1"];
-        bench.good(&good(name), &[&options[..], &["--out", "whole"]].concat());
-        let all = [&options[..], &["--out", "part"]].concat();
+        bench.good(
+            &good(name),
+            &[&options[..], &["--output", "whole"]].concat(),
+        );
+        let all = [&options[..], &["--output", "part"]].concat();
         kill_after_checkpoint(bench.command(&good(name), &all), &bench.path("part"));
         bench.good(&good(name), &[&all[..], &["--resume"]].concat());
         assert_same(&bench.path("whole"), &bench.path("part"));
@@ -79,7 +92,7 @@ fn after_a_kill_a_run_goes_on_from_its_last_checkpoint() {
 #[test]
 fn the_limit_of_the_step_is_looked_at_again_on_the_way() {
     let bench = Bench::new();
-    bench.good(&good("strained.toml"), &["--out", "out"]);
+    bench.good(&good("strained.toml"), &["--output", "out"]);
     let (_, events) = table(&bench.path("out/events.csv"));
     assert!(!events.is_empty());
     assert!(
@@ -92,14 +105,14 @@ fn the_limit_of_the_step_is_looked_at_again_on_the_way() {
 /// A scene that has been run to a fifth of its end time.
 fn begun(name: &str, options: &[&str]) -> Bench {
     let bench = Bench::new();
-    bench.good(&good(name), &[&["--out", "out"], options].concat());
+    bench.good(&good(name), &[&["--output", "out"], options].concat());
     bench
 }
 
 #[test]
 fn a_run_that_is_over_says_so_and_can_be_taken_further() {
     let bench = begun("bodies.toml", &["--set", "run.end_time=1 ms"]);
-    let resume = ["--out", "out", "--resume", "--set"];
+    let resume = ["--output", "out", "--resume", "--set"];
     let before = super::results(&bench.path("out"));
     let said = bench.bad(
         &good("bodies.toml"),
@@ -123,14 +136,20 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
     assert!((400..600).contains(&late), "{late}");
 
     let bench = begun("rest.toml", &[]);
-    let said = bench.bad(&good("rest.toml"), &["--out", "out", "--resume"], 2);
+    let said = bench.bad(&good("rest.toml"), &["--output", "out", "--resume"], 2);
     assert!(
-        said.contains("come to rest at") && said.contains("set a smaller run.rest"),
+        said.contains("come to rest at") && said.contains("set a smaller run.rest_energy_ratio"),
         "{said}"
     );
     let said = bench.good(
         &good("rest.toml"),
-        &["--out", "out", "--resume", "--set", "run.rest=1e-12"],
+        &[
+            "--output",
+            "out",
+            "--resume",
+            "--set",
+            "run.rest_energy_ratio=1e-12",
+        ],
     );
     assert!(said.contains("ended by rest"), "{said}");
 }
@@ -138,7 +157,7 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
 #[test]
 fn a_step_that_is_given_is_taken_when_a_run_goes_on() {
     let bench = begun("bodies.toml", &["--set", "run.end_time=0.5 ms"]);
-    let options = ["--out", "out", "--resume", "--set", "run.time_step=1 us"];
+    let options = ["--output", "out", "--resume", "--set", "run.time_step=1 us"];
     let said = bench.good(&good("bodies.toml"), &options);
     assert!(
         said.contains("resumed      time step 1.9531e-6 s -> 1.0000e-6 s")
@@ -163,7 +182,7 @@ fn said_of(bench: &Bench, checkpoint: &[u8]) -> String {
     fs::write(bench.path("out/checkpoint.dem"), checkpoint).unwrap();
     let said = bench.bad(
         &good("bodies.toml"),
-        &["--out", "out", "--resume", "--set", "run.end_time=3 ms"],
+        &["--output", "out", "--resume", "--set", "run.end_time=3 ms"],
         2,
     );
     assert!(said.contains("out/checkpoint.dem"), "{said}");
@@ -207,7 +226,7 @@ fn checkpoints_that_cannot_be_used() {
     assert!(before == super::results(&bench.path("out")));
 
     fs::remove_file(bench.path("out/checkpoint.dem")).unwrap();
-    let said = bench.bad(&good("bodies.toml"), &["--out", "out", "--resume"], 2);
+    let said = bench.bad(&good("bodies.toml"), &["--output", "out", "--resume"], 2);
     assert!(
         said.contains("checkpoint.dem: there is no such file"),
         "{said}"
@@ -226,12 +245,12 @@ fn a_scene_that_has_changed_is_not_gone_on_with() {
         "bodies.a.position=[1e-9, 0, 0]",
         "run.seed=1",
         "run.gravity=[0, 0, -1.5]",
-        "run.particle_damping=0.25",
+        "run.local_damping=0.25",
         "measures.energy.quantity=elastic_energy",
     ] {
         let (said, code) = refused(&bench.run(
             &good("bodies.toml"),
-            &["--out", "out", "--resume", "--set", change],
+            &["--output", "out", "--resume", "--set", change],
         ));
         assert_eq!(code, 2, "{change}: {said}");
         let key = change.split_once('=').unwrap().0;
@@ -245,20 +264,20 @@ fn a_scene_that_has_changed_is_not_gone_on_with() {
     let other = text.replace("[\"6 mm\", 0, 0, \"1 mm\"]", "[\"6.1 mm\", 0, 0, \"1 mm\"]");
     assert!(other != text);
     let other = bench.write("other.toml", other);
-    let said = bench.bad(Path::new(&other), &["--out", "out", "--resume"], 2);
+    let said = bench.bad(Path::new(&other), &["--output", "out", "--resume"], 2);
     assert!(said.contains("other bodies or bonds"), "{said}");
 }
 
 #[test]
 fn there_has_to_be_a_folder_to_resume() {
     let bench = Bench::new();
-    let said = bench.bad(&good("bodies.toml"), &["--resume", "--out", "none"], 2);
+    let said = bench.bad(&good("bodies.toml"), &["--resume", "--output", "none"], 2);
     assert!(said.contains("none: there is no such folder"), "{said}");
     let scene = fs::read_to_string(good("alone.toml")).unwrap();
     let silent = bench.write("silent.toml", scene.replace("[output]", ""));
     let said = bench.bad(Path::new(&silent), &["--resume"], 2);
     assert!(
-        said.contains("--resume: no folder") && said.contains("add --out FOLDER"),
+        said.contains("--resume: no folder") && said.contains("add --output FOLDER"),
         "{said}"
     );
 }
@@ -299,7 +318,7 @@ fn what_is_missing_at_the_end_is_written() {
             "tension.toml" => bench.write(name, &tension),
             _ => good(name),
         };
-        let go = |options: &[&str]| bench.good(&scene, &[&["--out", "out"], options].concat());
+        let go = |options: &[&str]| bench.good(&scene, &[&["--output", "out"], options].concat());
         go(&[]);
         let whole = bytes_of(&bench);
         for file in missing {
@@ -326,7 +345,7 @@ fn what_is_missing_at_the_end_is_written() {
         let said = go(&["--resume", "--json"]);
         assert!(said.as_bytes() == whole["summary.json"], "{said}");
         // Nothing is missing now.
-        let said = bench.bad(&scene, &["--out", "out", "--resume"], 2);
+        let said = bench.bad(&scene, &["--output", "out", "--resume"], 2);
         assert!(said.contains("nothing is left to be done"), "{said}");
         assert!(whole == bytes_of(&bench));
     }

@@ -26,11 +26,11 @@ fn cantilever() {
 fn spinning_bar() {
     let bench = Bench::new();
     let scene = scene_of_data("spinning-bar.toml");
-    bench.good(&scene, &["--set", "run.end_time=0.02", "--out", "spin"]);
+    bench.good(&scene, &["--set", "run.end_time=0.02", "--output", "spin"]);
     assert_eq!(bench.files(), ["spin"]);
     let json = bench.good(
         &scene,
-        &["--set", "run.end_time=0.02", "--json", "--out", "again"],
+        &["--set", "run.end_time=0.02", "--json", "--output", "again"],
     );
     let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(summary["energy_error"].as_f64().unwrap() < 1e-6);
@@ -117,7 +117,7 @@ fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
 fn quiet_means_quiet() {
     let bench = Bench::new();
     let scene = scene_of_data("spinning-bar.toml");
-    let short = ["--set", "run.end_time=1 ms", "--out"];
+    let short = ["--set", "run.end_time=1 ms", "--output"];
     assert_eq!(
         bench.good(&scene, &[&short[..], &["a", "--quiet"]].concat()),
         ""
@@ -175,7 +175,7 @@ fn no_scene_of_data_is_stopped() {
         if !shape.is_empty() {
             let packed = format!("{shape}.vtp");
             let stl = root().join(format!("data/shapes/{shape}.stl"));
-            let radii = ["--overlap", "0.296", "--bonding-radius", "1.0"];
+            let radii = ["--overlap", "0.296", "--bond-range", "1.0"];
             dem_pack(
                 &stl,
                 &[&["--diameter", diameters], &radii[..]].concat(),
@@ -193,7 +193,7 @@ fn no_scene_of_data_is_stopped() {
         };
         options.extend(set.iter().flat_map(|set| ["--set".to_owned(), set.clone()]));
         let out = format!("{name}-short");
-        options.extend(["--json", "--quiet", "--out", &out].map(str::to_owned));
+        options.extend(["--json", "--quiet", "--output", &out].map(str::to_owned));
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
         let said = bench.good(&scene_of_data(&format!("{name}.toml")), &options);
         let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
@@ -221,7 +221,7 @@ poisson_ratio = 0.3
 model = "timoshenko"
 young_modulus = "1 MPa"
 poisson_ratio = 0.3
-damping = { viscous = 10 }
+damping = { damping_ratio = 10 }
 [bodies.a]
 material = "m"
 bonds = "soft"

@@ -19,7 +19,7 @@ const SCENE: &str = r#"version = 1
 
 [run]
 end_time = "4 ms"
-safety = 0.9
+safety_factor = 0.9
 
 [materials.steel]
 density = "7850 kg/m3"
@@ -34,18 +34,18 @@ bonds = "steel"
 particles = [[0, 0, 0, 0.2], [0.4, 0, 0, 0.2]]
 bond_list = [[0, 1]]
 
-[sets.held]
+[groups.held]
 particles = [0]
 
-[sets.tip]
+[groups.tip]
 particles = [1]
 
 [supports.held]
-of = "held"
+group = "held"
 fixed = true
 
 [loads.tip]
-of = "tip"
+group = "tip"
 force = ["1 kN", 0, 0]
 
 [measures.tip]
@@ -62,11 +62,11 @@ scene = "spring.toml"
 repeats = 2
 [vary]
 "bonds.steel.formulation" = ["total", "incremental"]
-"run.safety" = [0.2, 0.1, 0.05, 0.025]
+"run.safety_factor" = [0.2, 0.1, 0.05, 0.025]
 [measures.tip]
-reference = { richardson = "run.safety" }
+reference = { richardson = "run.safety_factor" }
 [measures.energy]
-ledger = "energy"
+balance = "energy"
 "#;
 
 fn bench(study: &str) -> Bench {
@@ -186,7 +186,7 @@ fn tables_and_pages_of_a_sweep() {
         "{said}"
     );
     assert!(
-        said.contains("front        tip: against Richardson extrapolation along run.safety"),
+        said.contains("front        tip: against Richardson extrapolation along run.safety_factor"),
         "{said}"
     );
     let table = json(&bench);
@@ -194,7 +194,7 @@ fn tables_and_pages_of_a_sweep() {
     assert_eq!(rows.len(), 8);
     for (row, run) in rows.iter().zip(table["runs"].as_array().unwrap()) {
         let number = |column: &str| row[column].parse::<f64>().unwrap();
-        assert_eq!(row["run.safety"], run["settings"][1]);
+        assert_eq!(row["run.safety_factor"], run["settings"][1]);
         assert_same_number(number("time_s"), &run["time_s"]);
         // Until half a second has been measured, as the first two let expect.
         let times = run["times_s"].as_array().unwrap();
@@ -319,7 +319,7 @@ fn listed_commands_give_the_same_table() {
     let bench = bench(STEPS);
     good(&bench, &["--jobs", "2"]);
     let whole = timeless(&bench.path("study-sweep/sweep.csv"));
-    let commands = good(&bench, &["--list", "--out", "apart"]);
+    let commands = good(&bench, &["--list", "--output", "apart"]);
     assert_eq!(commands.lines().count(), 16);
     assert!(!bench.path("apart/runs/0001-1").exists());
     let run = |commands: &str| {
@@ -330,11 +330,14 @@ fn listed_commands_give_the_same_table() {
     };
     run(&commands);
     // Once all are done, it is known which are short.
-    let further = good(&bench, &["--list", "--resume", "--out", "apart"]);
+    let further = good(&bench, &["--list", "--resume", "--output", "apart"]);
     assert!(further.lines().all(|line| line.contains("apart/runs/000")));
     run(&further);
-    assert_eq!(good(&bench, &["--list", "--resume", "--out", "apart"]), "");
-    good(&bench, &["--collect", "--out", "apart"]);
+    assert_eq!(
+        good(&bench, &["--list", "--resume", "--output", "apart"]),
+        ""
+    );
+    good(&bench, &["--collect", "--output", "apart"]);
     assert_eq!(timeless(&bench.path("apart/sweep.csv")), whole);
 }
 
@@ -346,9 +349,9 @@ fn the_fastest_setting_is_said_and_written() {
         &bench,
         &[
             "--collect",
-            "--want",
+            "--max-error",
             "tip=2%",
-            "--want",
+            "--max-error",
             "energy=5%",
             "--write",
             "fast.toml",
@@ -362,9 +365,9 @@ fn the_fastest_setting_is_said_and_written() {
         &bench,
         &[
             "--collect",
-            "--want",
+            "--max-error",
             "tip=2%",
-            "--want",
+            "--max-error",
             "energy=5%",
             "--json",
         ],
@@ -395,20 +398,20 @@ fn the_fastest_setting_is_said_and_written() {
         "{command}"
     );
 
-    let said = bad(&bench, &["--collect", "--want", "error=1e-14"], 2);
+    let said = bad(&bench, &["--collect", "--max-error", "all=1e-14"], 2);
     assert!(
         said.contains("no run is as exact: the nearest, run ") && said.contains("ask for less"),
         "{said}"
     );
-    let said = bad(&bench, &["--collect", "--want", "tipp=1%"], 2);
+    let said = bad(&bench, &["--collect", "--max-error", "tipp=1%"], 2);
     assert!(
         said.contains(
-            "nothing that is measured is called 'tipp'; use error for all, or one of tip, energy"
+            "nothing that is measured is called 'tipp'; use all for all measures, or one of tip, energy"
         ),
         "{said}"
     );
-    for wrong in ["error", "error=0", "error=1 mm"] {
-        bad(&bench, &["--collect", "--want", wrong], 2);
+    for wrong in ["all", "all=0", "all=1 mm"] {
+        bad(&bench, &["--collect", "--max-error", wrong], 2);
     }
 }
 
@@ -416,15 +419,18 @@ fn the_fastest_setting_is_said_and_written() {
 #[test]
 fn a_scene_with_another_body_is_written() {
     let bench = bench(
-        "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"body.bar\" = [\"bar.csv\"]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n",
+        "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"body.bar\" = [\"bar.csv\"]\n\"run.safety_factor\" = [0.1]\n[measures.energy]\nbalance = \"energy\"\n",
     );
     bench.write(
         "bar.particles.csv",
         "x_m,y_m,z_m,radius_m\n0,0,0,0.2\n0.5,0,0,0.2\n",
     );
-    bench.write("bar.bonds.csv", "a,b\n0,1\n");
+    bench.write("bar.bonds.csv", "particle_a,particle_b\n0,1\n");
     fs::create_dir(bench.path("there")).unwrap();
-    good(&bench, &["--want", "error=1", "--write", "there/new.toml"]);
+    good(
+        &bench,
+        &["--max-error", "all=1", "--write", "there/new.toml"],
+    );
     let written = bench.good(Path::new("there/new.toml"), &["--json"]);
     let written: Value = serde_json::from_str(&written).unwrap();
     let value = &json(&bench)["runs"][0]["results"][0]["value"];
@@ -435,12 +441,12 @@ fn a_scene_with_another_body_is_written() {
 fn what_is_refused() {
     let paths = [
         (
-            "\"run.safety\"",
+            "\"run.safety_factor\"",
             "\"run.safty\"",
             "study.toml:6: --set run.safty=0.2: unknown key run.safty; did you mean 'safety'?",
         ),
         (
-            "reference = { richardson = \"run.safety\" }",
+            "reference = { richardson = \"run.safety_factor\" }",
             "",
             "study.toml:7: measures.tip has no reference: that of the scene says none; add reference",
         ),
@@ -457,10 +463,10 @@ fn what_is_refused() {
         (
             "repeats = 2",
             "combine = \"paired\"",
-            "study.toml:6: run.safety has 4 values, but bonds.steel.formulation has 2; paired axes have equally many",
+            "study.toml:6: run.safety_factor has 4 values, but bonds.steel.formulation has 2; paired axes have equally many",
         ),
         (
-            "{ richardson = \"run.safety\" }",
+            "{ richardson = \"run.safety_factor\" }",
             "{ value = \"2 kg\" }",
             "measures.tip.reference: '2 kg' is not a length",
         ),
@@ -481,11 +487,16 @@ fn what_is_refused() {
     assert!(bad(&bench, &["--collect"], 2).contains("no sweep is in this folder"));
     assert!(bad(&bench, &["--jobs", "0"], 2).contains("--jobs: 0 is not between 1 and 1024"));
     assert!(
-        bad(&bench, &["--out", "."], 2).contains("this folder holds something else than a sweep")
+        bad(&bench, &["--output", "."], 2)
+            .contains("this folder holds something else than a sweep")
     );
     assert!(
-        bad(&bench, &["--want", "error=1", "--write", "gone/a.toml"], 2)
-            .contains("there is no folder 'gone'")
+        bad(
+            &bench,
+            &["--max-error", "all=1", "--write", "gone/a.toml"],
+            2
+        )
+        .contains("there is no folder 'gone'")
     );
     assert!(!bench.path("study-sweep").exists());
     assert!(
@@ -516,7 +527,7 @@ fn studies_of_data() {
             }
         }
         let output = bench
-            .command(Path::new("sweep"), &["--list", "--out", "s", "--force"])
+            .command(Path::new("sweep"), &["--list", "--output", "s", "--force"])
             .arg(&path)
             .output()
             .unwrap();

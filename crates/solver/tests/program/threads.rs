@@ -12,7 +12,7 @@ fn of_every_good_scene() {
     for scene in corpus("good") {
         let bench = Bench::new();
         for threads in ["1", "2", "3"] {
-            bench.good(&scene, &["--threads", threads, "--out", threads]);
+            bench.good(&scene, &["--threads", threads, "--output", threads]);
         }
         assert_same(&bench.path("1"), &bench.path("2"));
         assert_same(&bench.path("1"), &bench.path("3"));
@@ -61,15 +61,15 @@ fn of_a_body_that_is_divided_among_them() {
         write!(
             scene,
             "version = 1\n\
-             run = {{ end_time = \"0.5 ms\", gravity = [0, 0, -9.81], particle_damping = 0.1 }}\n\
+             run = {{ end_time = \"0.5 ms\", gravity = [0, 0, -9.81], local_damping = 0.1 }}\n\
              materials.cake.density = 2050\n\
              output.frames = \"0.25 ms\"\n\
              [bonds.cake]\nyoung_modulus = \"12 MPa\"\npoisson_ratio = 0.3\nformulation = \"{formulation}\"\n\
-             damping = {{ viscous = 0.1 }}\n\
-             failure = {{ von_mises = \"20 kPa\", weibull_modulus = 4, rate_strengthening = true }}\n\
+             damping = {{ damping_ratio = 0.1 }}\n\
+             failure = {{ von_mises_strength = \"20 kPa\", weibull_modulus = 4, rate_strengthening = true }}\n\
              [bodies.block]\nfile = \"block.vtp\"\nmaterial = \"cake\"\nbonds = \"cake\"\n\
-             [sets.foot]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1e-3] }}\n\
-             [sets.head]\nbox = {{ min = [-1, -1, 69e-3], max = [1, 1, 1] }}\n\
+             [groups.foot]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1e-3] }}\n\
+             [groups.head]\nbox = {{ min = [-1, -1, 69e-3], max = [1, 1, 1] }}\n\
              [supports.foot]\nof = \"foot\"\nfixed = true\n\
              [loads.head]\nof = \"head\"\nforce = [\"3 N\", 0, \"5 N\"]\nramp = \"0.1 ms\"\n\
              [measures.broken]\nquantity = \"broken_bonds\"\n\
@@ -79,7 +79,7 @@ fn of_a_body_that_is_divided_among_them() {
         let path = bench.write(&format!("{formulation}.toml"), scene);
         for threads in ["1", "2", "3"] {
             let out = format!("{formulation}-{threads}");
-            let said = bench.good(&path, &["--threads", threads, "--out", &out]);
+            let said = bench.good(&path, &["--threads", threads, "--output", &out]);
             assert!(!said.contains("broken       0 of"), "{said}");
         }
         for other in ["2", "3"] {

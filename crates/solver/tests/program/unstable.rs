@@ -7,7 +7,7 @@ use super::{Bench, good};
 #[test]
 fn a_step_above_the_limit_is_refused_unless_forced() {
     let bench = Bench::new();
-    let step = ["--set", "run.time_step=20 us", "--out", "out"];
+    let step = ["--set", "run.time_step=20 us", "--output", "out"];
     let said = bench.bad(
         &good("bodies.toml"),
         &[&step[..], &["--set", "run.end_time=20 ms"]].concat(),
@@ -29,7 +29,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     // Without a folder there is no checkpoint to speak of.
     let said = bench.bad(&scene, &options, 3);
     assert!(
-        said.contains("unstable at step ") && said.contains("have come from nowhere"),
+        said.contains("unstable at step ") && said.contains("of energy were created"),
         "{said}"
     );
     assert!(
@@ -109,20 +109,28 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     let scene = bench.write("uneven.toml", uneven());
     let limit = limit_of(&bench, &scene);
     let step = format!("run.time_step={}", 1.05 * limit);
-    let said = bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
+    let said = bench.bad(
+        &scene,
+        &["--set", &step, "--force-step", "--output", "out"],
+        3,
+    );
     assert!(
         said.ends_with("--resume takes it up from 'out/checkpoint.dem' with that step"),
         "{said}"
     );
     assert!(bench.path("out/checkpoint.dem").exists());
     let step = format!("run.time_step={}", 0.2 * limit);
-    let said = bench.good(&scene, &["--set", &step, "--out", "out", "--resume"]);
+    let said = bench.good(&scene, &["--set", &step, "--output", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
     // Or with one that is found.
     fs::remove_dir_all(bench.path("out")).unwrap();
     let step = format!("run.time_step={}", 1.05 * limit);
-    bench.bad(&scene, &["--set", &step, "--force-step", "--out", "out"], 3);
-    let said = bench.good(&scene, &["--out", "out", "--resume"]);
+    bench.bad(
+        &scene,
+        &["--set", &step, "--force-step", "--output", "out"],
+        3,
+    );
+    let said = bench.good(&scene, &["--output", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
 }
 
@@ -165,7 +173,7 @@ material = "m"
 [measures.z]
 of = "a"
 quantity = "position_z"
-at = "mean"
+statistic = "mean"
 [measures.e]
 of = "a"
 quantity = "kinetic_energy"
@@ -176,7 +184,7 @@ fn where_there_is_next_to_no_energy_nobody_is_stopped() {
     let bench = super::Bench::new();
     for at in ["0.03", "0.0299999999", "0.02999999999999"] {
         let scene = bench.write("touch.toml", TOUCHING.replace("0.03,", &format!("{at},")));
-        let overlaps = ["--set", "run.start_overlap=relax"];
+        let overlaps = ["--set", "run.initial_overlap=relax"];
         assert!(bench.good(&scene, &overlaps).contains("ended by end time"));
     }
     let scene = bench.write("bounce.toml", BOUNCING);

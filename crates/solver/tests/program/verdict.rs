@@ -76,7 +76,7 @@ fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
         "run.time_step=20 us",
         "--force-step",
         "--json",
-        "--out",
+        "--output",
         "out",
     ];
     let output = bench.run(&scene, &options);
@@ -95,7 +95,7 @@ fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
     assert_eq!(inputs["scene"]["run.time_step"], "2e-5 s");
     assert_eq!(inputs["seed"], 0);
     // It is no result of a run that came to its end.
-    let said = bench.bad(&scene, &["--out", "out"], 2);
+    let said = bench.bad(&scene, &["--output", "out"], 2);
     assert!(said.contains("--force"), "{said}");
 }
 
@@ -125,9 +125,9 @@ fn the_end_of_a_run_looks_for_pieces() {
     let bench = Bench::new();
     let scene = bench.write(
         "burst.toml",
-        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tension = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
+        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
     );
-    let summary = json(&bench, &scene, &["--json", "--quiet", "--out", "out"]);
+    let summary = json(&bench, &scene, &["--json", "--quiet", "--output", "out"]);
     assert_eq!(summary["broken_bonds"], 1);
     assert_eq!(summary["fragments"]["count"], 2);
     let events = std::fs::read_to_string(bench.path("out/events.csv")).unwrap();
@@ -146,9 +146,9 @@ fn without_a_folder_the_last_line_says_so() {
     let bench = Bench::new();
     let scene = super::scene_of_data("cantilever.toml");
     let said = bench.good(&scene, &["--set", "run.end_time=1 ms"]);
-    let last = "no files written: add --out FOLDER to keep the results";
+    let last = "no files written: add --output FOLDER to keep the results";
     assert_eq!(said.lines().last(), Some(last));
-    let short = ["--set", "run.end_time=1 ms", "--out", "out"];
+    let short = ["--set", "run.end_time=1 ms", "--output", "out"];
     assert!(!bench.good(&scene, &short).contains("no files written"));
 }
 
@@ -195,9 +195,9 @@ material = "steel"
 fn what_an_inlet_feeds_bonded_is_no_replacement_and_a_sphere_no_clump() {
     let bench = Bench::new();
     let scene = bench.write("fed.toml", FED);
-    let summary = json(&bench, &scene, &["--json", "--quiet", "--out", "out"]);
+    let summary = json(&bench, &scene, &["--json", "--quiet", "--output", "out"]);
     let population = &summary["population"];
-    assert_eq!(population["came"], 6);
+    assert_eq!(population["fed"], 6);
     assert_eq!(population["replaced"], 0);
     assert_eq!(population["clumps"], 0);
     assert_eq!(population["single_spheres"], 3);
@@ -231,7 +231,7 @@ fn check_speaks_of_what_inlets_will_feed() {
         (said / rayleigh_s - 1.0).abs() < 1e-9,
         "{said} {rayleigh_s}"
     );
-    let pairs = &check["to_come"][0];
+    let pairs = &check["to_be_fed"][0];
     assert_eq!(pairs["inlet"], "pairs");
     assert_eq!(
         (&pairs["bodies"], &pairs["bonds"]),
@@ -242,8 +242,8 @@ fn check_speaks_of_what_inlets_will_feed() {
     let text = String::from_utf8(output.stdout).unwrap();
     for said in [
         "0 particles, 0 bonds at the start\n",
-        "3 bodies through the inlet 'pairs' until the end: 6 spheres and 3 bonds once they are bonded\n",
-        "if all that is fed is bonded and none leaves\n",
+        "3 bodies by the inlet 'pairs' until the end: 6 spheres and 3 bonds once they are bonded\n",
+        "if all that is fed is bonded and none is discharged\n",
     ] {
         assert!(text.contains(said), "{text}");
     }

@@ -44,7 +44,7 @@ fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
         }
         if let Some(before) = before.take() {
             // The first balance without the motion of those who fell asleep.
-            let lost_j = before.brought_j - now.brought_j;
+            let lost_j = before.flow_energy_j - now.flow_energy_j;
             all_lost_j += lost_j;
             let jump_j = (now.energy_error_j - before.energy_error_j).abs();
             eprintln!(

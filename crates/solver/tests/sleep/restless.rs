@@ -29,7 +29,7 @@ fn nobody_sleeps_on_what_moves() {
         "velocity = [0, 0, 1e-4]",
         "angular_velocity = [0, 0, 1e-2]",
         "displacement = [0, 0, 1e-5]\nramp = \"1 s\"",
-        "servo = { force = 1e-3, direction = [0, 0, 1], velocity = 1e-5 }",
+        "servo = { force = 1e-3, direction = [0, 0, 1], max_velocity = 1e-5 }",
     ] {
         for start in [CLUMP, ""] {
             never_sleeps(&lying(start, motion), 0.03);

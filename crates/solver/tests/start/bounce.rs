@@ -23,11 +23,11 @@ fn the_energy_error_of_a_bounce_is_that_of_the_page() {
         let [safety, step_s, pressed, left] = row[..] else {
             panic!("{row:?}");
         };
-        let text = scene.replace("run = {", &format!("run = {{ safety = {safety},"));
+        let text = scene.replace("run = {", &format!("run = {{ safety_factor = {safety},"));
         let summary = run_of(&text, None, None, 2.0).unwrap();
         assert_near(summary.time_step_s, step_s, 1e-3);
         assert_near(summary.energy_error, pressed, 5e-3);
-        assert_near(summary.ledger.energy_error, left, 5e-3);
+        assert_near(summary.balance.energy_error, left, 5e-3);
         largest.push(summary.energy_error);
     }
     // A quarter of the step: a sixteenth of the error, but for where rows of the series fall.

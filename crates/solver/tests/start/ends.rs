@@ -17,7 +17,7 @@ fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
     for steps in [20.0, 100.0, 333.0] {
         let text = format!(
             "{PAIR}run = {{ end_time = 1e-3, time_step = {} }}\n\
-             loads.push = {{ of = \"all\", force = [0, {force_n}, 0], end = {end_s} }}\n",
+             loads.push = {{ group = \"all\", force = [0, {force_n}, 0], end = {end_s} }}\n",
             1e-3 / steps
         );
         let mut state = planned(&text).state;
@@ -47,8 +47,8 @@ fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
 fn pulled(step_s: f64, end: &str) -> String {
     format!(
         "{PAIR}run = {{ end_time = 2e-3, time_step = {step_s} }}\n\
-         supports.clamp = {{ of = \"first\", fixed = true }}\n\
-         supports.pull = {{ of = \"second\", displacement = {{ x = 1e-6 }}, ramp = 0.2e-3, {end} }}\n"
+         supports.clamp = {{ group = \"first\", fixed = true }}\n\
+         supports.pull = {{ group = \"second\", displacement = {{ x = 1e-6 }}, ramp = 0.2e-3, {end} }}\n"
     )
 }
 
@@ -96,7 +96,7 @@ fn a_pair_that_is_let_go_swings_with_the_amplitude_of_its_release() {
 fn a_body_that_is_let_go_in_motion_keeps_its_velocity() {
     let text = format!(
         "{PAIR}run = {{ end_time = 2e-3, time_step = 1e-6, gravity = [0, 0, -10] }}\n\
-         supports.carry = {{ of = \"all\", velocity = {{ x = 2, z = 0, rx = 0, ry = 0, rz = 0 }}, ramp = 0.2e-3, end = 0.5e-3 }}\n"
+         supports.carry = {{ group = \"all\", velocity = {{ x = 2, z = 0, rx = 0, ry = 0, rz = 0 }}, ramp = 0.2e-3, end = 0.5e-3 }}\n"
     );
     let mut state = planned(&text).state;
     while state.time_s < 1.5e-3 - 0.5e-6 {
@@ -127,7 +127,7 @@ fn the_limit_of_the_step_counts_on_what_is_let_go() {
     };
     let clamp = |end: &str| {
         of(&format!(
-            "supports.c = {{ of = \"first\", fixed = true{end} }}\n"
+            "supports.c = {{ group = \"first\", fixed = true{end} }}\n"
         ))
     };
     let (free, held, ending) = (of(""), clamp(""), clamp(", end = 0.5"));
@@ -141,8 +141,8 @@ fn a_load_may_wait_for_the_end_of_a_support() {
     let of = |end: &str| {
         let text = format!(
             "{PAIR}run.end_time = 1e-3\n\
-             supports.c = {{ of = \"first\", fixed = true, end = 0.5e-3 }}\n\
-             loads.push = {{ of = \"first\", force = [1, 0, 0]{end} }}\n"
+             supports.c = {{ group = \"first\", fixed = true, end = 0.5e-3 }}\n\
+             loads.push = {{ group = \"first\", force = [1, 0, 0]{end} }}\n"
         );
         try_planned(&text).map(|_| ())
     };
@@ -160,12 +160,12 @@ fn a_load_may_wait_for_the_end_of_a_support() {
 fn rest_waits_for_the_end_of_supports_and_loads() {
     let damped = PAIR.replace(
         "radius_factor = 1 }",
-        "radius_factor = 1, damping = { viscous = 0.5 } }",
+        "radius_factor = 1, damping = { damping_ratio = 0.5 } }",
     );
-    let clamp = "supports.clamp = { of = \"first\", fixed = true }\n";
-    let run = "run = { end_time = 0.1, rest = 1e-6 }\n";
+    let clamp = "supports.clamp = { group = \"first\", fixed = true }\n";
+    let run = "run = { end_time = 0.1, rest_energy_ratio = 1e-6 }\n";
     let load =
-        |end: &str| format!("loads.pull = {{ of = \"second\", force = [1e-3, 0, 0]{end} }}\n");
+        |end: &str| format!("loads.pull = {{ group = \"second\", force = [1e-3, 0, 0]{end} }}\n");
     let ended = |more: &str| {
         let text = format!("{damped}{run}{clamp}{more}");
         let summary = run_of(&text, None, None, 2.0).unwrap();
@@ -176,13 +176,13 @@ fn rest_waits_for_the_end_of_supports_and_loads() {
     let (why, at_s) = ended(&format!(
         "{}{}",
         load(""),
-        "loads.last = { of = \"second\", force = [1e-3, 0, 0], end = \"30 ms\" }\n"
+        "loads.last = { group = \"second\", force = [1e-3, 0, 0], end = \"30 ms\" }\n"
     ));
     assert!(why == "rest" && at_s > 0.03 && at_s < 0.06, "{why} {at_s}");
     let (why, at_s) = ended(&format!(
         "{}{}",
         load(""),
-        "supports.hold = { of = \"second\", fixed = [\"y\"], end = \"20 ms\" }\n"
+        "supports.hold = { group = \"second\", fixed = [\"y\"], end = \"20 ms\" }\n"
     ));
     assert!(why == "rest" && at_s > 0.02 && at_s < 0.04, "{why} {at_s}");
 }
@@ -191,7 +191,7 @@ fn rest_waits_for_the_end_of_supports_and_loads() {
 #[test]
 fn a_resumed_run_ends_what_the_whole_one_ends() {
     let text = format!(
-        "{}loads.blow = {{ of = \"second\", force = [0, 1e-3, 0], end = 0.6501e-3 }}\n\
+        "{}loads.blow = {{ group = \"second\", force = [0, 1e-3, 0], end = 0.6501e-3 }}\n\
          output.series = 5e-6\n",
         pulled(1e-6, "end = 0.4e-3")
     );

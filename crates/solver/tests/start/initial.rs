@@ -13,8 +13,8 @@ fn a_pair_pulled_apart_swings_with_the_amplitude_it_had() {
     let step_s = 1e-6;
     let text = format!(
         "{PAIR}run = {{ end_time = 1e-3, time_step = {step_s} }}\n\
-         initial.one = {{ of = \"first\", displacement = [-0.4e-6, 0, 0] }}\n\
-         initial.other = {{ of = \"second\", displacement = [0.6e-6, 0, 0] }}\n"
+         initial.one = {{ group = \"first\", displacement = [-0.4e-6, 0, 0] }}\n\
+         initial.other = {{ group = \"second\", displacement = [0.6e-6, 0, 0] }}\n"
     );
     let mut state = planned(&text).state;
     let omega = (2.0 * STIFFNESS_N_M / MASS_KG).sqrt();
@@ -54,8 +54,8 @@ fn velocities_of_a_set_come_on_top_of_those_of_its_body() {
     );
     let text = format!(
         "{text}run.end_time = 1e-3\n\
-         initial.turning = {{ of = \"all\", angular_velocity = [0, 0, 100] }}\n\
-         initial.rising = {{ of = \"second\", velocity = [0, 0, 2], displacement = [0, 0, 0] }}\n"
+         initial.turning = {{ group = \"all\", angular_velocity = [0, 0, 100] }}\n\
+         initial.rising = {{ group = \"second\", velocity = [0, 0, 2], displacement = [0, 0, 0] }}\n"
     );
     let state = planned(&text).state;
     let of = |i: usize| {
@@ -76,9 +76,9 @@ fn velocities_of_a_set_come_on_top_of_those_of_its_body() {
 fn sets_are_picked_before_anything_is_displaced() {
     let text = format!(
         "{PAIR}run.end_time = 1e-3\n\
-         sets.left = {{ box = {{ min = [-1e-3, -1, -1], max = [1e-3, 1, 1] }} }}\n\
-         initial.one = {{ of = \"left\", displacement = [5e-3, 0, 0] }}\n\
-         initial.two = {{ of = \"left\", displacement = [0, 1e-3, 0] }}\n"
+         groups.left = {{ box = {{ min = [-1e-3, -1, -1], max = [1e-3, 1, 1] }} }}\n\
+         initial.one = {{ group = \"left\", displacement = [5e-3, 0, 0] }}\n\
+         initial.two = {{ group = \"left\", displacement = [0, 1e-3, 0] }}\n"
     );
     let plan = planned(&text);
     assert_eq!(plan.sets["left"], [0]);
@@ -90,7 +90,7 @@ fn sets_are_picked_before_anything_is_displaced() {
 #[test]
 fn a_start_of_zero_changes_nothing() {
     let text = format!("{PAIR}run = {{ end_time = 1e-3, gravity = [1, 2, 3] }}\n");
-    let with = format!("{text}initial.all = {{ of = \"all\", velocity = [0, 0, 0] }}\n");
+    let with = format!("{text}initial.all = {{ group = \"all\", velocity = [0, 0, 0] }}\n");
     let [with, without] = [with, text].map(|text| planned(&text).state);
     assert_eq!(with.particles.poses, without.particles.poses);
     assert_eq!(with.particles.motions, without.particles.motions);

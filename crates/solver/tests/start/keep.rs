@@ -1,4 +1,4 @@
-//! `start_overlap = "keep"`: what rests goes on resting.
+//! `initial_overlap = "keep"`: what rests goes on resting.
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -31,7 +31,7 @@ fn scene(start: &str, particles: &[[f64; 3]]) -> String {
         );
     }
     format!(
-        "version = 1\nrun = {{ end_time = 1, gravity = [0, 0, -{GRAVITY_M_S2}], start_overlap = \"{start}\" }}\n\
+        "version = 1\nrun = {{ end_time = 1, gravity = [0, 0, -{GRAVITY_M_S2}], initial_overlap = \"{start}\" }}\n\
          materials.glass = {{ density = 2500, young_modulus = \"50 MPa\", poisson_ratio = 0.25 }}\n\
          contacts.glass-glass = {{ restitution = 0.9 }}\n{bodies}\
          walls.ground = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"glass\" }}\n"

@@ -15,7 +15,7 @@ const SPEED_M_S: f64 = 0.5;
 
 fn dropped(anvil: &str) -> Plan {
     planned(&format!(
-        "version = 1\nrun = {{ end_time = 1, safety = 0.1 }}\n\
+        "version = 1\nrun = {{ end_time = 1, safety_factor = 0.1 }}\n\
          materials.glass = {{ density = 2500, young_modulus = \"50 MPa\", poisson_ratio = 0.25 }}\n\
          materials.anvil = {{ {anvil} }}\n\
          contacts.anvil-glass = {{ restitution = 1, friction = 0.5 }}\n\

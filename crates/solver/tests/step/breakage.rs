@@ -56,7 +56,7 @@ fn left(mut state: State, steps: u64) -> Left {
             jumps += (b.energy_error_j - before).abs();
         }
         before = b.energy_error_j;
-        released = b.released_j;
+        released = b.bond_breakage_j;
         left.energy = left.energy.max(b.energy_error.abs());
         left.momentum = left.momentum.max(b.momentum_error);
         left.angular_momentum = left.angular_momentum.max(b.angular_momentum_error);

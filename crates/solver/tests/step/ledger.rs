@@ -128,7 +128,7 @@ fn smooth() -> Vec<(&'static str, Change)> {
             swing(s);
             damp(s, BondDamping::Platzer(0.1, 0.3));
         }),
-        ("particle damping", |s| {
+        ("local damping", |s| {
             swing(s);
             damp_particles(s, 0.3);
         }),

@@ -27,7 +27,7 @@ const BREAKING: BondRule = BondRule {
         von_mises_pa: 0.12e6,
     }),
     strengthening_from_1_s: Some(1.1),
-    rate_of: dem_io::scene::RateOf::Elongation,
+    rate_of: dem_io::scene::StrainRateMeasure::Elongation,
 };
 
 /// Three random bodies side by side: incremental, total, incremental; all break.

@@ -67,7 +67,7 @@ fn a_clump_that_stands_there_from_the_start_is_measured() {
 #[test]
 fn a_clump_that_falls_flat_has_no_error_of_angular_momentum() {
     let summary = ended(&clump("[0, 0, -3]"));
-    assert!(summary.ledger.contact_damping_j > 0.0);
+    assert!(summary.balance.contact_damping_j > 0.0);
     assert!(
         summary.angular_momentum_error < 1e-12,
         "{}",

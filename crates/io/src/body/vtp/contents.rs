@@ -3,7 +3,7 @@
 use super::decode::{DAMAGED, Number, Values};
 use super::header::{Array, Counts, Role};
 use super::names::{
-    BONDING_RADIUS, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
+    BOND_RANGE, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use crate::body::parts::{Body, Parts};
@@ -195,7 +195,7 @@ impl Contents {
             SHAPE_VOLUME => about.shape_volume_m3 = first.map(float),
             PARTICLE_DENSITY => about.particle_density_kg_m3 = first.map(float),
             OVERLAP => about.overlap = first.map(float),
-            BONDING_RADIUS => about.bonding_radius = first.map(float),
+            BOND_RANGE => about.bond_range = first.map(float),
             WARNINGS => about.warnings = texts(&numbers)?,
             frame::TIME => self.of_frame.time_s = first.map(float),
             _ => {}
@@ -206,6 +206,13 @@ impl Contents {
     /// The body, if everything that it needs was there.
     pub(super) fn into_body(self) -> Result<Body> {
         self.check_counts()?;
+        if self.of_frame.broken.is_some() {
+            return Err(Diagnostic::input(
+                "",
+                "this is a frame of a run, whose bonds may be broken",
+                "write one of its fragments as a body: dem-run fragment RESULTS --largest -o piece.vtp",
+            ));
+        }
         let Some(radii) = self.radii else {
             let known = self.known_point_data();
             return Err(Diagnostic::input(
@@ -226,7 +233,7 @@ impl Contents {
         let missing = |name: &str| {
             Diagnostic::input(
                 "",
-                format!("this frame tells of no fragments: it has no array '{name}'"),
+                format!("this frame has no fragments: there is no array '{name}'"),
                 "only frames of runs in which bodies break into fragments have it",
             )
         };
@@ -245,7 +252,7 @@ impl Contents {
         }
         Ok(StoredFrame {
             time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
-            clusters: clusters.ok_or_else(|| missing(frame::CLUSTER))?,
+            clusters: clusters.ok_or_else(|| missing(frame::FRAGMENT_ID))?,
             positions: parts.positions,
             radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
             densities_kg_m3: densities.ok_or_else(|| missing(frame::DENSITY))?,

@@ -4,8 +4,8 @@ use quick_xml::events::BytesStart;
 
 use super::decode::{DAMAGED, Scalar};
 use super::names::{
-    BOND_LENGTH, BOND_RADIUS, BONDING_RADIUS, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM,
-    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+    BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
+    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use crate::body::stored_frame as frame;
 use crate::diagnostic::{Diagnostic, Result};
@@ -110,7 +110,7 @@ fn role_of(section: &str, name: &str) -> Role {
         SHAPE_VOLUME,
         PARTICLE_DENSITY,
         OVERLAP,
-        BONDING_RADIUS,
+        BOND_RANGE,
         SEED,
         WARNINGS,
     ];
@@ -121,6 +121,7 @@ fn role_of(section: &str, name: &str) -> Role {
         ("PointData", RADIUS) => Role::Radii,
         ("CellData", BOND_RADIUS) => Role::BondRadii,
         ("CellData", BOND_LENGTH) => Role::BondLengths,
+        ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", _) => FIELDS
             .into_iter()
             .find(|field| *field == name)
@@ -135,7 +136,7 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("Lines", "connectivity") => Role::Connectivity,
         ("Lines", "offsets") => Role::Offsets,
         ("PointData", frame::RADIUS) => Role::Radii,
-        ("PointData", frame::CLUSTER) => Role::Clusters,
+        ("PointData", frame::FRAGMENT_ID) => Role::Clusters,
         ("PointData", frame::DENSITY) => Role::Densities,
         ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,

@@ -3,9 +3,9 @@
 /// Version of this layout. Files of a later one are refused.
 pub const FORMAT_VERSION: u64 = 1;
 
-pub(super) const RADIUS: &str = "radius";
-pub(super) const BOND_RADIUS: &str = "bond_radius";
-pub(super) const BOND_LENGTH: &str = "bond_initial_length";
+pub(super) const RADIUS: &str = "radius_m";
+pub(super) const BOND_RADIUS: &str = "bond_radius_m";
+pub(super) const BOND_LENGTH: &str = "initial_length_m";
 pub(super) const VERSION: &str = "body_format_version";
 pub(super) const LENGTH_UNIT: &str = "length_unit";
 pub(super) const METRE: &str = "m";
@@ -17,6 +17,6 @@ pub(super) const SOURCE_HASH: &str = "source_hash";
 pub(super) const SHAPE_VOLUME: &str = "shape_volume_m3";
 pub(super) const PARTICLE_DENSITY: &str = "particle_density_kg_m3";
 pub(super) const OVERLAP: &str = "overlap";
-pub(super) const BONDING_RADIUS: &str = "bonding_radius";
+pub(super) const BOND_RANGE: &str = "bond_range";
 pub(super) const SEED: &str = "seed";
 pub(super) const WARNINGS: &str = "warnings";

@@ -132,10 +132,10 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
             },
             MeasureOf::Masses(Pieces::Left) if scene.outlets.is_empty() => {
                 let problem = format!(
-                    "measures.{name}.masses is \"left\", but the scene {} has no [outlets]",
+                    "measures.{name}.fragment_masses is \"discharged\", but the scene {} has no [outlets]",
                     scene.source
                 );
-                return refuse(problem, "write masses = \"at-end\"".to_owned());
+                return refuse(problem, "write fragment_masses = \"remaining\"".to_owned());
             }
             MeasureOf::Curve if scene.test.is_none() => {
                 let problem = format!(
@@ -146,7 +146,7 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
             }
             MeasureOf::Figure(of) if scene.test.is_none() => {
                 let problem = format!(
-                    "measures.{name}.figure is '{of}', but the scene {} has no [test]",
+                    "measures.{name}.test_result is '{of}', but the scene {} has no [test]",
                     scene.source
                 );
                 return refuse(problem, "name a measure of the scene".to_owned());

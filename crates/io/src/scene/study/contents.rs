@@ -115,25 +115,25 @@ pub struct StudyMeasure {
 pub enum MeasureOf {
     /// `measure`: a measure of the scene; that of the same name unless given.
     Measure(String),
-    /// `figure`: a figure of the scene's laboratory test.
+    /// `test_result`: a result of the scene's laboratory test.
     Figure(String),
-    /// `masses`: how many pieces there are, and how far the distribution of their masses is from
+    /// `fragment_masses`: how many pieces there are, and how far the distribution of their masses is from
     /// that of the finest run.
     Masses(Pieces),
     /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is
     /// from that of the finest run.
     Curve,
-    /// `ledger`: "energy", "momentum" or "angular-momentum": its largest relative error, which
+    /// `balance`: "energy", "momentum" or "angular-momentum": its largest relative error, which
     /// needs no reference.
-    Ledger(&'static str),
+    Balance(&'static str),
 }
 
 /// Which pieces' masses are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pieces {
-    /// "left": those that went through outlets.
+    /// "discharged": those that went through outlets.
     Left,
-    /// "at-end": those that are there at the end of the run.
+    /// "remaining": those that are there at the end of the run.
     AtEnd,
 }
 
@@ -141,7 +141,7 @@ pub enum Pieces {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
     /// "closed-form", unless given: the reference of the scene's measure, or the theory of the
-    /// test's figure.
+    /// test's result.
     ClosedForm,
     /// `{ value = ... }`: as written, with or without a unit.
     Value(String),
@@ -151,7 +151,7 @@ pub enum Reference {
     Richardson(usize),
 }
 
-pub(super) const LEDGERS: [(&str, &str); 3] = [
+pub(super) const BALANCES: [(&str, &str); 3] = [
     ("energy", "energy_error"),
     ("momentum", "momentum_error"),
     ("angular-momentum", "angular_momentum_error"),
@@ -161,7 +161,8 @@ pub(super) const LEDGERS: [(&str, &str); 3] = [
 pub(super) const CURVES: [(&str, ()); 1] = [("force-displacement", ())];
 
 impl Word for Pieces {
-    const WORDS: &'static [(&'static str, Self)] = &[("left", Self::Left), ("at-end", Self::AtEnd)];
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("discharged", Self::Left), ("remaining", Self::AtEnd)];
 }
 
 impl Word for RunTime {

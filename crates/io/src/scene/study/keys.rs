@@ -1,6 +1,6 @@
 //! The keys of a study.
 
-use super::contents::{CURVES, Combine, LEDGERS, Pieces, RunTime};
+use super::contents::{BALANCES, CURVES, Combine, Pieces, RunTime};
 use crate::scene::schema::{Key, Kind, Schema, Word, words_of};
 
 /// Most repeats, threads.
@@ -11,7 +11,7 @@ const ANYTHING: Kind = Kind::Anything("a value");
 
 pub(in crate::scene) static STUDY: Schema = Schema {
     title: "",
-    doc: "A study: a scene, what varies in it, what is measured and against what.",
+    doc: "A study: a scene, what varies in it, what is measured and what it is compared with.",
     keys: &[
         Key::whole("version", 1, "Version of the format.")
             .remedy("write version = 1")
@@ -25,7 +25,7 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::whole(
             "repeats",
             1,
-            "Each run is done so often; its time is the median.",
+            "Number of repetitions of each run; its time is the median.",
         )
         .up_to(MOST)
         .remedy("write repeats = 3")
@@ -37,12 +37,12 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::flag(
             "force_step",
             false,
-            "Steps above the largest stable one are taken: `run.time_step`, or `run.safety` of 1 and more.",
+            "Steps above the largest stable one are taken: `run.time_step`, or `run.safety_factor` of 1 and more.",
         ),
         Key::word::<RunTime>(
             "time",
             "wall",
-            "Which time is compared; `processor` is changed less by other programs on the machine.",
+            "Time that is compared; `processor` depends less on other programs on the machine.",
         ),
         Key::word::<Combine>(
             "combine",
@@ -52,7 +52,7 @@ pub(in crate::scene) static STUDY: Schema = Schema {
         Key::new(
             "set",
             Kind::Named("\"TABLE.KEY\"", &ANYTHING),
-            "What all runs have: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
+            "Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
         ),
         Key::new(
             "vary",
@@ -134,21 +134,21 @@ pub(super) static TOGETHER: Schema = Schema {
     keys: &[SIZE, NAMES],
 };
 
-pub(super) static MEASURE: Schema = Schema {
+pub(in crate::scene) static MEASURE: Schema = Schema {
     title: "[measures.NAME]",
-    doc: "What is looked at in each run: one of `measure`, `figure`, `masses`, `curve` and `ledger`.",
+    doc: "A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and `balance`.",
     keys: &[
         Key::text("measure", "a measure of the scene", "A measure of the scene.")
             .otherwise("that of the same name"),
         Key::text(
-            "figure",
-            "a figure of the scene's laboratory test",
-            "A figure of the scene's laboratory test, such as `stiffness`.",
+            "test_result",
+            "a result of the scene's laboratory test",
+            "A result of the scene's laboratory test, such as `stiffness`.",
         ),
         Key::new(
-            "masses",
+            "fragment_masses",
             Kind::Word(|| words_of(Pieces::WORDS)),
-            "Masses of the pieces that went through outlets, or are there at the end.",
+            "Masses of the fragments discharged through outlets, or remaining at the end.",
         ),
         Key::new(
             "curve",
@@ -156,9 +156,9 @@ pub(super) static MEASURE: Schema = Schema {
             "The curve of the scene's laboratory test.",
         ),
         Key::new(
-            "ledger",
-            Kind::Word(|| words_of(&LEDGERS)),
-            "The largest relative error of the run.",
+            "balance",
+            Kind::Word(|| words_of(&BALANCES)),
+            "The largest relative error of this balance in the run.",
         ),
         Key::new(
             "reference",
@@ -166,7 +166,7 @@ pub(super) static MEASURE: Schema = Schema {
                 Kind::Word(|| vec!["closed-form", "finest", "richardson"]),
                 Kind::Table(&REFERENCE),
             ]),
-            "What it is compared with: the `reference` of the scene's measure or the theory of the test's figure, a \
+            "What it is compared with: the `reference` of the scene's measure or the theory of the test's result, a \
              value, the run of the smallest size along an axis, or what the runs come to at size 0.",
         )
         .or_word("closed-form"),
@@ -198,6 +198,8 @@ pub(super) static REFERENCE: Schema = Schema {
 pub(super) static PAGE: Schema = Schema {
     title: "[page]",
     doc: "How the page shows the runs.",
-    keys: &[Key::text("series", "an axis", "What colours tell apart.")
-        .otherwise("the first that is no number")],
+    keys: &[
+        Key::text("series", "an axis", "The axis that is shown by colours.")
+            .otherwise("the first that is no number"),
+    ],
 };

@@ -1,6 +1,6 @@
 //! What is looked at in each run, and what it is compared with.
 
-use super::contents::{Axis, CURVES, LEDGERS, MeasureOf, Pieces, Reference, StudyMeasure};
+use super::contents::{Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, StudyMeasure};
 use super::keys::{MEASURE, REFERENCE};
 use crate::diagnostic::Result;
 use crate::scene::field::Field;
@@ -24,26 +24,35 @@ pub(super) fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
 
 pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure> {
     let table = Table::of(field, &MEASURE)?;
-    let kinds = ["measure", "figure", "masses", "curve", "ledger"];
+    let kinds = [
+        "measure",
+        "test_result",
+        "fragment_masses",
+        "curve",
+        "balance",
+    ];
     let given: Vec<_> = table.given(&kinds).collect();
     if let [(one, _), (_, other), ..] = given.as_slice() {
-        let problem = format!("{} stands beside {one}", other.path);
+        let problem = format!("{} cannot be combined with {one}", other.path);
         return Err(other.refuse(problem, "a measure is of one of them: remove the other"));
     }
     let of = match given.first() {
         None => MeasureOf::Measure(name.to_owned()),
         Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
-        Some(("figure", field)) => MeasureOf::Figure(field.text()?.to_owned()),
-        Some(("masses", field)) => MeasureOf::Masses(field.choice(Pieces::WORDS)?),
+        Some(("test_result", field)) => MeasureOf::Figure(field.text()?.to_owned()),
+        Some(("fragment_masses", field)) => MeasureOf::Masses(field.choice(Pieces::WORDS)?),
         Some(("curve", field)) => {
             field.choice(&CURVES)?;
             MeasureOf::Curve
         }
-        Some((_, field)) => MeasureOf::Ledger(field.choice(&LEDGERS)?),
+        Some((_, field)) => MeasureOf::Balance(field.choice(&BALANCES)?),
     };
     let reference = match table.get("reference") {
-        Some(field) if matches!(of, MeasureOf::Ledger(_)) => {
-            let problem = format!("{} stands at an error of the ledger", field.path);
+        Some(field) if matches!(of, MeasureOf::Balance(_)) => {
+            let problem = format!(
+                "{} is given for a balance, whose error is compared with 0",
+                field.path
+            );
             return Err(field.refuse(problem, "it is an error by itself: remove reference"));
         }
         Some(field) => reference(&field, axes)?,

@@ -50,7 +50,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         refuse_many_values(&axes)?;
     }
     if axes.is_empty() {
-        let remedy = "add [vary] with \"run.safety\" = [0.9, 0.5], say";
+        let remedy = "add [vary] with \"run.safety_factor\" = [0.9, 0.5], say";
         return Err(root.refuse("nothing varies", remedy));
     }
     for (at, axis) in axes.iter().enumerate() {

@@ -46,7 +46,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
             (values, table.get("size"), table.get("names"))
         }
         Value::Table(_) => {
-            let remedy = "write its path in quotes, such as \"run.safety\" = [0.9, 0.5]";
+            let remedy = "write its path in quotes, such as \"run.safety_factor\" = [0.9, 0.5]";
             let problem = format!("{} is neither a list nor a range", field.path);
             return Err(field.refuse(problem, remedy));
         }
@@ -101,7 +101,7 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
     }
     if values.is_empty() {
         let problem = format!("{} names no path", field.path);
-        return Err(field.refuse(problem, "add \"run.safety\" = [0.9, 0.5], say"));
+        return Err(field.refuse(problem, "add \"run.safety_factor\" = [0.9, 0.5], say"));
     }
     with_sizes(
         &mut values,
@@ -123,7 +123,7 @@ pub(super) fn settings(field: &Field<'_>, folder: &Path) -> Result<Vec<Setting>>
         .map(|(path, node)| {
             let field = table.field(path, node);
             if matches!(node.value, Value::Table(_)) && !path.contains('.') {
-                let remedy = "write its path in quotes, such as \"run.safety\" = 0.5";
+                let remedy = "write its path in quotes, such as \"run.safety_factor\" = 0.5";
                 let problem = format!("{} is no path into a table of the scene", field.path);
                 return Err(field.refuse(problem, remedy));
             }
@@ -136,7 +136,10 @@ fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
     let is_path = path.split('.').all(|key| !key.is_empty());
     if !is_path || !path.contains('.') || path.contains('=') {
         let problem = format!("\"{}\" is no path of a scene", shortened(path, 40));
-        return Err(field.refuse(problem, "write TABLE.KEY, such as run.safety or body.NAME"));
+        return Err(field.refuse(
+            problem,
+            "write TABLE.KEY, such as run.safety_factor or body.NAME",
+        ));
     }
     let value = if path.starts_with(BODY) {
         let name = field.text()?;

@@ -24,47 +24,47 @@ pub enum WallMotion {
         /// On both, over time.
         factor: Factor,
     },
-    /// `displacement` and `turn`, with `ramp` or `table`.
+    /// `displacement` and `angular_displacement`, with `ramp` or `table`.
     Displacement {
         /// Of the pivot, m. Length 3.
         displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `turn = { axis, angle }` as a rotation vector, rad.
+        /// About the pivot, which moves along: `angular_displacement = { axis, angle }` as a rotation vector, rad.
         /// Length 3.
-        turn_rad: [f64; 3],
+        angular_displacement_rad: [f64; 3],
         /// On both, over time.
         factor: Factor,
     },
-    /// `servo = { force, direction, velocity }`, with `ramp` or `table`: moves along `direction`
-    /// such that it pushes as wanted.
+    /// `servo = { force, direction, max_velocity }`, with `ramp` or `table`: moves along `direction`
+    /// such that it exerts a given force.
     Servo {
-        /// `force`: what it is to push with along `direction`, N; below 0 against it.
+        /// `force`: force to exert along `direction`, N; below 0 against it.
         force_n: f64,
         /// `direction`, of length 1. Length 3.
         direction: [f64; 3],
-        /// `velocity`: its largest, m/s; more than 0.
-        largest_velocity_m_s: f64,
+        /// `max_velocity`, m/s; more than 0.
+        max_velocity_m_s: f64,
         /// On the force, over time.
         factor: Factor,
     },
 }
 
-pub(super) static SERVO: Schema = Schema {
+pub(in crate::scene) static SERVO: Schema = Schema {
     title: "Servo",
-    doc: "A wall that moves along a direction such that it pushes as wanted.",
+    doc: "A servo-controlled wall: it moves along a direction such that it exerts a given force.",
     keys: &[
         Key::quantity(
             "force",
             &FORCE,
-            "What it is to push with along `direction`; below 0 against it.",
+            "Force to exert along `direction`; below 0 against it.",
         )
         .required("\"100 N\""),
         Key::new(
             "direction",
             Kind::Direction("a direction"),
-            "Along which it moves; its length does not matter.",
+            "Direction of motion; its length does not matter.",
         )
         .required("[0, 0, -1]"),
-        Key::quantity("velocity", &VELOCITY, "It is no faster than this.")
+        Key::quantity("max_velocity", &VELOCITY, "Maximum velocity.")
             .positive()
             .required("\"10 mm/s\", its largest"),
     ],
@@ -73,14 +73,14 @@ pub(super) static SERVO: Schema = Schema {
 /// The ways to move, each with its keys.
 const WAYS: [&[&str]; 3] = [
     &["velocity", "angular_velocity"],
-    &["displacement", "turn"],
+    &["displacement", "angular_displacement"],
     &["servo"],
 ];
 const KEYS: [&str; 5] = [
     "velocity",
     "angular_velocity",
     "displacement",
-    "turn",
+    "angular_displacement",
     "servo",
 ];
 
@@ -89,7 +89,7 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     let Some((first, field)) = given.next() else {
         if let Some(field) = over_time(wall) {
             let problem = format!(
-                "{} stands without velocity, displacement or servo, on which it acts",
+                "{} has no effect without velocity, displacement or servo",
                 field.path
             );
             return Err(field.refuse(problem, "remove it"));
@@ -98,15 +98,15 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     };
     let way = |key: &str| WAYS.iter().position(|keys| keys.contains(&key));
     if let Some((_, second)) = given.find(|(key, _)| way(key) != way(first)) {
-        let problem = format!("{} stands beside {first}", second.path);
+        let problem = format!("{} cannot be combined with {first}", second.path);
         let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
         return Err(second.refuse(problem, remedy));
     }
     match first {
         "servo" => servo(&field, factor(wall)?),
-        "displacement" | "turn" => Ok(WallMotion::Displacement {
+        "displacement" | "angular_displacement" => Ok(WallMotion::Displacement {
             displacement_m: wall.read("displacement")?,
-            turn_rad: wall.read("turn")?,
+            angular_displacement_rad: wall.read("angular_displacement")?,
             factor: factor_from_zero(wall, &field)?,
         }),
         _ => Ok(WallMotion::Velocity {
@@ -122,7 +122,7 @@ fn servo(field: &Field<'_>, factor: Factor) -> Result<WallMotion> {
     Ok(WallMotion::Servo {
         direction: table.read("direction")?,
         force_n: table.read("force")?,
-        largest_velocity_m_s: table.read("velocity")?,
+        max_velocity_m_s: table.read("max_velocity")?,
         factor,
     })
 }
@@ -141,23 +141,23 @@ pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
         }
         WallMotion::Displacement {
             displacement_m,
-            turn_rad,
+            angular_displacement_rad,
             factor,
         } => {
             listing.value("displacement", displacement_m);
-            listing.value("turn", turn_rad);
+            listing.value("angular_displacement", angular_displacement_rad);
             factor
         }
         WallMotion::Servo {
             force_n,
             direction,
-            largest_velocity_m_s,
+            max_velocity_m_s,
             factor,
         } => {
             listing.table("servo", &SERVO, |listing| {
                 listing.value("force", force_n);
                 listing.value("direction", direction);
-                listing.value("velocity", largest_velocity_m_s);
+                listing.value("max_velocity", max_velocity_m_s);
             });
             factor
         }

@@ -73,7 +73,7 @@ pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
         return Err(wall.refuse(problem, remedy));
     };
     if let Some((_, second)) = given.next() {
-        let problem = format!("{} stands beside {key}", second.path);
+        let problem = format!("{} cannot be combined with {key}", second.path);
         let remedy = "a wall has one shape: remove one, or make two walls";
         return Err(second.refuse(problem, remedy));
     }

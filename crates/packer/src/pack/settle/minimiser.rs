@@ -103,12 +103,12 @@ pub fn minimise_overlaps(
         }
         if settled.steps >= MOST_STEPS {
             return Err(Diagnostic::failed(
-                "--settle",
+                "--densify",
                 format!(
                     "the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps",
                     worst
                 ),
-                "use a smaller share, or --settle 0 for the bare front",
+                "use a smaller fraction, or --densify 0 for the bare front",
             ));
         }
         if settled.steps >= patience {

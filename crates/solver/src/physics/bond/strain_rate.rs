@@ -19,7 +19,7 @@ const BRANCH_1_S: f64 = 0.1;
 
 /// The rate below which Platzer 2022, section 4.5.1.8, strengthens nothing, so that the small
 /// oscillations of a quasi-static test are not, /s.
-pub const THESIS_FROM_1_S: f64 = 1.1;
+pub const PLATZER_LOWEST_RATE_1_S: f64 = 1.1;
 
 /// Rate at which a bond along the unit vector `c` from a to b gets longer, in initial lengths per
 /// second.

@@ -13,7 +13,7 @@ repeats = 1
 [vary]
 "run.time_step" = ["10 us", "900 us"]
 [together.breaks]
-"bonds.steel.failure.tension" = ["1e12 Pa", "1e12 Pa"]
+"bonds.steel.failure.tensile_strength" = ["1e12 Pa", "1e12 Pa"]
 "measures.pieces.of" = ["fragments", "fragments"]
 names = ["a,b", "c"]
 [measures.pieces]
@@ -118,7 +118,7 @@ fn steps_above_the_limit_are_for_trials() {
     let study = STEPS
         .replace("[0.2, 0.1, 0.05, 0.025]", "[0.9, 1.05]")
         .replace(
-            "[measures.tip]\nreference = { richardson = \"run.safety\" }\n",
+            "[measures.tip]\nreference = { richardson = \"run.safety_factor\" }\n",
             "",
         )
         .replace(
@@ -139,7 +139,7 @@ fn steps_above_the_limit_are_for_trials() {
     let refused = bench(&study);
     let (said, _) = partly(&refused, &[]);
     assert!(
-        said.contains("run.safety: 1.05 is no share of the largest stable step"),
+        said.contains("run.safety_factor: 1.05 of the largest stable step is not stable"),
         "{said}"
     );
 }

@@ -11,12 +11,12 @@ repeats = 1
 [set]
 "run.adaptive" = false
 [vary]
-"run.safety" = [0.9, 0.45, 0.3]
+"run.safety_factor" = [0.9, 0.45, 0.3]
 [measures.left]
-masses = "left"
+fragment_masses = "discharged"
 reference = "finest"
 [measures.rest]
-masses = "at-end"
+fragment_masses = "remaining"
 reference = "finest"
 "#;
 
@@ -29,7 +29,11 @@ fn distributions_of_masses_are_compared() {
         let text =
             fs::read_to_string(bench.path(&format!("study-sweep/runs/000{run}-1/events.csv")));
         let mut found = Vec::new();
-        for line in text.unwrap().lines().filter(|line| line.contains(",left,")) {
+        for line in text
+            .unwrap()
+            .lines()
+            .filter(|line| line.contains(",discharged,"))
+        {
             found.push(line.rsplit(' ').nth(1).unwrap().parse().unwrap());
         }
         found

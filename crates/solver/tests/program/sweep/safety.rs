@@ -11,7 +11,7 @@ use super::{SCENE, STEPS, bad, bench, good, partly, sweep};
 use crate::program::Bench;
 
 /// A study of one run and no more.
-const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety\" = [0.1]\n[measures.energy]\nledger = \"energy\"\n";
+const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety_factor\" = [0.1]\n[measures.energy]\nbalance = \"energy\"\n";
 
 fn names_in(folder: &Path) -> Vec<String> {
     super::super::names_in(folder)
@@ -27,7 +27,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         ),
         (
             ONE.replace(
-                "\"run.safety\" = [0.1]",
+                "\"run.safety_factor\" = [0.1]",
                 "\"body.bar\" = [\"a\\ntouch pwned\\n.csv\"]",
             ),
             "out",
@@ -38,7 +38,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         let bench = bench(&study);
         fs::create_dir(bench.path(evil)).unwrap();
         bench.write(&format!("{evil}/spring.toml"), SCENE);
-        let said = bad(&bench, &["--list", "--out", out], 2);
+        let said = bad(&bench, &["--list", "--output", out], 2);
         assert!(
             said.contains("\\u{a}touch pwned\\u{a}")
                 && said.contains(
@@ -59,7 +59,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         bench.write(&study, ONE.replace("spring.toml", "-spring.toml"));
         let mut command = bench.command(
             Path::new("sweep"),
-            &["--list", "--out", &format!("{folder}/out")],
+            &["--list", "--output", &format!("{folder}/out")],
         );
         let listed = command.args(["--force"]).arg(&study).output().unwrap();
         let list = String::from_utf8(listed.stdout).unwrap();
@@ -86,8 +86,8 @@ fn labels_are_shown_and_not_obeyed() {
         &format!("{{ values = [0.2, 0.1], {names} }}"),
     );
     let bench = bench(&study.replace(
-        "{ richardson = \"run.safety\" }",
-        "{ finest = \"run.safety\" }",
+        "{ richardson = \"run.safety_factor\" }",
+        "{ finest = \"run.safety_factor\" }",
     ));
     let mut said = good(&bench, &[]);
     said += &good(&bench, &["--collect", "--json"]);
@@ -114,7 +114,7 @@ fn what_is_read_is_not_written_over() {
         "bar.particles.csv",
         "x_m,y_m,z_m,radius_m\n0,0,0,0.2\n0.5,0,0,0.2\n",
     );
-    bench.write("bar.bonds.csv", "a,b\n0,1\n");
+    bench.write("bar.bonds.csv", "particle_a,particle_b\n0,1\n");
     std::os::unix::fs::symlink("spring.toml", bench.path("link.toml")).unwrap();
     fs::hard_link(bench.path("study.toml"), bench.path("hard.toml")).unwrap();
     let before: Vec<_> = [
@@ -133,7 +133,7 @@ fn what_is_read_is_not_written_over() {
         "bar.particles.csv",
         "bar.bonds.csv",
     ] {
-        let said = bad(&bench, &["--want", "error=1", "--write", target], 2);
+        let said = bad(&bench, &["--max-error", "all=1", "--write", target], 2);
         assert!(
             said.starts_with(&format!("error: --write {target}: '"))
                 && said.ends_with("' is read here and would be overwritten; name another file"),
@@ -218,7 +218,7 @@ fn force_removes_what_a_sweep_makes_and_nothing_else() {
     fs::create_dir_all(bench.path("other/runs/0001-1")).unwrap();
     for identity in ["{}", "[1]", "my study", "{ \"scene\": \"a.toml\" }"] {
         bench.write("other/study.json", identity);
-        let said = bad(&bench, &["--force", "--out", "other"], 2);
+        let said = bad(&bench, &["--force", "--output", "other"], 2);
         assert!(
             said.contains("other: this folder holds something else than a sweep"),
             "{said}"
@@ -305,12 +305,12 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
     );
     for (vary, options, parts) in [
         (
-            format!("\"run.rest\" = {}\n", range("1000000000000")),
+            format!("\"run.rest_energy_ratio\" = {}\n", range("1000000000000")),
             "",
             "must be from 2 to 100000",
         ),
         (
-            format!("\"run.rest\" = {}\n", range("99999")),
+            format!("\"run.rest_energy_ratio\" = {}\n", range("99999")),
             "",
             "99999 runs, 1 times each, are more than 10000; vary less, or say --yes",
         ),
@@ -335,7 +335,7 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
             "262144 runs with 99 axes each are more than 10000000 values; vary less",
         ),
     ] {
-        let bench = bench(&ONE.replace("\"run.safety\" = [0.1]\n", &vary));
+        let bench = bench(&ONE.replace("\"run.safety_factor\" = [0.1]\n", &vary));
         let mut command = sweep(&bench, &[]);
         if !options.is_empty() {
             command.arg(options);
@@ -382,7 +382,7 @@ fn an_endless_scene_or_study_is_refused() {
     assert!(
         table.is_empty()
             && said.contains(
-                "1 of 2 runs did not come to their end; the first: run 2, run.safety 1.5: "
+                "1 of 2 runs did not come to their end; the first: run 2, run.safety_factor 1.5: "
             ),
         "{said}"
     );

@@ -1,4 +1,4 @@
-//! `[sets.NAME]`
+//! `[groups.NAME]`
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -14,7 +14,7 @@ use crate::diagnostic::Result;
 
 /// Which particles are meant.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParticleSet {
+pub struct ParticleGroup {
     /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
     pub body: Option<String>,
     /// How they are picked, at the start of the run.
@@ -48,9 +48,9 @@ pub enum Pick {
 /// The ways to pick.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
-pub(super) static SET: Schema = Schema {
-    title: "[sets.NAME]",
-    doc: "Particles, picked in one way at the start of the run. The name of a body and `all` are sets as well.",
+pub(super) static GROUP: Schema = Schema {
+    title: "[groups.NAME]",
+    doc: "A group of particles, selected in one way at the start of the run. The name of a body and `all` are groups as well.",
     keys: &[
         Key::text("body", "a name in [bodies]", "Of this body only.").otherwise("all"),
         Key::new("all", Kind::True, "All of them."),
@@ -71,10 +71,10 @@ pub(super) static SET: Schema = Schema {
 pub(super) fn read_all(
     root: &Table<'_>,
     presence: &Presence<'_>,
-) -> Result<BTreeMap<String, ParticleSet>> {
+) -> Result<BTreeMap<String, ParticleGroup>> {
     let bodies = presence.bodies;
-    let mut sets = BTreeMap::new();
-    for (name, field) in root.named("sets")? {
+    let mut groups = BTreeMap::new();
+    for (name, field) in root.named("groups")? {
         let body = format!("the body [bodies.{name}]");
         let is_body = bodies.contains_key(&name);
         if let Some(of) = meaning(&name).or(is_body.then_some(&body)) {
@@ -86,28 +86,28 @@ pub(super) fn read_all(
             };
             return Err(field.refuse(problem, remedy));
         }
-        let set = read(&field, bodies)?;
-        presence.refuse_set(&field, set.body.as_deref())?;
-        sets.insert(name, set);
+        let group = read(&field, bodies)?;
+        presence.refuse_group(&field, group.body.as_deref())?;
+        groups.insert(name, group);
     }
-    Ok(sets)
+    Ok(groups)
 }
 
-fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleSet> {
-    let table = Table::of(field, &SET)?;
+fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleGroup> {
+    let table = Table::of(field, &GROUP)?;
     let body = table.read_by("body", |field| field.reference(bodies.keys(), "bodies"))?;
     let mut given = table.given(&PICKS);
     let Some((key, first)) = given.next() else {
-        let problem = format!("{} picks nothing", table.path);
+        let problem = format!("{} selects nothing", table.path);
         let remedy =
             "add all = true, particles = [0], box = { min, max } or sphere = { centre, radius }";
         return Err(table.refuse(problem, remedy));
     };
     if let Some((_, second)) = given.next() {
-        let problem = format!("{} stands beside {key}", second.path);
+        let problem = format!("{} cannot be combined with {key}", second.path);
         return Err(second.refuse(
             problem,
-            "a set picks in one way: remove one, or make two sets",
+            "a group selects in one way: remove one, or make two groups",
         ));
     }
     match key {
@@ -115,7 +115,7 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
             let only = bodies.keys().next().filter(|_| bodies.len() == 1);
             let Some(body) = body.or(only.cloned()) else {
                 let problem = format!(
-                    "{} says nothing of the body, and there are {}",
+                    "{} needs a body, and there are {}",
                     first.path,
                     bodies.len()
                 );
@@ -124,25 +124,25 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
                 return Err(first.refuse(problem, remedy));
             };
             let pick = Pick::Particles(particles(&first, bodies.get(&body))?);
-            Ok(ParticleSet {
+            Ok(ParticleGroup {
                 body: Some(body),
                 pick,
             })
         }
-        "box" => Ok(ParticleSet {
+        "box" => Ok(ParticleGroup {
             body,
             pick: region(&first)?,
         }),
         "sphere" => {
             let (centre, radius) = sphere(&first)?;
             let pick = Pick::Sphere { centre, radius };
-            Ok(ParticleSet { body, pick })
+            Ok(ParticleGroup { body, pick })
         }
         _ => {
             if !first.boolean()? {
                 return Err(first.wrong("true", "write all = true, or pick in another way"));
             }
-            Ok(ParticleSet {
+            Ok(ParticleGroup {
                 body,
                 pick: Pick::All,
             })
@@ -175,9 +175,9 @@ fn region(field: &Field<'_>) -> Result<Pick> {
     Ok(Pick::Box { min, max })
 }
 
-pub(super) fn list(set: &ParticleSet, listing: &mut Listing) {
-    listing.text("body", set.body.as_deref().unwrap_or("all"));
-    match &set.pick {
+pub(super) fn list(group: &ParticleGroup, listing: &mut Listing) {
+    listing.text("body", group.body.as_deref().unwrap_or("all"));
+    match &group.pick {
         Pick::All => listing.text("all", "true"),
         Pick::Particles(picked) => {
             let shown: Vec<String> = picked.iter().take(LISTED).map(u32::to_string).collect();
