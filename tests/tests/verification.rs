@@ -2,8 +2,13 @@
 //! references.
 
 mod cantilevers;
+mod clumps;
 mod contacts;
+mod damping;
 mod failure;
+mod packing;
 mod page;
+mod relaxation;
 mod scene;
 mod table;
+mod time_step;

@@ -76,7 +76,11 @@ impl Impact {
     }
 
     fn effective_mass_kg(&self) -> f64 {
-        if self.pair { 0.5 * mass_kg() } else { mass_kg() }
+        if self.pair {
+            0.5 * mass_kg()
+        } else {
+            mass_kg()
+        }
     }
 
     fn effective_young_pa(&self) -> f64 {
@@ -140,7 +144,9 @@ impl Impact {
     /// part the moment is known by a straight line.
     fn run(&self, steps: f64) -> Rebound {
         let step_s = self.duration_s() / steps;
-        self.run_from(&mut started(&self.scene(&format!("{step_s:e}"), 2.5 * step_s)))
+        self.run_from(&mut started(
+            &self.scene(&format!("{step_s:e}"), 2.5 * step_s),
+        ))
     }
 
     /// The same with the time step that the solver chooses by itself, the ends meeting after so
@@ -170,7 +176,11 @@ impl Impact {
                 let parted_s = state.time_s - state.time_step_s * now / (now - before);
                 // Another step, so that velocities are those after the last force.
                 step(state);
-                let other = if self.pair { velocity(state, 1) } else { Vector3::zeros() };
+                let other = if self.pair {
+                    velocity(state, 1)
+                } else {
+                    Vector3::zeros()
+                };
                 let velocity = velocity(state, 0) - other;
                 return Rebound {
                     velocity_m_s: [velocity.x, velocity.z],
@@ -190,7 +200,11 @@ fn mass_kg() -> f64 {
 
 /// Against what a pair meets.
 fn other(pair: bool) -> &'static str {
-    if pair { "ball and ball" } else { "ball and wall" }
+    if pair {
+        "ball and ball"
+    } else {
+        "ball and wall"
+    }
 }
 
 /// Elastic impacts: duration and largest overlap. Leapfrog is of second order, with the duration
@@ -264,7 +278,12 @@ fn restitution() -> String {
                     let found = Impact::head_on(law, pair, wanted, speed).run(STEPS);
                     let bound = restitution_bound(law, wanted, 1.0 / STEPS);
                     let what = format!("{}, {}, {speed} m/s", law.name(), other(pair));
-                    cases.push(Case::new(what, found.velocity_m_s[1] / speed, wanted, bound));
+                    cases.push(Case::new(
+                        what,
+                        found.velocity_m_s[1] / speed,
+                        wanted,
+                        bound,
+                    ));
                 }
             }
         }
@@ -344,15 +363,28 @@ fn oblique() -> [String; 2] {
         let (what, wanted, bounds) = if slides {
             let pushed = 0.1 * 2.0 * along;
             let wanted = [across - pushed, 2.5 * pushed / RADIUS_M];
-            ("slides: closed form", wanted, [1.0 / STEPS, 1.0 / STEPS + lever])
+            (
+                "slides: closed form",
+                wanted,
+                [1.0 / STEPS, 1.0 / STEPS + lever],
+            )
         } else {
-            ("sticks: integrated", integrated(&impact, 100.0 * STEPS), [1.0 / STEPS; 2])
+            (
+                "sticks: integrated",
+                integrated(&impact, 100.0 * STEPS),
+                [1.0 / STEPS; 2],
+            )
         };
         let what = format!("{angle}°, {what}");
         let found = [found.velocity_m_s[0], found.spin_rad_s];
         for (i, table) in tables.iter_mut().enumerate() {
             let scale = [across, 2.5 * across / RADIUS_M][i];
-            table.push(Case::of_scale(what.clone(), [found[i], wanted[i]], scale, bounds[i]));
+            table.push(Case::of_scale(
+                what.clone(),
+                [found[i], wanted[i]],
+                scale,
+                bounds[i],
+            ));
         }
     }
     let [velocities, spins] = tables;
@@ -460,7 +492,12 @@ fn sliding_to_rolling() -> String {
                 bound,
             ),
             Case::new("velocity then, m/s", speed, 5.0 / 7.0 * start, bound),
-            Case::new("spin then, rad/s", spin, 5.0 / 7.0 * start / RADIUS_M, bound),
+            Case::new(
+                "spin then, rad/s",
+                spin,
+                5.0 / 7.0 * start / RADIUS_M,
+                bound,
+            ),
             Case::new("share of energy lost", lost, 2.0 / 7.0, bound),
         ],
     )
@@ -514,6 +551,25 @@ fn rolling_friction() -> String {
     compared("rolling friction, incline", "m/s2", &cases)
 }
 
+/// A ball that starts at rest on an incline on which rolling friction can hold it: with a spring it
+/// stays, with a constant moment it creeps, which is not shown.
+fn held() -> String {
+    let cases = [1.0_f64, 2.0, 4.0].map(|degrees| {
+        let angle = degrees.to_radians();
+        let rolling = "rolling = \"spring-dashpot\", rolling_friction = 0.1";
+        let mut state = on_plane(angle, &format!("friction = 0.5, {rolling}"), 0.0, 0.0);
+        until(&mut state, 1.0);
+        let free = 5.0 / 7.0 * GRAVITY_M_S2 * angle.sin();
+        Case::of_scale(
+            format!("{degrees}°"),
+            [velocity(&state, 0).x, 0.0],
+            free,
+            1e-9,
+        )
+    });
+    compared("incline", "m/s", &cases)
+}
+
 /// The page of contacts is what the solver gives.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -536,6 +592,7 @@ fn the_page_shows_what_the_solver_gives() {
                 ("incline", along),
                 ("incline spins", turn),
                 ("rolling friction", rolling_friction()),
+                ("held", held()),
             ],
         )
     });

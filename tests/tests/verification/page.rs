@@ -1,7 +1,10 @@
 //! Pages in `tests/verification`: a text with places for tables, held against what is computed.
 
 use std::fs;
-use std::path::Path;
+
+use dem_testing::names_in;
+
+use crate::root;
 
 /// Puts tables where a text names them: `{name}`.
 pub(crate) fn filled(text: &str, tables: &[(&str, String)]) -> String {
@@ -17,7 +20,7 @@ pub(crate) fn filled(text: &str, tables: &[(&str, String)]) -> String {
 /// Holds files of `tests/verification`, names and contents, against those that are there; with
 /// `RENEW_VERIFICATION` set, writes them instead.
 pub(crate) fn assert_shown(files: &[(String, String)]) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification");
+    let folder = root().join("tests/verification");
     let renew = std::env::var_os("RENEW_VERIFICATION").is_some();
     let mut old = Vec::new();
     for (name, content) in files {
@@ -44,4 +47,30 @@ pub(crate) fn assert_shown(files: &[(String, String)]) {
 pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(work)
+}
+
+/// Every page is linked from README.md beside it, and every DOI on it stands in doc/references.md.
+#[test]
+fn pages_are_listed_and_so_are_their_sources() {
+    let folder = root().join("tests/verification");
+    let index = fs::read_to_string(folder.join("README.md")).unwrap();
+    let sources = fs::read_to_string(root().join("doc/references.md")).unwrap();
+    let names = names_in(&folder);
+    let pages = names
+        .iter()
+        .filter(|name| name.ends_with(".md") && *name != "README.md");
+    for name in pages {
+        assert!(
+            index.contains(&format!("]({name})")),
+            "{name} is not in README.md"
+        );
+        let page = fs::read_to_string(folder.join(name)).unwrap();
+        for after in page.split("](https://doi.org/").skip(1) {
+            let doi = after.split(')').next().unwrap();
+            assert!(
+                sources.contains(doi),
+                "{name}: {doi} is not in doc/references.md"
+            );
+        }
+    }
 }

@@ -16,6 +16,7 @@ pub(crate) struct Case {
     reference: f64,
     scale: f64,
     bound: f64,
+    rounding: f64,
 }
 
 impl Case {
@@ -37,7 +38,17 @@ impl Case {
             reference,
             scale,
             bound,
+            rounding: ROUNDING,
         }
+    }
+
+    /// Errors below this are not printed: their digits hang on the order of sums.
+    pub(crate) fn rounding(self, rounding: f64) -> Self {
+        Self { rounding, ..self }
+    }
+
+    fn keeps_bound(&self) -> bool {
+        self.error().abs() <= self.bound
     }
 
     fn error(&self) -> f64 {
@@ -47,16 +58,23 @@ impl Case {
     fn row(&self) -> String {
         let error = self.error();
         let doubt = DOUBT * self.scale;
+        let computed = if self.reference != 0.0 {
+            significant(self.computed, doubt)
+        } else if error.abs() < self.rounding {
+            "0".to_owned()
+        } else {
+            steady(self.computed, doubt, |value| format!("{value:.1e}"))
+        };
         row(&[
             self.what.clone(),
-            significant(self.computed, doubt),
+            computed,
             significant(self.reference, doubt),
-            if error.abs() < ROUNDING {
-                "< 1e-9".to_owned()
+            if error.abs() < self.rounding {
+                format!("< {:.0e}", self.rounding)
             } else {
                 steady(error, DOUBT, |error| format!("{error:.1e}"))
             },
-            format!("{:.0e}", self.bound),
+            format!("{:.1e}", self.bound),
         ])
     }
 }
@@ -74,7 +92,7 @@ pub(crate) fn compared(of: &str, unit: &str, cases: &[Case]) -> String {
     for case in cases {
         table += &case.row();
     }
-    let off = cases.iter().filter(|case| !(case.error().abs() <= case.bound));
+    let off = cases.iter().filter(|case| !case.keeps_bound());
     let off: Vec<&str> = off.map(|case| case.what.as_str()).collect();
     assert!(off.is_empty(), "beyond the bound: {off:?}\n{table}");
     table
