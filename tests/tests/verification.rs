@@ -1,9 +1,14 @@
-//! Static cases of Chen et al. 2022, run through the time stepping to rest, and the page about
-//! them.
+//! Pages of verification: what the solver and the packer give against closed forms and other
+//! references.
 
-mod bar;
-mod cases;
-mod models;
+mod cantilevers;
+mod clumps;
+mod contacts;
+mod damping;
+mod failure;
+mod packing;
 mod page;
-mod statics;
-mod tables;
+mod relaxation;
+mod scene;
+mod table;
+mod time_step;

@@ -1,76 +1,76 @@
-//! The page `tests/verification/README.md` and its plots are what the solver gives.
+//! Pages in `tests/verification`: a text with places for tables, held against what is computed.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use dem_io::results::svg;
+use dem_testing::names_in;
 
-use super::cases::on_one_thread;
-use super::tables::{
-    of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
-};
+use crate::root;
 
-const TEXT: &str = include_str!("page.md");
+/// Puts tables where a text names them: `{name}`.
+pub(crate) fn filled(text: &str, tables: &[(&str, String)]) -> String {
+    let mut page = text.to_owned();
+    for (name, table) in tables {
+        let place = format!("{{{name}}}");
+        assert!(page.contains(&place), "{place} has no place in the page");
+        page = page.replace(&place, table.trim_end());
+    }
+    page
+}
 
-/// Runs all five cases, holds each against its exact solution, and the page against what came out.
-#[test]
-fn the_page_shows_what_the_solver_gives() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification");
+/// Holds files of `tests/verification`, names and contents, against those that are there; with
+/// `RENEW_VERIFICATION` set, writes them instead.
+pub(crate) fn assert_shown(files: &[(String, String)]) {
+    let folder = root().join("tests/verification");
     let renew = std::env::var_os("RENEW_VERIFICATION").is_some();
     let mut old = Vec::new();
-    for (name, content) in on_one_thread(files) {
-        let path: PathBuf = folder.join(&name);
-        if fs::read_to_string(&path).is_ok_and(|is| is == content) {
+    for (name, content) in files {
+        let path = folder.join(name);
+        if fs::read_to_string(&path).is_ok_and(|is| is == *content) {
             continue;
         }
         if renew {
-            fs::create_dir_all(&folder).unwrap();
             fs::write(&path, content).unwrap();
         } else {
-            old.push(name);
+            old.push(name.as_str());
         }
     }
     assert!(
         old.is_empty(),
-        "tests/verification: {} no longer shows what the solver gives. If the change is meant, renew the page, look at it and commit it:\n\
-         RENEW_VERIFICATION=1 cargo test --release -p dem-tests --test verification",
+        "tests/verification: {} no longer shows what is computed. If the change is meant, renew the pages, look at them and commit them:\n\
+         RENEW_VERIFICATION=1 cargo test --locked -p dem-tests --test main verification",
         old.join(", ")
     );
 }
 
-/// All files of the page.
-fn files() -> Vec<(String, String)> {
-    let (table1, [shape, error]) = of_case1();
-    let (table2, plot2) = of_case2();
-    let (table3, plot3) = of_case3();
-    let (table4, plot4) = of_case4();
-    let (table5, plot5) = of_case5();
-    let tables = [
-        ("{table 4}", table1),
-        ("{table 5}", of_stiffnesses()),
-        ("{whole load}", of_whole_load()),
-        ("{case 2}", table2),
-        ("{case 3}", table3),
-        ("{case 4}", table4),
-        ("{case 5}", table5),
-    ];
-    let mut page = TEXT.to_owned();
-    for (place, table) in tables {
-        assert!(page.contains(place), "{place} has no place in the page");
-        page = page.replace(place, table.trim_end());
+/// On one worker thread: scenes here are too small for more, and handing each step to another
+/// thread takes longer than the step.
+pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(work)
+}
+
+/// Every page is linked from README.md beside it, and every DOI on it stands in doc/references.md.
+#[test]
+fn pages_are_listed_and_so_are_their_sources() {
+    let folder = root().join("tests/verification");
+    let index = fs::read_to_string(folder.join("README.md")).unwrap();
+    let sources = fs::read_to_string(root().join("doc/references.md")).unwrap();
+    let names = names_in(&folder);
+    let pages = names
+        .iter()
+        .filter(|name| name.ends_with(".md") && *name != "README.md");
+    for name in pages {
+        assert!(
+            index.contains(&format!("]({name})")),
+            "{name} is not in README.md"
+        );
+        let page = fs::read_to_string(folder.join(name)).unwrap();
+        for after in page.split("](https://doi.org/").skip(1) {
+            let doi = after.split(')').next().unwrap();
+            assert!(
+                sources.contains(doi),
+                "{name}: {doi} is not in doc/references.md"
+            );
+        }
     }
-    let plots = [
-        ("case1.svg", shape),
-        ("case1-error.svg", error),
-        ("case2.svg", plot2),
-        ("case3.svg", plot3),
-        ("case4.svg", plot4),
-        ("case5.svg", plot5),
-    ];
-    let mut files = vec![("README.md".to_owned(), page.clone())];
-    for (name, plot) in plots {
-        assert!(page.contains(name), "the page does not show {name}");
-        files.push((name.to_owned(), svg(&plot)));
-    }
-    files
 }

@@ -5,10 +5,10 @@ use nalgebra::UnitQuaternion;
 
 use super::bar::LOAD;
 use super::cases::{
-    KAPPA_OF_CASE_5, TOLERANCE, assert_near, assert_profile, case1, case2, case3, case5,
-    on_one_thread, small,
+    KAPPA_OF_CASE_5, TOLERANCE, assert_near, assert_profile, case1, case2, case3, case5, small,
 };
 use super::models::{MODELS, PARALLEL, number, numbers, small_load, whole_load};
+use crate::verification::page::on_one_thread;
 
 /// The closed form that the bars are held against is what an independent implementation finds by
 /// direct stiffness.

@@ -8,6 +8,7 @@ use super::cases::{
     COUNTS, KAPPA_OF_CASE_5, Small, TOLERANCE, case1, case2, case3, case4, case5, small,
 };
 use super::models::{MODELS, PARALLEL};
+use crate::verification::table::{digits, head, row};
 
 /// Names of the lines of plots; models without a name are not drawn. The elastic solid bond has the
 /// stiffnesses of the parallel bond where spheres are equal.
@@ -28,20 +29,6 @@ const DRAWN_TOGETHER: [&str; 5] = [
     "",
 ];
 
-/// A number with this many decimals. It must not hang on what differs from machine to machine, the
-/// last `doubt` of it.
-pub(crate) fn digits(value: f64, decimals: usize, doubt: f64) -> String {
-    let text = |value: f64| {
-        let text = format!("{value:.decimals$}");
-        match text.strip_prefix('-') {
-            Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
-            _ => text,
-        }
-    };
-    assert_eq!(text(value - doubt), text(value + doubt), "unsteady digits");
-    text(value).replace('-', "−")
-}
-
 /// A deflection in mm.
 pub(crate) fn mm(deflection_m: f64, decimals: usize) -> String {
     digits(
@@ -58,17 +45,6 @@ pub(crate) fn off(deflection_m: f64, theory_m: f64) -> String {
         2,
         200.0 * TOLERANCE,
     )
-}
-
-/// The row of a table.
-pub(crate) fn row(cells: &[String]) -> String {
-    format!("| {} |\n", cells.join(" | "))
-}
-
-/// The head of a table: words in the first column, numbers in the others.
-pub(crate) fn head(cells: &[&str]) -> String {
-    let names: Vec<String> = cells.iter().map(|&cell| cell.to_owned()).collect();
-    format!("{}|---|{}\n", row(&names), "---:|".repeat(cells.len() - 1))
 }
 
 /// For a plot: without the digits that differ from machine to machine.

@@ -107,10 +107,3 @@ fn assert_reaction(rest: &Rest, load_n: f64, length_m: f64, tolerance: f64) {
         "moment of the support",
     );
 }
-
-/// On one worker thread: the bars are too small for more, and handing each step to another thread
-/// takes longer than the step.
-pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.unwrap().install(work)
-}

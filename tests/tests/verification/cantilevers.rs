@@ -1,0 +1,54 @@
+//! Static cases of Chen et al. 2022, run through the time stepping to rest, and the page about
+//! them.
+
+mod bar;
+mod cases;
+mod models;
+mod statics;
+mod tables;
+
+use dem_io::results::svg;
+
+use self::tables::{
+    of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
+};
+use super::page::{assert_shown, filled, on_one_thread};
+
+/// Runs all five cases, holds each against its exact solution, and the page against what came out.
+#[test]
+fn the_page_shows_what_the_solver_gives() {
+    assert_shown(&on_one_thread(files));
+}
+
+/// All files of the page.
+fn files() -> Vec<(String, String)> {
+    let (table1, [shape, error]) = of_case1();
+    let (table2, plot2) = of_case2();
+    let (table3, plot3) = of_case3();
+    let (table4, plot4) = of_case4();
+    let (table5, plot5) = of_case5();
+    let tables = [
+        ("table 4", table1),
+        ("table 5", of_stiffnesses()),
+        ("whole load", of_whole_load()),
+        ("case 2", table2),
+        ("case 3", table3),
+        ("case 4", table4),
+        ("case 5", table5),
+    ];
+    let page = filled(include_str!("cantilevers.md"), &tables);
+    let plots = [
+        ("case1.svg", shape),
+        ("case1-error.svg", error),
+        ("case2.svg", plot2),
+        ("case3.svg", plot3),
+        ("case4.svg", plot4),
+        ("case5.svg", plot5),
+    ];
+    let mut files = vec![("cantilevers.md".to_owned(), page.clone())];
+    for (name, plot) in plots {
+        assert!(page.contains(name), "the page does not show {name}");
+        files.push((name.to_owned(), svg(&plot)));
+    }
+    files
+}

@@ -1,0 +1,353 @@
+//! Swings of one bond with damping of bonds or of particles, and where they come to rest.
+
+use std::f64::consts::PI;
+
+use dem_run::{State, balance, step};
+
+use super::page::{assert_shown, filled, on_one_thread};
+use super::scene::{place, spin, started, velocity};
+use super::table::{Case, compared};
+
+const RADIUS_M: f64 = 1e-3;
+const LENGTH_M: f64 = 3e-3;
+const YOUNG_PA: f64 = 1e9;
+const POISSON: f64 = 0.25;
+const DENSITY_KG_M3: f64 = 2500.0;
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// Step times circular frequency.
+const STEP: f64 = 0.01;
+
+/// How two spheres swing against each other.
+#[derive(Debug, Clone, Copy)]
+enum Mode {
+    Axial,
+    Torsion,
+    Bending,
+}
+
+const MODES: [Mode; 3] = [Mode::Axial, Mode::Torsion, Mode::Bending];
+
+fn mass_kg() -> f64 {
+    DENSITY_KG_M3 * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
+}
+
+fn inertia_kg_m2() -> f64 {
+    0.4 * mass_kg() * RADIUS_M * RADIUS_M
+}
+
+fn second_moment_m4() -> f64 {
+    0.25 * PI * RADIUS_M.powi(4)
+}
+
+impl Mode {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Axial => "axial",
+            Self::Torsion => "torsion",
+            Self::Bending => "bending",
+        }
+    }
+
+    /// N/m or N m/rad.
+    fn stiffness(self) -> f64 {
+        let shear = YOUNG_PA / (2.0 * (1.0 + POISSON));
+        match self {
+            Self::Axial => YOUNG_PA * PI * RADIUS_M * RADIUS_M / LENGTH_M,
+            Self::Torsion => 2.0 * shear * second_moment_m4() / LENGTH_M,
+            Self::Bending => YOUNG_PA * second_moment_m4() / LENGTH_M,
+        }
+    }
+
+    /// kg or kg m2, of two equal spheres.
+    fn reduced(self) -> f64 {
+        0.5 * match self {
+            Self::Axial => mass_kg(),
+            Self::Torsion | Self::Bending => inertia_kg_m2(),
+        }
+    }
+
+    fn omega_rad_s(self) -> f64 {
+        (self.stiffness() / self.reduced()).sqrt()
+    }
+
+    /// At which each of two free spheres starts, m/s or rad/s.
+    fn start_speed(self) -> f64 {
+        let moved = if matches!(self, Self::Axial) {
+            LENGTH_M
+        } else {
+            1.0
+        };
+        1e-4 * moved * self.omega_rad_s()
+    }
+
+    /// How two free spheres start: opposite velocities or spins.
+    fn start(self) -> String {
+        let of = match self {
+            Self::Axial => "velocity = [V, 0, 0]",
+            Self::Torsion => "angular_velocity = [V, 0, 0]",
+            Self::Bending => "angular_velocity = [0, 0, V]",
+        };
+        let speed = self.start_speed();
+        let of = |speed: f64| of.replace('V', &format!("{speed:e}"));
+        format!(
+            "initial.left = {{ group = \"left\", {} }}\ninitial.right = {{ group = \"right\", {} }}",
+            of(-speed),
+            of(speed)
+        )
+    }
+
+    /// Displacement of the second sphere against the first, and its rate half a step before.
+    fn relative(self, state: &State) -> [f64; 2] {
+        let turn = |i: usize| state.particles.poses[i].rotation().scaled_axis();
+        let turned = turn(1) - turn(0);
+        let turns = spin(state, 1) - spin(state, 0);
+        match self {
+            Self::Axial => {
+                let moves = velocity(state, 1) - velocity(state, 0);
+                [(place(state, 1) - place(state, 0)).x - LENGTH_M, moves.x]
+            }
+            Self::Torsion => [turned.x, turns.x],
+            Self::Bending => [turned.z, turns.z],
+        }
+    }
+}
+
+/// Two spheres and their bond along x, with keys of `[run]`, damping of the bond, and what else is
+/// done to "left" and "right".
+fn pair(run: &str, damping: &str, more: &str) -> State {
+    started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = "1 h", {run} }}
+        materials.stone = {{ density = {DENSITY_KG_M3:e} }}
+        bodies.pair = {{ particles = [[0, 0, 0, {RADIUS_M:e}], [{LENGTH_M:e}, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue" }}
+        groups.left = {{ particles = [0] }}
+        groups.right = {{ particles = [1] }}
+        bonds.glue = {{ model = "timoshenko", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, damping = {{ {damping} }} }}
+        {more}
+        "#
+    ))
+}
+
+/// Times and speeds at which a swing passes through its middle.
+fn crossings(mode: Mode, state: &mut State, count: usize) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    let mut before = mode.relative(state);
+    let mut at_s = None;
+    while found.len() < count {
+        step(state);
+        let now = mode.relative(state);
+        // Rates stand half a step before: the one before, and that which comes after.
+        if let Some(at_s) = at_s.take() {
+            let part: f64 = (at_s - state.time_s) / state.time_step_s + 1.5;
+            found.push([at_s, (before[1] + part * (now[1] - before[1])).abs()]);
+        }
+        if before[0] * now[0] < 0.0 {
+            let part = now[0] / (now[0] - before[0]);
+            at_s = Some(state.time_s - part * state.time_step_s);
+        }
+        before = now;
+    }
+    found
+}
+
+/// Logarithmic decrement and duration of half a swing.
+fn half_swing(crossings: &[[f64; 2]]) -> [f64; 2] {
+    let (first, last) = (crossings[0], crossings[crossings.len() - 1]);
+    let swings = (crossings.len() - 1) as f64;
+    [
+        (first[1] / last[1]).ln() / swings,
+        (last[0] - first[0]) / swings,
+    ]
+}
+
+/// Damping ratios and frequencies of damped bonds. The dashpots take the velocity of half a step
+/// ago, which is as if the mass were less by a share of zeta omega dt.
+fn damped_bonds() -> [String; 2] {
+    let (mut ratios, mut frequencies) = (Vec::new(), Vec::new());
+    let share = |mode: Mode| match mode {
+        Mode::Axial => 1.0,
+        Mode::Torsion => 2.0_f64.sqrt(),
+        Mode::Bending => (2.0 * Mode::Torsion.stiffness() / Mode::Bending.stiffness()).sqrt(),
+    };
+    let mut cases = Vec::new();
+    for mode in MODES {
+        for eta in [0.02, 0.1, 0.4] {
+            let chen = format!("damping_ratio = {eta}");
+            cases.push((mode, chen.clone(), share(mode) * eta));
+            cases.push((mode, format!("{chen}, per_mode = true"), eta));
+        }
+    }
+    let critical = 2.0 * (Mode::Axial.stiffness() * Mode::Axial.reduced()).sqrt();
+    cases.push((Mode::Axial, format!("damping_coefficient = {:e}", 0.1 * critical), 0.1));
+    cases.push((Mode::Torsion, "torque_factor = 0.2".to_owned(), 0.1));
+    cases.push((Mode::Bending, "torque_factor = 0.2".to_owned(), 0.1));
+    for (mode, damping, zeta) in cases {
+        let omega = mode.omega_rad_s();
+        let run = format!("time_step = {:e}", STEP / omega);
+        let mut state = pair(&run, &damping, &mode.start());
+        let [decrement, half_s] = half_swing(&crossings(mode, &mut state, 5));
+        let bound = zeta * STEP + STEP * STEP;
+        let damping = match damping.split_once('=') {
+            Some(("force ", _)) => "`force`, a tenth of the critical".to_owned(),
+            _ => format!("`{damping}`"),
+        };
+        let what = format!("{}, {damping}", mode.name());
+        ratios.push(Case::new(
+            what.clone(),
+            decrement / decrement.hypot(PI),
+            zeta,
+            bound,
+        ));
+        let wanted = omega * (1.0 - zeta * zeta).sqrt();
+        frequencies.push(Case::new(
+            what,
+            PI / half_s,
+            wanted,
+            bound / (1.0 - zeta * zeta),
+        ));
+    }
+    [
+        compared("mode, damping", "", &ratios),
+        compared("mode, damping", "rad/s", &frequencies),
+    ]
+}
+
+/// What is booked as taken by damping once a swing has died down, over the energy at its start.
+fn booked() -> String {
+    let mut cases = Vec::new();
+    for mode in MODES {
+        let run = format!("time_step = {:e}", STEP / mode.omega_rad_s());
+        let mut state = pair(&run, "damping_ratio = 0.2, per_mode = true", &mode.start());
+        let speed = 2.0 * mode.start_speed();
+        let start_j = 0.5 * mode.reduced() * speed * speed;
+        while state.time_s * mode.omega_rad_s() < 100.0 {
+            step(&mut state);
+        }
+        let taken = balance(&mut state).bond_damping_j / start_j;
+        cases.push(Case::new(mode.name(), taken, 1.0, STEP * STEP));
+    }
+    compared("mode", "", &cases)
+}
+
+const HELD: &str = "supports.left = { group = \"left\", fixed = true }\n";
+
+/// Particle damping of a sphere that swings on a held one: decrement and duration of half a swing.
+fn particle_damping() -> [String; 2] {
+    let (mut decrements, mut durations) = (Vec::new(), Vec::new());
+    let omega = (Mode::Axial.stiffness() / mass_kg()).sqrt();
+    for gamma in [0.05_f64, 0.2, 0.5, 0.7] {
+        let run = format!(
+            "time_step = {:e}, local_damping = {gamma:e}",
+            STEP / omega
+        );
+        let speed = 1e-4 * LENGTH_M * omega;
+        let more =
+            format!("{HELD}initial.right = {{ group = \"right\", velocity = [{speed:e}, 0, 0] }}");
+        let mut state = pair(&run, "damping_ratio = 0", &more);
+        let [decrement, half_s] = half_swing(&crossings(Mode::Axial, &mut state, 9));
+        let quarter = |share: f64| 0.5 * PI / omega / share.sqrt();
+        let wanted = 0.5 * ((1.0 + gamma) / (1.0 - gamma)).ln();
+        let bound = gamma * STEP + STEP * STEP;
+        let what = format!("{gamma}");
+        decrements.push(Case::new(what.clone(), decrement, wanted, bound));
+        let wanted = quarter(1.0 - gamma) + quarter(1.0 + gamma);
+        // A step late, the force is 2 gamma too large for that long, and the quarter after it by
+        // so much shorter.
+        let late = 2.0 * gamma / (1.0 - gamma) * STEP / (omega * wanted);
+        let bound = late + STEP * STEP;
+        durations.push(Case::new(what, 1e6 * half_s, 1e6 * wanted, bound));
+    }
+    [
+        compared("gamma", "", &decrements),
+        compared("gamma", "us", &durations),
+    ]
+}
+
+/// Fall of a sphere with particle damping: speed after 1000 steps, in the first of which it is at
+/// rest and not damped.
+fn fall() -> String {
+    let cases = [0.0, 0.2, 0.5].map(|gamma| {
+        let mut state = started(&format!(
+            r#"
+            version = 1
+            run = {{ end_time = "1 s", time_step = "0.1 ms", gravity = [0, 0, {:e}], local_damping = {gamma:e} }}
+            materials.stone = {{ density = {DENSITY_KG_M3:e} }}
+            bodies.ball = {{ particles = [[0, 0, 0, {RADIUS_M:e}]], material = "stone" }}
+            "#,
+            -GRAVITY_M_S2
+        ));
+        for _ in 0..1000 {
+            step(&mut state);
+        }
+        let since_s = state.time_s - 0.5 * state.time_step_s;
+        let acceleration = -velocity(&state, 0).z / since_s;
+        let bound = 1e-9 + 1e-3 * gamma / (1.0 - gamma);
+        Case::new(format!("{gamma}"), acceleration, (1.0 - gamma) * GRAVITY_M_S2, bound)
+    });
+    compared("gamma", "m/s2", &cases)
+}
+
+/// Where a loaded sphere comes to rest, whatever damps it.
+fn rest() -> String {
+    let phi = 20.0 * RADIUS_M * RADIUS_M * (1.0 + POISSON) / (3.0 * LENGTH_M * LENGTH_M);
+    let shear = 12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi));
+    let omega = (Mode::Axial.stiffness() / mass_kg()).sqrt();
+    let (along, across) = (1.0, 1e-3);
+    let mut cases = Vec::new();
+    for (name, gamma, damping) in [
+        ("bond damping", 0.0, "damping_ratio = 0.3, per_mode = true"),
+        ("particle damping", 0.5, "damping_ratio = 0"),
+        ("both", 0.5, "damping_ratio = 0.3"),
+    ] {
+        for (direction, force) in [("along", [along, 0.0]), ("across", [0.0, across])] {
+            let run = format!(
+                "time_step = {:e}, local_damping = {gamma:e}",
+                0.2 / omega
+            );
+            let [fx, fy] = force;
+            let more =
+                format!("{HELD}loads.right = {{ group = \"right\", force = [{fx:e}, {fy:e}, 0] }}");
+            let mut state = pair(&run, damping, &more);
+            while state.time_s * omega < 5000.0 {
+                step(&mut state);
+            }
+            let moved = place(&state, 1);
+            // Half the length is the lever of a force across, of its moment and of its turn.
+            let half = 0.5 * LENGTH_M;
+            let (found, wanted) = if direction == "along" {
+                (moved.x - LENGTH_M, along / Mode::Axial.stiffness())
+            } else {
+                let bent = half * half / Mode::Bending.stiffness();
+                (moved.y, across * (bent + 1.0 / shear))
+            };
+            let bound = 1e-8;
+            let what = format!("{name}, load {direction}");
+            cases.push(Case::new(what, 1e9 * found, 1e9 * wanted, bound));
+        }
+    }
+    compared("damping, load", "nm", &cases)
+}
+
+/// The page of damping is what the solver gives.
+#[test]
+fn the_page_shows_what_the_solver_gives() {
+    let page = on_one_thread(|| {
+        let [ratios, frequencies] = damped_bonds();
+        let [decrements, durations] = particle_damping();
+        filled(
+            include_str!("damping.md"),
+            &[
+                ("ratios", ratios),
+                ("frequencies", frequencies),
+                ("booked", booked()),
+                ("decrements", decrements),
+                ("durations", durations),
+                ("fall", fall()),
+                ("rest", rest()),
+            ],
+        )
+    });
+    assert_shown(&[("damping.md".to_owned(), page)]);
+}

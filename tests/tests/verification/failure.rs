@@ -1,0 +1,499 @@
+//! One bond that breaks, by every criterion, at every rate, and many whose strengths scatter.
+
+use std::f64::consts::PI;
+
+use dem_run::{State, step};
+
+use super::page::{assert_shown, filled, on_one_thread};
+use super::scene::started;
+use super::table::{Case, compared};
+
+const RADIUS_M: f64 = 1e-3;
+const LENGTH_M: f64 = 3e-3;
+const YOUNG_PA: f64 = 1e12;
+const POISSON: f64 = 0.2;
+/// eta of Chen et al. 2022, eqs. 9 and 10.
+const DAMPING: f64 = 0.3;
+
+/// The strengths in tension and compression, in shear, and by the equivalent stress, Pa.
+const TENSION_PA: f64 = 1.0e6;
+const COMPRESSION_PA: f64 = 1.3e6;
+const SHEAR_PA: f64 = 0.7e6;
+const VON_MISES_PA: f64 = 1.1e6;
+
+/// Steps in which a load rises to its end. A bond breaks at the first step at which it carries more
+/// than its strength: late by one step of the load at most.
+const STEPS: f64 = 10_000.0;
+/// Of its end, a load has come to this share when the bond breaks: in the middle of a step.
+const SHARE: f64 = 0.700_05;
+/// Bonds break at strains of some 1e-6; loads are linear in displacements but for such a share.
+const STRAIN: f64 = 1e-5;
+
+/// Axial and bending stress, shear stress and that of torsion, in some proportion, Pa.
+#[derive(Debug, Clone, Copy)]
+struct Stresses {
+    axial: f64,
+    bending: f64,
+    shear: f64,
+    torsion: f64,
+}
+
+const NONE: Stresses = Stresses {
+    axial: 0.0,
+    bending: 0.0,
+    shear: 0.0,
+    torsion: 0.0,
+};
+
+/// A strength: its key, and what it is of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Criterion {
+    Tension,
+    Compression,
+    Shear,
+    VonMises,
+}
+
+impl Criterion {
+    fn key(self) -> String {
+        match self {
+            Self::Tension => format!("tensile_strength = {TENSION_PA:e}"),
+            Self::Compression => format!("compressive_strength = {COMPRESSION_PA:e}"),
+            Self::Shear => format!("shear_strength = {SHEAR_PA:e}"),
+            Self::VonMises => format!("von_mises_strength = {VON_MISES_PA:e}"),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Tension => "tensile strength",
+            Self::Compression => "compressive strength",
+            Self::Shear => "shear strength",
+            Self::VonMises => "equivalent stress",
+        }
+    }
+
+    /// Share of the strength that stresses use.
+    fn used(self, s: Stresses) -> f64 {
+        let sheared = s.shear + s.torsion;
+        match self {
+            Self::Tension => (s.bending + s.axial) / TENSION_PA,
+            Self::Compression => (s.bending - s.axial) / COMPRESSION_PA,
+            Self::Shear => sheared / SHEAR_PA,
+            Self::VonMises => {
+                let pulled = s.axial.max(0.0) + s.bending;
+                (pulled * pulled + 3.0 * sheared * sheared).sqrt() / VON_MISES_PA
+            }
+        }
+    }
+}
+
+fn area_m2() -> f64 {
+    PI * RADIUS_M * RADIUS_M
+}
+
+fn second_moment_m4() -> f64 {
+    0.25 * PI * RADIUS_M.powi(4)
+}
+
+fn shear_modulus_pa() -> f64 {
+    YOUNG_PA / (2.0 * (1.0 + POISSON))
+}
+
+/// Shear stiffness of a Timoshenko bond, N/m.
+fn shear_stiffness_n_m() -> f64 {
+    let phi = 20.0 * RADIUS_M * RADIUS_M * (1.0 + POISSON) / (3.0 * LENGTH_M * LENGTH_M);
+    12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi))
+}
+
+/// Two spheres and their Timoshenko bond along x; `failure` are the keys of its failure, `more` is
+/// what is done to the spheres "left" and "right".
+fn bond(failure: &str, run: &str, more: &str) -> State {
+    started(&format!(
+        r#"
+        version = 1
+        run = {{ {run} }}
+        materials.stone = {{ density = 2500 }}
+        bodies.rod = {{ particles = [[0, 0, 0, {RADIUS_M:e}], [{LENGTH_M:e}, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue" }}
+        groups.left = {{ particles = [0] }}
+        groups.right = {{ particles = [1] }}
+        bonds.glue = {{ model = "timoshenko", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, failure = {{ {failure} }}, damping = {{ damping_ratio = {DAMPING} }} }}
+        {more}
+        "#
+    ))
+}
+
+/// Runs until the first bond breaks: when forces were computed by which it did, s.
+fn breaks_s(state: &mut State, end_s: f64) -> f64 {
+    while state.time_s <= end_s {
+        let now_s = state.time_s;
+        step(state);
+        if state.broken_count > 0 {
+            return now_s;
+        }
+    }
+    f64::NAN
+}
+
+/// Share of these stresses at which a bond breaks whose ends are displaced and turned such that it
+/// carries them at the end.
+fn breaks_at(criterion: Criterion, end: Stresses) -> f64 {
+    let strain = end.axial / YOUNG_PA;
+    let slid_m = end.shear * area_m2() / shear_stiffness_n_m();
+    let bent = end.bending * LENGTH_M / (YOUNG_PA * RADIUS_M);
+    let twisted = end.torsion * LENGTH_M / (shear_modulus_pa() * RADIUS_M);
+    let more = format!(
+        r#"
+        supports.left = {{ group = "left", fixed = ["x", "y", "z", "rx", "ry"], displacement = {{ rz = {:e} }}, ramp = 1 }}
+        supports.right = {{ group = "right", fixed = ["z", "ry"], displacement = {{ x = {:e}, y = {slid_m:e}, rx = {twisted:e}, rz = {:e} }}, ramp = 1 }}
+        "#,
+        -0.5 * bent,
+        strain * LENGTH_M,
+        0.5 * bent,
+    );
+    let run = format!("end_time = 1, time_step = {:e}", 1.0 / STEPS);
+    breaks_s(&mut bond(&criterion.key(), &run, &more), 1.0)
+}
+
+/// Stresses in proportion, by what they are of.
+const LOADS: [(&str, Stresses); 9] = [
+    ("tension", Stresses { axial: 1.0, ..NONE }),
+    (
+        "compression",
+        Stresses {
+            axial: -1.0,
+            ..NONE
+        },
+    ),
+    (
+        "bending",
+        Stresses {
+            bending: 1.0,
+            ..NONE
+        },
+    ),
+    ("shear", Stresses { shear: 1.0, ..NONE }),
+    (
+        "torsion",
+        Stresses {
+            torsion: 1.0,
+            ..NONE
+        },
+    ),
+    (
+        "tension and bending",
+        Stresses {
+            axial: 0.4,
+            bending: 0.6,
+            ..NONE
+        },
+    ),
+    (
+        "compression and bending",
+        Stresses {
+            axial: -0.7,
+            bending: 0.3,
+            ..NONE
+        },
+    ),
+    (
+        "shear and torsion",
+        Stresses {
+            shear: 0.5,
+            torsion: 0.2,
+            ..NONE
+        },
+    ),
+    (
+        "all",
+        Stresses {
+            axial: 0.3,
+            bending: 0.4,
+            shear: 0.1,
+            torsion: 0.3,
+        },
+    ),
+];
+
+/// The loads that each criterion is tried with.
+const TRIED: [(Criterion, &[&str]); 4] = [
+    (
+        Criterion::Tension,
+        &["tension", "bending", "tension and bending", "all"],
+    ),
+    (
+        Criterion::Compression,
+        &["compression", "bending", "compression and bending"],
+    ),
+    (
+        Criterion::Shear,
+        &["shear", "torsion", "shear and torsion", "all"],
+    ),
+    (
+        Criterion::VonMises,
+        &[
+            "tension",
+            "bending",
+            "shear",
+            "torsion",
+            "compression and bending",
+            "all",
+        ],
+    ),
+];
+
+/// All criteria under single and mixed loads: the largest stress as the bond breaks.
+fn by_displacement() -> String {
+    let tried = TRIED.iter().flat_map(|(criterion, names)| {
+        let of = move |name: &&str| LOADS.iter().find(|load| load.0 == *name).unwrap();
+        names.iter().map(move |name| (*criterion, of(name)))
+    });
+    let cases = tried.map(|(criterion, &(name, load))| {
+        let whole = 1.0 / (SHARE * criterion.used(load));
+        let end = Stresses {
+            axial: whole * load.axial,
+            bending: whole * load.bending,
+            shear: whole * load.shear,
+            torsion: whole * load.torsion,
+        };
+        let stresses = [end.axial.abs(), end.bending, end.shear, end.torsion];
+        let largest = 1e-6 * stresses.into_iter().fold(0.0, f64::max);
+        let found = largest * breaks_at(criterion, end);
+        let what = format!("{}: {name}", criterion.name());
+        Case::new(what, found, largest * SHARE, 1.0 / (SHARE * STEPS) + STRAIN)
+    });
+    compared("criterion: load", "MPa", &cases.collect::<Vec<_>>())
+}
+
+/// Loads on the free end that rise slowly. Damping of the coefficient c takes c/k times the rate of
+/// the load from what a bond of stiffness k carries.
+fn by_load() -> String {
+    let mass_kg = 2500.0 * 4.0 / 3.0 * PI * RADIUS_M.powi(3);
+    let inertia_kg_m2 = 0.4 * mass_kg * RADIUS_M * RADIUS_M;
+    let normal = YOUNG_PA * area_m2() / LENGTH_M;
+    let bending = YOUNG_PA * second_moment_m4() / LENGTH_M;
+    let torsion = 2.0 * shear_modulus_pa() * second_moment_m4() / LENGTH_M;
+    let step_s = 0.1 * (mass_kg / normal).sqrt();
+    let force_damping = 2.0 * DAMPING * (normal * mass_kg).sqrt();
+    let moment_damping = 2.0 * DAMPING * (2.0 * torsion * inertia_kg_m2).sqrt();
+    let force = TENSION_PA * area_m2();
+    let moment = TENSION_PA * second_moment_m4() / RADIUS_M;
+    let twist = 2.0 * SHEAR_PA * second_moment_m4() / RADIUS_M;
+    let of_bending_s = moment_damping / bending;
+    let mut cases = Vec::new();
+    for (criterion, what, push, strength, lag_s) in [
+        (
+            Criterion::Tension,
+            "tension, N",
+            "force = [1, 0, 0]",
+            force,
+            force_damping / normal,
+        ),
+        (
+            Criterion::Tension,
+            "bending, N m",
+            "torque = [0, 0, 1]",
+            moment,
+            of_bending_s,
+        ),
+        (
+            // The moment counts halfway along the bond.
+            Criterion::Tension,
+            "across the end, N",
+            "force = [0, 1, 0]",
+            moment / (0.5 * LENGTH_M),
+            of_bending_s,
+        ),
+        (
+            Criterion::Shear,
+            "torsion, N m",
+            "torque = [1, 0, 0]",
+            twist,
+            moment_damping / torsion,
+        ),
+    ] {
+        let (end, end_s) = (strength / SHARE, STEPS * step_s);
+        let push = push.replace('1', &format!("{end:e}"));
+        let more = format!(
+            "supports.left = {{ group = \"left\", fixed = true }}\nloads.right = {{ group = \"right\", {push}, ramp = {end_s:e} }}"
+        );
+        let run = format!("end_time = {end_s:e}, time_step = {step_s:e}");
+        let found = breaks_s(&mut bond(&criterion.key(), &run, &more), end_s) / end_s;
+        let bound = (1.0 + lag_s / step_s) / (SHARE * STEPS) + STRAIN;
+        cases.push(Case::new(what, found * end, strength, bound));
+    }
+    compared("load", "", &cases)
+}
+
+/// The dynamic increase factor as Platzer 2022 gives it in eq. 20.
+fn dynamic_increase_factor(rate_1_s: f64) -> f64 {
+    let lg = rate_1_s.clamp(4.64e-6, 50.0).log10();
+    if rate_1_s <= 0.1 {
+        (1.0 + 0.0225 * (lg + 5.3333)).max(1.0)
+    } else {
+        1.6 + 1.235 * lg + 0.7325 * lg * lg
+    }
+}
+
+/// Steps until the static strength is reached: such that at no rate a bond breaks just as a step
+/// ends, where rounding decides which.
+const STATIC_STEPS: f64 = 5066.7;
+
+/// Strength over static strength of a bond that is pulled at a rate.
+fn strengthened(rate_1_s: f64, from_1_s: f64) -> f64 {
+    let static_s = TENSION_PA / YOUNG_PA / rate_1_s;
+    let half = 0.5 * rate_1_s * LENGTH_M;
+    let more = format!(
+        r#"
+        supports.left = {{ group = "left", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = {:e} }} }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = {half:e} }} }}
+        "#,
+        -half
+    );
+    let failure = format!(
+        "{}, rate_strengthening = {from_1_s:e}",
+        Criterion::Tension.key()
+    );
+    let end_s = 8.0 * static_s;
+    let run = format!(
+        "end_time = {end_s:e}, time_step = {:e}",
+        static_s / STATIC_STEPS
+    );
+    breaks_s(&mut bond(&failure, &run, &more), end_s) / static_s
+}
+
+fn by_rate() -> [String; 2] {
+    let rates = [1e-6, 1e-5, 1e-3, 0.1, 0.2, 1.0, 1.2, 10.0, 50.0, 100.0];
+    let [all, from] = [1e-9, 1.1].map(|from| {
+        let cases = rates.map(|rate| {
+            let wanted = if rate < from {
+                1.0
+            } else {
+                dynamic_increase_factor(rate)
+            };
+            let bound = 1.0 / STATIC_STEPS + STRAIN;
+            Case::new(format!("{rate}"), strengthened(rate, from), wanted, bound)
+        });
+        compared("rate, 1/s", "", &cases)
+    });
+    [all, from]
+}
+
+/// Gamma function, by Stirling's series.
+fn gamma(x: f64) -> f64 {
+    let y = x + 12.0;
+    let series = 1.0 / (12.0 * y) - 1.0 / (360.0 * y.powi(3)) + 1.0 / (1260.0 * y.powi(5));
+    let far = (y - 0.5) * y.ln() - y + 0.5 * (2.0 * PI).ln() + series;
+    let between: f64 = (0..12).map(|i| (x + f64::from(i)).ln()).sum();
+    (far - between).exp()
+}
+
+/// Strengths over the one given of bonds that are pulled alike, in the order in which they break.
+fn scattered(modulus: f64, count: usize, steps: f64) -> Vec<f64> {
+    let spheres = (0..count).map(|i| {
+        let y = 4.0 * RADIUS_M * i as f64;
+        format!("[0, {y:e}, 0, {RADIUS_M:e}], [{LENGTH_M:e}, {y:e}, 0, {RADIUS_M:e}]")
+    });
+    let spheres: Vec<String> = spheres.collect();
+    let pairs: Vec<String> = (0..count)
+        .map(|i| format!("[{}, {}]", 2 * i, 2 * i + 1))
+        .collect();
+    let half_box = |low: f64, high: f64| {
+        format!("{{ box = {{ min = [{low:e}, -1, -1], max = [{high:e}, 1000, 1] }} }}")
+    };
+    let middle = 0.5 * LENGTH_M;
+    let (strain, text) = (
+        TENSION_PA / YOUNG_PA,
+        [spheres.join(", "), pairs.join(", ")],
+    );
+    let [spheres, pairs] = text;
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = 4, time_step = {:e}, seed = {modulus} }}
+        materials.stone = {{ density = 2500 }}
+        bodies.rods = {{ particles = [{spheres}], bond_list = [{pairs}], material = "stone", bonds = "glue" }}
+        groups.left = {}
+        groups.right = {}
+        bonds.glue = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, failure = {{ {}, weibull_modulus = {modulus:e} }} }}
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = {:e} }} }}
+        "#,
+        1.0 / steps,
+        half_box(-1.0, middle),
+        half_box(middle, 1.0),
+        Criterion::Tension.key(),
+        strain * LENGTH_M
+    ));
+    let mut strengths = Vec::new();
+    while strengths.len() < count && state.time_s < 4.0 {
+        let now_s = state.time_s;
+        step(&mut state);
+        strengths.resize(state.broken_count as usize, now_s);
+    }
+    strengths
+}
+
+/// Mean and deviation of the strengths, and their distance from the distribution. Bounds are three
+/// standard errors, and the step of the load.
+fn scatter() -> String {
+    const COUNT: usize = 2000;
+    const STEPS: f64 = 500.0;
+    let n = COUNT as f64;
+    let mut cases = Vec::new();
+    for modulus in [3.0, 6.0, 12.0] {
+        let found = scattered(modulus, COUNT, STEPS);
+        assert_eq!(found.len(), COUNT);
+        let mean = found.iter().sum::<f64>() / n;
+        let squares: f64 = found.iter().map(|s| (s - mean) * (s - mean)).sum();
+        let deviation = (squares / (n - 1.0)).sqrt();
+        let [m1, m2, m3, m4] = [1.0, 2.0, 3.0, 4.0].map(|k| gamma(1.0 + k / modulus));
+        let wanted = (m2 - m1 * m1).sqrt();
+        let fourth = m4 - 4.0 * m1 * m3 + 6.0 * m1 * m1 * m2 - 3.0 * m1.powi(4);
+        let kurtosis = fourth / wanted.powi(4);
+        let distance = found.iter().enumerate().map(|(i, strength)| {
+            let share = 1.0 - (-strength.powf(modulus)).exp();
+            (share - i as f64 / n)
+                .abs()
+                .max((share - (i as f64 + 1.0) / n).abs())
+        });
+        let of_mean = 3.0 * wanted / n.sqrt() / m1 + 1.0 / STEPS;
+        let of_deviation = 3.0 * (0.25 * (kurtosis - 1.0) / n).sqrt() + 1.0 / STEPS;
+        // The density is below 0.4 of the modulus.
+        let of_distance = 1.63 / n.sqrt() + 0.4 * modulus / STEPS;
+        let distance = distance.fold(0.0, f64::max);
+        cases.push(Case::new(format!("{modulus}: mean"), mean, m1, of_mean));
+        cases.push(Case::new(
+            format!("{modulus}: standard deviation"),
+            deviation,
+            wanted,
+            of_deviation,
+        ));
+        cases.push(Case::of_scale(
+            format!("{modulus}: distance of Kolmogorov and Smirnov"),
+            [distance, 0.0],
+            1.0,
+            of_distance,
+        ));
+    }
+    compared("Weibull modulus", "", &cases)
+}
+
+/// The page of failure is what the solver gives.
+#[test]
+fn the_page_shows_what_the_solver_gives() {
+    let page = on_one_thread(|| {
+        let [rates, from] = by_rate();
+        filled(
+            include_str!("failure.md"),
+            &[
+                ("by displacement", by_displacement()),
+                ("by load", by_load()),
+                ("rates", rates),
+                ("rates from 1.1", from),
+                ("scatter", scatter()),
+            ],
+        )
+    });
+    assert_shown(&[("failure.md".to_owned(), page)]);
+}

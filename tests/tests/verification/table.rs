@@ -1,0 +1,141 @@
+//! Tables of pages: numbers whose printed digits are the same on every machine, and rows that hold
+//! what is computed against a reference.
+
+/// What a result may differ by from machine to machine, relative: the last digits of sines, powers
+/// and logarithms, which libraries round differently.
+const DOUBT: f64 = 1e-12;
+
+/// Relative errors below this are of rounding, and are not printed.
+const ROUNDING: f64 = 1e-9;
+
+/// One case: what the solver gives, what it should give, and by how much the two may differ.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    what: String,
+    computed: f64,
+    reference: f64,
+    scale: f64,
+    bound: f64,
+    rounding: f64,
+}
+
+impl Case {
+    /// A case whose error is relative to its reference.
+    pub(crate) fn new(what: impl Into<String>, computed: f64, reference: f64, bound: f64) -> Self {
+        Self::of_scale(what, [computed, reference], reference.abs(), bound)
+    }
+
+    /// A case whose error, computed less reference, is relative to `scale`.
+    pub(crate) fn of_scale(
+        what: impl Into<String>,
+        [computed, reference]: [f64; 2],
+        scale: f64,
+        bound: f64,
+    ) -> Self {
+        Self {
+            what: what.into(),
+            computed,
+            reference,
+            scale,
+            bound,
+            rounding: ROUNDING,
+        }
+    }
+
+    /// Errors below this are not printed: their digits hang on the order of sums.
+    pub(crate) fn rounding(self, rounding: f64) -> Self {
+        Self { rounding, ..self }
+    }
+
+    fn keeps_bound(&self) -> bool {
+        self.error().abs() <= self.bound
+    }
+
+    fn error(&self) -> f64 {
+        (self.computed - self.reference) / self.scale
+    }
+
+    fn row(&self) -> String {
+        let error = self.error();
+        let doubt = DOUBT * self.scale;
+        let computed = if self.reference != 0.0 {
+            significant(self.computed, doubt)
+        } else if error.abs() < self.rounding {
+            "0".to_owned()
+        } else {
+            steady(self.computed, doubt, |value| format!("{value:.1e}"))
+        };
+        row(&[
+            self.what.clone(),
+            computed,
+            significant(self.reference, doubt),
+            if error.abs() < self.rounding {
+                format!("< {:.0e}", self.rounding)
+            } else {
+                steady(error, DOUBT, |error| format!("{error:.1e}"))
+            },
+            format!("{:.1e}", self.bound),
+        ])
+    }
+}
+
+/// The table of these cases, all of which keep their bounds. `unit` is that of both numbers.
+pub(crate) fn compared(of: &str, unit: &str, cases: &[Case]) -> String {
+    let unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(", {unit}")
+    };
+    let computed = format!("computed{unit}");
+    let reference = format!("reference{unit}");
+    let mut table = head(&[of, &computed, &reference, "relative error", "bound"]);
+    for case in cases {
+        table += &case.row();
+    }
+    let off = cases.iter().filter(|case| !case.keeps_bound());
+    let off: Vec<&str> = off.map(|case| case.what.as_str()).collect();
+    assert!(off.is_empty(), "beyond the bound: {off:?}\n{table}");
+    table
+}
+
+/// A number with six significant digits, which must not hang on the last `doubt` of it.
+fn significant(value: f64, doubt: f64) -> String {
+    if value.abs() <= doubt {
+        return "0".to_owned();
+    }
+    let text = steady(value, doubt, |value| format!("{value:.5e}"));
+    let size = text.split_once('e').and_then(|(_, size)| size.parse().ok());
+    match size {
+        Some(size @ -3..=5) => digits(value, (5 - size) as usize, doubt),
+        _ => text,
+    }
+}
+
+/// A number with this many decimals. It must not hang on what differs from machine to machine, the
+/// last `doubt` of it.
+pub(crate) fn digits(value: f64, decimals: usize, doubt: f64) -> String {
+    steady(value, doubt, |value| {
+        let text = format!("{value:.decimals$}");
+        match text.strip_prefix('-') {
+            Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
+            _ => text,
+        }
+    })
+}
+
+/// The text of a number, if it is the same for all within `doubt` of it.
+fn steady(value: f64, doubt: f64, text: impl Fn(f64) -> String) -> String {
+    assert_eq!(text(value - doubt), text(value + doubt), "unsteady digits");
+    text(value).replace('-', "−").replace("e−", "e-")
+}
+
+/// The row of a table.
+pub(crate) fn row(cells: &[String]) -> String {
+    format!("| {} |\n", cells.join(" | "))
+}
+
+/// The head of a table: words in the first column, numbers in the others.
+pub(crate) fn head(cells: &[&str]) -> String {
+    let names: Vec<String> = cells.iter().map(|&cell| cell.to_owned()).collect();
+    format!("{}|---|{}\n", row(&names), "---:|".repeat(cells.len() - 1))
+}
