@@ -2,7 +2,7 @@
 
 use super::image::MAX_SIDE_PX;
 use super::vector::{are_finite, cross, dot, minus, plus, unit};
-use crate::geometry::Bounds;
+use dem_io::Bounds;
 
 /// Free margin at the left and the right, as a share of the width.
 const SIDE: f64 = 0.04;

@@ -2,7 +2,7 @@
 //! stored in a picture.
 
 use super::{Body, Face, Scene};
-use crate::output::pictures::vector::dot_f32 as dot;
+use crate::vector::dot_f32 as dot;
 
 /// Light of the lamp and of the sky.
 const LAMP: f32 = 0.72;

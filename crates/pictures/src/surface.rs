@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::vector::{across, are_finite, cross, dot, minus, plus, unit};
-use crate::geometry::{Bounds, Frame, Shape};
+use dem_io::Bounds;
 
 /// Sides of a polygon that stands for a circle.
 const ROUND: u32 = 96;
@@ -50,19 +50,6 @@ pub struct HalfSpace {
     pub point_m: [f64; 3],
     /// Out of the wall, of any length. Length 3.
     pub normal: [f64; 3],
-}
-
-impl HalfSpace {
-    /// A wall's shape where it stands, if it is a plane.
-    pub fn of_wall(shape: &Shape, frame: &Frame) -> Option<Self> {
-        match shape {
-            Shape::Plane(plane) => Some(Self {
-                point_m: frame.to_space(plane.point_m()),
-                normal: frame.direction_to_space(plane.normal()),
-            }),
-            _ => None,
-        }
-    }
 }
 
 /// A wall as it is drawn.
@@ -115,24 +102,6 @@ impl Surface {
             solid: true,
             ..Self::mesh(&patch, &triangles)
         }
-    }
-
-    /// A wall's shape where it stands. None: a plane has no end, and is drawn by
-    /// [`Surface::plane`].
-    pub fn of_finite(shape: &Shape, frame: &Frame) -> Option<Self> {
-        let in_its_frame = match shape {
-            Shape::Plane(_) => return None,
-            Shape::Box(solid) => Self::solid_box(&solid.bounds()),
-            Shape::Cylinder(cylinder) => Self::cylinder(cylinder.ends_m(), cylinder.radius_m()),
-            Shape::Mesh(mesh) => {
-                let vertices_m: Vec<[f64; 3]> = mesh.corners_m().flatten().collect();
-                let triangles: Vec<[u32; 3]> = (0..vertices_m.len() as u32 / 3)
-                    .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-                    .collect();
-                Self::mesh(&vertices_m, &triangles)
-            }
-        };
-        Some(in_its_frame.moved(&|point_m| frame.to_space(point_m)))
     }
 
     /// A solid box with sides along the axes, m.

@@ -3,13 +3,13 @@
 //! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the
 //! wall begins, which is fainter and falls on walls only.
 
-use crate::output::pictures::vector::dot_f32 as dot;
+use crate::vector::dot_f32 as dot;
 use rayon::prelude::*;
 
 use super::band::crossings;
 use super::{Body, range};
-use crate::output::pictures::camera::Camera;
-use crate::output::pictures::vector::minus;
+use crate::camera::Camera;
+use crate::vector::minus;
 
 /// Towards the lamp in view space, where y points downwards: from the upper left, a little from the
 /// front. Any length.
