@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use dem_io::results::svg;
-
 use super::cases::on_one_thread;
 use super::tables::{
     of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
@@ -70,7 +68,7 @@ fn files() -> Vec<(String, String)> {
     let mut files = vec![("README.md".to_owned(), page.clone())];
     for (name, plot) in plots {
         assert!(page.contains(name), "the page does not show {name}");
-        files.push((name.to_owned(), svg(&plot)));
+        files.push((name.to_owned(), plot.svg().file()));
     }
     files
 }
