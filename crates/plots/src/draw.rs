@@ -16,9 +16,6 @@ const HEIGHT: f64 = 400.0;
 const GRID: &str = "#e4e4e4";
 const FINE_GRID: &str = "#f2f2f2";
 
-/// Most kinds of marks in the legend.
-const MOST_KINDS: usize = 16;
-
 /// The part of the picture where lines are drawn, px, and the axes along it.
 struct Area {
     left: f64,
@@ -180,22 +177,18 @@ fn entries(plot: &Plot, reference: Option<&str>) -> Vec<Entry> {
         })
         .collect();
     entries.extend(reference.map(|name| entry(name, Sample::Line(REFERENCE))));
-    if !plot.kinds.is_empty() {
-        entries.push(entry(&plot.kinds, Sample::Heading));
-    }
-    let kinds = (plot.marks.iter().enumerate()).filter(|(_, marks)| !marks.name.is_empty());
-    for (kind, marks) in kinds.clone().take(MOST_KINDS) {
-        let sample = Sample::Mark(kind, colour(kind), colour(kind));
-        entries.push(entry(&marks.name, sample));
-    }
-    let more = kinds.count().saturating_sub(MOST_KINDS);
-    if more > 0 {
-        entries.push(entry(&format!("and {more} more"), Sample::Heading));
-    }
     if let Some([filled, hollow]) = &plot.filled {
         entries.push(entry(filled, Sample::Mark(0, INK, INK)));
         entries.push(entry(hollow, Sample::Mark(0, INK, "#ffffff")));
     }
+    if !plot.kinds.is_empty() {
+        entries.push(entry(&plot.kinds, Sample::Heading));
+    }
+    let kinds = (plot.marks.iter().enumerate()).filter(|(_, marks)| !marks.name.is_empty());
+    entries.extend(kinds.map(|(kind, marks)| {
+        let sample = Sample::Mark(kind, colour(kind), colour(kind));
+        entry(&marks.name, sample)
+    }));
     entries
 }
 

@@ -14,7 +14,9 @@ const SAMPLE: f64 = 24.0;
 const ROOM: f64 = 7.0;
 /// Names are cut off at this width.
 const NAME: f64 = 260.0;
-const ROWS_BELOW: usize = 9;
+/// Of rows below the plot: where they begin, px, and how many there are at most.
+const LEFT: f64 = 46.0;
+const ROWS_BELOW: u32 = 9;
 
 /// A line of the legend.
 #[derive(Debug, Clone)]
@@ -97,28 +99,30 @@ impl Legend {
         })
     }
 
-    /// In columns. If there are too many names, it says how many are left out.
+    /// In rows, a new one for each heading. If there are too many names, it says how many are left
+    /// out.
     fn below(entries: &[Entry], top: f64) -> Self {
-        let names = entries.iter().map(name_width).fold(0.0, f64::max);
-        let wide = SAMPLE + names + 3.0 * ROOM;
-        let columns = ((WIDTH - 46.0) / wide).floor().max(1.0) as usize;
-        let rows = entries.len().div_ceil(columns).min(ROWS_BELOW);
-        let cells = entries.len().min(columns * rows);
-        let left = (WIDTH - cells.div_ceil(rows) as f64 * wide) / 2.0;
-        // Down the columns, so that a heading stands above what it names.
-        let place = |cell: usize| {
-            let [column, row] = [cell / rows, cell % rows].map(|k| k as f64);
-            [left + wide * column, top + ROW * (row + 0.5)]
-        };
-        let mut places: Vec<[f64; 2]> = (0..cells).map(place).collect();
-        let more = (cells < entries.len())
-            .then(|| places.pop().map(|at| (entries.len() - cells + 1, at)))
-            .flatten();
+        let (mut x, mut row) = (LEFT, 0);
+        let mut places = Vec::new();
+        for entry in entries {
+            let is_heading = matches!(entry.sample, Sample::Heading);
+            let wide = SAMPLE + name_width(entry) + 3.0 * ROOM;
+            if x > LEFT && (is_heading || x + wide > WIDTH) {
+                (x, row) = (LEFT, row + 1);
+            }
+            if row == ROWS_BELOW {
+                break;
+            }
+            places.push([x, top + ROW * (f64::from(row) + 0.5)]);
+            x += wide;
+        }
+        let left_out = entries.len() - places.len();
+        let more = (left_out > 0).then(|| places.pop()).flatten();
         Self {
             frame: None,
             places,
-            more,
-            height: rows as f64 * ROW + 8.0,
+            more: more.map(|place| (left_out + 1, place)),
+            height: f64::from((row + 1).min(ROWS_BELOW)) * ROW + 8.0,
         }
     }
 
@@ -171,27 +175,18 @@ fn name_width(entry: &Entry) -> f64 {
 /// Whether a line, or its only point, comes into a box: left, top, right, bottom.
 fn crosses(line: &[[f64; 2]], frame: [f64; 4]) -> bool {
     match line {
-        [point] => segment_crosses(*point, *point, frame),
-        points => points
-            .windows(2)
-            .any(|ends| segment_crosses(ends[0], ends[1], frame)),
+        [point] => segment_crosses([*point; 2], frame),
+        points => (points.windows(2)).any(|ends| segment_crosses([ends[0], ends[1]], frame)),
     }
 }
 
-/// Clips the segment to the box (Liang and Barsky 1984) and says whether anything is left.
-fn segment_crosses(from: [f64; 2], to: [f64; 2], [left, top, right, bottom]: [f64; 4]) -> bool {
-    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
-    for (start, end, low, high) in [(from[0], to[0], left, right), (from[1], to[1], top, bottom)] {
-        let way = end - start;
-        if way == 0.0 {
-            if start < low || start > high {
-                return false;
-            }
-        } else {
-            let (a, b) = ((low - start) / way, (high - start) / way);
-            enters = enters.max(a.min(b));
-            leaves = leaves.min(a.max(b));
-        }
-    }
-    enters <= leaves
+/// Whether the bounds of the segment and the box overlap, and the box does not lie on one side.
+fn segment_crosses([a, b]: [[f64; 2]; 2], [left, top, right, bottom]: [f64; 4]) -> bool {
+    let overlap = |k: usize, low, high| a[k].min(b[k]) <= high && a[k].max(b[k]) >= low;
+    let corners = [[left, top], [right, top], [left, bottom], [right, bottom]];
+    let sides = corners.map(|[x, y]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]));
+    overlap(0, left, right)
+        && overlap(1, top, bottom)
+        && sides.iter().any(|side| *side >= 0.0)
+        && sides.iter().any(|side| *side <= 0.0)
 }

@@ -48,6 +48,14 @@ pub struct Row {
     pub is_bad: bool,
 }
 
+impl From<Vec<String>> for Row {
+    /// A row of nothing that failed.
+    fn from(cells: Vec<String>) -> Self {
+        let is_bad = false;
+        Self { cells, is_bad }
+    }
+}
+
 impl Column {
     /// A column of texts.
     pub fn text(name: &str) -> Self {

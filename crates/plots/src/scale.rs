@@ -164,7 +164,7 @@ impl Scale {
         if to > 4.0 * from || from < 1e-3 || to > 1e4 {
             return None;
         }
-        let step = nice_step((to - from) / 5.0);
+        let step = nice_step((to - from) / 7.0);
         let decimals = -(step.log10() + 1e-6).floor();
         let [first, last] = [(from / step).ceil(), (to / step).floor()];
         let tick = |number: u32| {
@@ -277,24 +277,13 @@ fn decimal(value: f64, decimals: usize) -> String {
 
 /// `10⁻³`.
 fn power_of_ten(exponent: i32) -> String {
-    let raised = exponent
-        .to_string()
-        .chars()
-        .map(|letter| match letter {
-            '-' => '⁻',
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            _ => '⁹',
-        })
-        .collect::<String>();
-    format!("10{raised}")
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |sign: char| {
+        sign.to_digit(10)
+            .map_or('⁻', |digit| RAISED[digit as usize])
+    };
+    let exponent: String = exponent.to_string().chars().map(raised).collect();
+    format!("10{exponent}")
 }
 
 #[cfg(test)]
@@ -315,7 +304,7 @@ mod tests {
         ] {
             let scale = Scale::new(&Axis::log(""), [low, high].into_iter(), false);
             let names: Vec<&str> = scale.ticks.iter().map(|tick| tick.label.as_str()).collect();
-            assert!((3..=7).contains(&names.len()), "{low} {high} {names:?}");
+            assert!((3..=9).contains(&names.len()), "{low} {high} {names:?}");
             let room = scale.ticks.windows(2).map(|two| {
                 let words = 0.5 * (width(&two[0].label, 12.0) + width(&two[1].label, 12.0));
                 AREA * (two[1].share - two[0].share) - words

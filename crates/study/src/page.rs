@@ -81,22 +81,8 @@ fn add_front(page: &mut Page, table: &SweepTable, measure: usize) {
         cells.extend(row.settings.iter().cloned());
         cells
     };
-    let rows = front.into_iter().map(|row| good(cells(row))).collect();
+    let rows = front.into_iter().map(|row| cells(row).into()).collect();
     page.table(&Table { columns, rows });
-}
-
-fn good(cells: Vec<String>) -> dem_plots::Row {
-    dem_plots::Row {
-        cells,
-        is_bad: false,
-    }
-}
-
-fn bad(cells: Vec<String>) -> dem_plots::Row {
-    dem_plots::Row {
-        cells,
-        is_bad: true,
-    }
 }
 
 fn add_orders(page: &mut Page, table: &SweepTable) {
@@ -111,14 +97,9 @@ fn add_orders(page: &mut Page, table: &SweepTable) {
     let [measure, along, of, by] = ["measure", "along", "of", "from"].map(Column::text);
     let [order, runs] = ["order", "runs"].map(Column::number);
     let rows = (table.orders.iter().take(MOST_ROWS)).map(|order| {
-        good(vec![
-            order.measure.clone(),
-            order.along.clone(),
-            order.of.join(", "),
-            format!("{:.2}", order.order),
-            order.runs.to_string(),
-            order.by.clone(),
-        ])
+        let [size, runs] = [format!("{:.2}", order.order), order.runs.to_string()];
+        let [measure, along, by] = [&order.measure, &order.along, &order.by].map(String::clone);
+        vec![measure, along, order.of.join(", "), size, runs, by].into()
     });
     page.table(&Table {
         columns: vec![measure, along, of, order, runs, by],
@@ -138,7 +119,10 @@ fn add_failed(page: &mut Page, table: &SweepTable) {
         let mut cells = vec![row.number.to_string()];
         cells.extend(row.settings.iter().cloned());
         cells.push(row.failed.clone().unwrap_or_default());
-        bad(cells)
+        dem_plots::Row {
+            cells,
+            is_bad: true,
+        }
     });
     page.table(&Table {
         columns,
@@ -171,7 +155,10 @@ fn of_run(row: &Row) -> dem_plots::Row {
     cells.extend(row.settings.iter().cloned());
     if row.failed.is_some() {
         cells.push("failed".to_owned());
-        return bad(cells);
+        return dem_plots::Row {
+            cells,
+            is_bad: true,
+        };
     }
     cells.push(number(row.time_s, 3));
     cells.push(number(row.spread_s, 2));
@@ -179,7 +166,7 @@ fn of_run(row: &Row) -> dem_plots::Row {
     for judged in &row.results {
         cells.extend([number(Some(judged.value), 8), error_text(judged)]);
     }
-    good(cells)
+    cells.into()
 }
 
 fn error_text(judged: &Judged) -> String {

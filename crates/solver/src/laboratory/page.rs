@@ -167,7 +167,7 @@ fn page(files: &TestFiles<'_>, curve: &Svg, crack: &Svg) -> String {
         page.table(&Table {
             columns: vec![Column::text(""), Column::number("")],
             rows: changes
-                .map(|figure| row(vec![figure.name.clone(), percent(figure.value)]))
+                .map(|figure| vec![figure.name.clone(), percent(figure.value)].into())
                 .collect(),
         });
     }
@@ -193,18 +193,11 @@ fn add_figures(page: &mut Page, title: &str, figures: &[Figure]) {
             let error = figure.error.map(percent);
             cells.extend([theory, error].map(Option::unwrap_or_default));
         }
-        row(cells)
+        cells.into()
     };
     page.heading(title);
     page.table(&Table {
         columns,
         rows: figures.iter().map(cells).collect(),
     });
-}
-
-fn row(cells: Vec<String>) -> dem_plots::Row {
-    dem_plots::Row {
-        cells,
-        is_bad: false,
-    }
 }
