@@ -5,6 +5,7 @@
 //! Lengths are metres unless a name says otherwise.
 
 pub mod body;
+mod bounds;
 pub mod checkpoint;
 pub mod diagnostic;
 pub mod disjoint;
@@ -22,6 +23,7 @@ pub mod vtk;
 mod xml;
 
 pub use body::Body;
+pub use bounds::Bounds;
 pub use diagnostic::{Diagnostic, Result};
 pub use scene::{Scene, read_bodies, read_scene, scene_from_text, study};
 pub use surface::Surface;

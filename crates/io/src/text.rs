@@ -4,8 +4,6 @@
 
 use std::borrow::Cow;
 
-use crate::xml::escaped;
-
 /// Whether a terminal would obey this character instead of showing it: control characters,
 /// separators of lines, and
 /// those that turn the direction of writing.
@@ -62,11 +60,6 @@ pub(crate) fn visible_json(json: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// `text` as it may stand in HTML and SVG, between tags or in an attribute in double quotes.
-pub fn for_page(text: &str) -> String {
-    escaped(&visible(text))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,14 +75,6 @@ mod tests {
         );
         assert_eq!(visible(&visible(NASTY)), visible(NASTY));
         assert_eq!(visible_lines("a\n\tb\r"), "a\n\tb\\u{d}");
-    }
-
-    #[test]
-    fn pages_hold_neither_tags_nor_control_characters_of_others() {
-        assert_eq!(
-            for_page(NASTY),
-            "a\\u{1b}[31m\\u{a}\\u{9b}\\u{202e}\\u{2066}\\u{7f}&lt;script&gt;&quot;&amp;é"
-        );
     }
 
     #[test]

@@ -5,7 +5,6 @@ mod folder;
 mod fragments;
 mod frames;
 mod pictures;
-mod plots;
 mod stored_frame;
 mod tables;
 

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use dem_io::results::{Axis, Line, MOST_LINES, Plot};
+use dem_io::interpolation::interpolated;
+use dem_plots::{Axis, Line, MOST_LINES, Plot};
 
 use super::rows::SweepTable;
-use dem_io::interpolation::interpolated;
 
 /// The curve of the test whose results stand in this folder: points (displacement in m, load in N),
 /// rising in the first.
@@ -95,7 +95,7 @@ pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
         x: Axis::of("displacement (m)"),
         y: Axis::of("load (N)"),
         lines,
-        reference: None,
+        ..Plot::default()
     })
 }
 

@@ -4,14 +4,13 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use dem_io::results::{Existing, ResultsFolder, write_json};
+use dem_io::results::{Existing, ResultsFolder, is_plot_file, write_json};
 use dem_io::safe_write::is_same_file;
 use dem_io::scene::study::{Setting, Study};
 use dem_io::{Diagnostic, Result};
 use serde_json::{Value, json};
 
 use super::jobs::Job;
-use super::plot::is_plot;
 
 const IDENTITY: &str = "study.json";
 const RUNS: &str = "runs";
@@ -100,7 +99,7 @@ impl SweepFolder {
         for path in entries(&self.path)? {
             let name = path.file_name().and_then(|name| name.to_str());
             let is_table = name.is_some_and(|name| TABLES.contains(&name));
-            if is_plain_file(&path) && (is_table || (is_svg(&path) && is_plot(&path))) {
+            if is_plain_file(&path) && (is_table || (is_svg(&path) && is_plot_file(&path))) {
                 fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
             }
         }

@@ -20,7 +20,6 @@ pub mod page;
 pub mod plot;
 pub mod reference;
 pub mod rows;
-mod scale;
 pub mod table;
 pub mod text;
 pub mod want;

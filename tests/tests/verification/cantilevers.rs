@@ -7,8 +7,6 @@ mod models;
 mod statics;
 mod tables;
 
-use dem_io::results::svg;
-
 use self::tables::{
     of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
 };
@@ -48,7 +46,7 @@ fn files() -> Vec<(String, String)> {
     let mut files = vec![("cantilevers.md".to_owned(), page.clone())];
     for (name, plot) in plots {
         assert!(page.contains(name), "the page does not show {name}");
-        files.push((name.to_owned(), svg(&plot)));
+        files.push((name.to_owned(), plot.svg().file()));
     }
     files
 }

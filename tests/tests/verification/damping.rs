@@ -180,7 +180,11 @@ fn damped_bonds() -> [String; 2] {
         }
     }
     let critical = 2.0 * (Mode::Axial.stiffness() * Mode::Axial.reduced()).sqrt();
-    cases.push((Mode::Axial, format!("damping_coefficient = {:e}", 0.1 * critical), 0.1));
+    cases.push((
+        Mode::Axial,
+        format!("damping_coefficient = {:e}", 0.1 * critical),
+        0.1,
+    ));
     cases.push((Mode::Torsion, "torque_factor = 0.2".to_owned(), 0.1));
     cases.push((Mode::Bending, "torque_factor = 0.2".to_owned(), 0.1));
     for (mode, damping, zeta) in cases {
@@ -238,10 +242,7 @@ fn particle_damping() -> [String; 2] {
     let (mut decrements, mut durations) = (Vec::new(), Vec::new());
     let omega = (Mode::Axial.stiffness() / mass_kg()).sqrt();
     for gamma in [0.05_f64, 0.2, 0.5, 0.7] {
-        let run = format!(
-            "time_step = {:e}, local_damping = {gamma:e}",
-            STEP / omega
-        );
+        let run = format!("time_step = {:e}, local_damping = {gamma:e}", STEP / omega);
         let speed = 1e-4 * LENGTH_M * omega;
         let more =
             format!("{HELD}initial.right = {{ group = \"right\", velocity = [{speed:e}, 0, 0] }}");
@@ -302,10 +303,7 @@ fn rest() -> String {
         ("both", 0.5, "damping_ratio = 0.3"),
     ] {
         for (direction, force) in [("along", [along, 0.0]), ("across", [0.0, across])] {
-            let run = format!(
-                "time_step = {:e}, local_damping = {gamma:e}",
-                0.2 / omega
-            );
+            let run = format!("time_step = {:e}, local_damping = {gamma:e}", 0.2 / omega);
             let [fx, fy] = force;
             let more =
                 format!("{HELD}loads.right = {{ group = \"right\", force = [{fx:e}, {fy:e}, 0] }}");

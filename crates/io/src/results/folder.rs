@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::plots;
+use super::plot_file::{is_plot_file, write_plot_file};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{
     PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
@@ -180,15 +180,6 @@ impl ResultsFolder {
         self.path.join(PLOTS).join(format!("{name}.svg"))
     }
 
-    /// Writes a picture, which begins with [`plots::BEGIN`], to `plots/NAME.svg`, replacing an earlier one.
-    ///
-    /// # Errors
-    /// Those of [`ResultsFolder::write_plot`].
-    pub fn write_picture(&self, name: &str, svg: &str) -> Result<()> {
-        make_folder(&self.path.join(PLOTS))?;
-        write_file(&self.plot(name), |out| out.write_all(svg.as_bytes()))
-    }
-
     /// Writes the page of a laboratory test to `test.html`, replacing an earlier one.
     ///
     /// # Errors
@@ -241,15 +232,13 @@ impl ResultsFolder {
         })
     }
 
-    /// Writes a plot to `plots/NAME.svg`, replacing an earlier one.
+    /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.
     ///
     /// # Errors
     /// No permission, full disk, a file or folder in the way (all exit code 1).
-    pub fn write_plot(&self, name: &str, plot: &plots::Plot) -> Result<()> {
+    pub fn write_plot(&self, name: &str, svg: &str) -> Result<()> {
         make_folder(&self.path.join(PLOTS))?;
-        write_file(&self.plot(name), |out| {
-            out.write_all(plots::svg(plot).as_bytes())
-        })
+        write_plot_file(&self.plot(name), svg)
     }
 
     /// Removes frame `number` and all after it.
@@ -297,7 +286,7 @@ impl ResultsFolder {
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
-            name.ends_with(".svg") && plots::is_ours(&plots.join(name))
+            name.ends_with(".svg") && is_plot_file(&plots.join(name))
         })
     }
 

@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::results::write_json;
+use dem_io::results::{write_json, write_plot_file};
 use dem_io::safe_write::{
     need_folder_of, refuse_input, write_file, write_standard_json, write_standard_output,
 };
@@ -27,7 +27,7 @@ use dem_study::jobs::{
 };
 use dem_study::outcome::Outcome;
 use dem_study::page::page;
-use dem_study::plot::svg;
+use dem_study::plot::plot;
 use dem_study::rows::{Row, SweepTable};
 use dem_study::text::csv;
 use dem_study::want::{Want, fastest};
@@ -298,14 +298,11 @@ fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
         out.write_all(page(table).as_bytes())
     })?;
     for (at, measure) in table.measures.iter().enumerate() {
-        let plot = svg(table, at, true);
         let path = file(&format!("{}.svg", measure.name));
-        write_file(&path, |out| out.write_all(plot.as_bytes()))?;
+        write_plot_file(&path, &plot(table, at).svg().file())?;
         if let Some(plot) = curves::plot(table, at) {
             let path = file(&format!("{}-curves.svg", measure.name));
-            write_file(&path, |out| {
-                out.write_all(dem_io::results::svg(&plot).as_bytes())
-            })?;
+            write_plot_file(&path, &plot.svg().file())?;
         }
     }
     Ok(())

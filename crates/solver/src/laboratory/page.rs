@@ -4,12 +4,12 @@
 use std::fmt::Write;
 
 use dem_io::Result;
-use dem_io::results::{Axis, Line, Plot, ResultsFolder, svg};
+use dem_io::results::ResultsFolder;
 use dem_io::scene::Test;
-use dem_io::text::for_page;
 use dem_io::units::significant;
+use dem_plots::{Axis, Column, Line, Page, Plot, Svg, Table};
 
-use super::crack::{CrackPicture, crack_svg};
+use super::crack::{CrackPicture, crack_map};
 use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, play_m, rows_of, slope};
 use super::record::{Record, Row};
 
@@ -35,12 +35,12 @@ pub struct TestFiles<'a> {
 /// Those of the files.
 pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
     let rows = rows_of(files.record, files.result.lowest_frequency_hz);
-    let curve = curve(&rows, files.result);
-    let crack = crack_svg(&files.picture);
-    folder.write_plot("force-displacement", &curve)?;
-    folder.write_picture("crack", &crack)?;
+    let curve = curve(&rows, files.result).svg();
+    let crack = crack_map(&files.picture).svg();
+    folder.write_plot("force-displacement", &curve.file())?;
+    folder.write_plot("crack", &crack.file())?;
     folder.write_test_curve(&curve_csv(files.record, play_m(&rows)))?;
-    folder.write_test_page(&page(files, &svg(&curve), &crack))
+    folder.write_test_page(&page(files, &curve, &crack))
 }
 
 /// The first line of `force-displacement.csv`.
@@ -113,6 +113,7 @@ pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
         y: Axis::of("load (N)"),
         lines,
         reference: failure.map(|force| (force, "failure force wanted".to_owned())),
+        ..Plot::default()
     }
 }
 
@@ -145,86 +146,58 @@ pub fn percent(share: f64) -> String {
 }
 
 /// Everything on one page that needs no other file.
-fn page(files: &TestFiles<'_>, curve: &str, crack: &str) -> String {
-    let mut out = String::new();
-    // Writing to a text cannot fail.
-    let _ = write_page(&mut out, files, curve, crack);
-    out
-}
-
-const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;max-width:700px;margin:2em auto;padding:0 1em}\
-table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .9em .25em 0;text-align:left;border-bottom:1px solid #e4e4e4}\
-td.n,th.n{text-align:right}svg{max-width:100%;height:auto}";
-
-fn write_page(
-    out: &mut String,
-    files: &TestFiles<'_>,
-    curve: &str,
-    crack: &str,
-) -> std::fmt::Result {
+fn page(files: &TestFiles<'_>, curve: &Svg, crack: &Svg) -> String {
     let result = files.result;
-    let title = result.kind.replace('-', " ");
-    writeln!(
-        out,
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>"
-    )?;
-    writeln!(out, "<h1>{title}</h1>\n<p>{}</p>", for_page(files.scene))?;
-    write_table(out, "Results", "error", &result.figures)?;
-    writeln!(out, "<ul>")?;
-    for (name, text) in result.sentences() {
-        writeln!(out, "<li>{}: {}</li>", for_page(&name), for_page(&text))?;
-    }
-    writeln!(out, "</ul>\n{curve}\n{crack}")?;
-    write_table(out, "Calibration", "error", &result.calibration)?;
-    write_table(out, "Dimensions", "error", &result.dimensions)?;
+    let mut page = Page::new(&result.kind.replace('-', " "));
+    page.paragraph(files.scene);
+    add_figures(&mut page, "Results", &result.figures);
+    let sentences = result.sentences().into_iter();
+    let sentences: Vec<String> = sentences
+        .map(|(name, text)| format!("{name}: {text}"))
+        .collect();
+    page.list(&sentences);
+    page.figure(curve);
+    page.figure(crack);
+    add_figures(&mut page, "Calibration", &result.calibration);
+    add_figures(&mut page, "Dimensions", &result.dimensions);
     if !result.half_the_rate_changes.is_empty() {
-        writeln!(
-            out,
-            "<h2>Rate</h2>\n<p>The same test at half the rate, against twice the rate, changes</p>\n<table>"
-        )?;
-        for figure in &result.half_the_rate_changes {
-            writeln!(
-                out,
-                "<tr><td>{}</td><td class=\"n\">{}</td></tr>",
-                for_page(&figure.name),
-                percent(figure.value)
-            )?;
-        }
-        writeln!(out, "</table>")?;
+        page.heading("Rate");
+        page.paragraph("The same test at half the rate, against twice the rate, changes");
+        let changes = result.half_the_rate_changes.iter();
+        page.table(&Table {
+            columns: vec![Column::text(""), Column::number("")],
+            rows: changes
+                .map(|figure| vec![figure.name.clone(), percent(figure.value)].into())
+                .collect(),
+        });
     }
-    writeln!(out, "</body>\n</html>")
+    page.html()
 }
 
-fn write_table(out: &mut String, title: &str, error: &str, figures: &[Figure]) -> std::fmt::Result {
+fn add_figures(page: &mut Page, title: &str, figures: &[Figure]) {
     if figures.is_empty() {
-        return Ok(());
+        return;
     }
     let with_theory = figures.iter().any(|figure| figure.theory.is_some());
-    writeln!(out, "<h2>{title}</h2>\n<table>")?;
-    if with_theory {
-        writeln!(
-            out,
-            "<tr><th></th><th class=\"n\">measured</th><th class=\"n\">theory</th><th class=\"n\">{error}</th></tr>"
-        )?;
-    }
-    for figure in figures {
-        write!(
-            out,
-            "<tr><td>{}</td><td class=\"n\">{}</td>",
-            for_page(&figure.name),
-            shown(figure.value, &figure.unit)
-        )?;
+    let names = if with_theory {
+        &["measured", "theory", "error"][..]
+    } else {
+        &[""]
+    };
+    let mut columns = vec![Column::text("")];
+    columns.extend(names.iter().map(|name| Column::number(name)));
+    let cells = |figure: &Figure| {
+        let mut cells = vec![figure.name.clone(), shown(figure.value, &figure.unit)];
         if with_theory {
             let theory = figure.theory.map(|value| shown(value, &figure.unit));
             let error = figure.error.map(percent);
-            write!(
-                out,
-                "<td class=\"n\">{}</td><td class=\"n\">{}</td>",
-                theory.unwrap_or_default(),
-                error.unwrap_or_default()
-            )?;
+            cells.extend([theory, error].map(Option::unwrap_or_default));
         }
-        writeln!(out, "</tr>")?;
-    }
-    writeln!(out, "</table>")
+        cells.into()
+    };
+    page.heading(title);
+    page.table(&Table {
+        columns,
+        rows: figures.iter().map(cells).collect(),
+    });
 }

@@ -1,7 +1,8 @@
 //! What a run tells of the fragments of its bodies: tables, plots, and a line of the summary.
 
 use dem_io::Result;
-use dem_io::results::{Axis, FragmentRow, Line, Plot, ResultsFolder, TreeRow, write_fragment_tree};
+use dem_io::results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
+use dem_plots::{Axis, Line, Plot};
 use serde::Serialize;
 
 use crate::state::clusters::fragments::{mass_fraction_of_largest, size_distribution};
@@ -109,7 +110,7 @@ pub fn write_fragment_plots(
     if counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);
         plot.y.whole = true;
-        folder.write_plot(COUNT, &plot)?;
+        folder.write_plot(COUNT, &plot.svg().file())?;
     }
     if fragments.len() > 1 {
         let mut plot = plot(
@@ -119,7 +120,7 @@ pub fn write_fragment_plots(
             sizes(fragments),
         );
         plot.x.log = true;
-        folder.write_plot(SIZES, &plot)?;
+        folder.write_plot(SIZES, &plot.svg().file())?;
     }
     Ok(())
 }
@@ -167,6 +168,6 @@ fn plot(title: &str, x: &str, y: &str, points: Vec<[f64; 2]>) -> Plot {
             points,
             dashed: false,
         }],
-        reference: None,
+        ..Plot::default()
     }
 }

@@ -1,7 +1,8 @@
 //! Plots of the time series: energies together, errors together, every measure by itself.
 
 use dem_io::Result;
-use dem_io::results::{Axis, Line, Plot, ResultsFolder, Series, read_series};
+use dem_io::results::{ResultsFolder, Series, read_series};
+use dem_plots::{Axis, Line, Plot};
 
 use super::fragments::{COUNT, SIZES};
 use super::series::ENERGIES;
@@ -28,7 +29,7 @@ pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
         // What goes in, as what is there often lies under it.
         line.dashed = line.name.ends_with("work");
     }
-    folder.write_plot(ENERGY, &energy)?;
+    folder.write_plot(ENERGY, &energy.svg().file())?;
     let mut errors = plot(
         &series,
         "Errors of energy and momentum",
@@ -40,11 +41,11 @@ pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
         point[1] = point[1].abs().max(1e-17);
     }
     errors.y.log = true;
-    folder.write_plot(ERRORS, &errors)?;
+    folder.write_plot(ERRORS, &errors.svg().file())?;
     if column(&series, "broken_bonds").iter().any(|v| *v != 0.0) {
         let mut broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
         broken.y.whole = true;
-        folder.write_plot(BROKEN, &broken)?;
+        folder.write_plot(BROKEN, &broken.svg().file())?;
     }
     let first = series.columns.len() - probes.len();
     for (probe, name) in probes.iter().zip(&series.columns[first..]) {
@@ -62,7 +63,7 @@ pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
             .measure
             .reference
             .map(|value| (value, "reference".to_owned()));
-        folder.write_plot(&plot_name(probe), &one)?;
+        folder.write_plot(&plot_name(probe), &one.svg().file())?;
     }
     Ok(())
 }
@@ -106,6 +107,6 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
         x: Axis::of("time (s)"),
         y: Axis::of(y),
         lines: columns.iter().map(line).collect(),
-        reference: None,
+        ..Plot::default()
     }
 }

@@ -3,14 +3,15 @@
 use dem_io::Result;
 use dem_io::results::{PictureFiles, ResultsFolder};
 use dem_io::scene::Scene;
+use dem_pictures::Image;
+use dem_pictures::film::{
+    COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
+};
+use dem_pictures::png_file::{Compression, read_png, to_png};
 use serde::{Deserialize, Serialize};
 
 use super::schedule::{due, first_after, next};
-use crate::output::pictures::film::{
-    COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
-};
-use crate::output::pictures::png_file::{Compression, read_png, to_png};
-use crate::output::pictures::{Image, View};
+use crate::output::pictures::View;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 

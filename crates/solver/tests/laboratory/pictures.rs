@@ -1,8 +1,7 @@
 //! The curve and the crack as pictures.
 
-use dem_io::results::svg;
 use dem_io::scene::TestKind;
-use dem_run::laboratory::crack::{CrackPicture, crack_svg};
+use dem_run::laboratory::crack::{CrackPicture, crack_map};
 use dem_run::laboratory::evaluate::rows_of;
 use dem_run::laboratory::page::curve;
 use dem_run::plan::test_setup::Specimen;
@@ -38,7 +37,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     assert!((theory[1][1] / theory[1][0] / stiffness - 1.0).abs() < 1e-9);
     let (wanted, _) = plot.reference.clone().unwrap();
     assert!((wanted / BEAM.force_n(0.21e6) - 1.0).abs() < 1e-12);
-    assert!(svg(&plot).contains("displacement (mm)"));
+    assert!(plot.svg().file().contains("displacement (mm)"));
 }
 
 #[test]
@@ -47,16 +46,17 @@ fn the_crack_is_drawn_where_the_bonds_were() {
     // Two particles at opposite corners: the picture reaches from 0 to 180 mm and from 0 to 35 mm.
     let spheres = [[0.001, 0.015, 0.001, 0.001], [0.179, 0.015, 0.034, 0.001]];
     let broken = [(PLACES[0], 0.8), (PLACES[1], 1.0)];
-    let text = crack_svg(&CrackPicture {
+    let picture = CrackPicture {
         setup: &setup,
         spheres: &spheres,
         broken: &broken,
         crack: None,
-    });
-    assert!(text.starts_with("<!-- dem-run plot -->\n<svg "));
+    };
+    let text = crack_map(&picture).svg().file();
+    assert!(text.starts_with("<svg "));
     assert!(text.trim_end().ends_with("</svg>"));
     let dots: Vec<[f64; 2]> = text
-        .split_once("<g id=\"broken\">")
+        .split_once("<g class=\"dots\">")
         .unwrap()
         .1
         .split_once("</g>")

@@ -242,7 +242,7 @@ fn tables_and_pages_of_a_sweep() {
     for measure in ["tip", "energy"] {
         let svg = fs::read_to_string(bench.path(&format!("study-sweep/{measure}.svg"))).unwrap();
         assert_well_formed(&svg);
-        assert_eq!(svg.matches("class=\"run\"").count(), 8);
+        assert_eq!(svg.matches("class=\"mark\"").count(), 8);
         for part in [
             "run time (s), median of 2",
             "error (share)",

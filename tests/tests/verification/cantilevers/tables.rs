@@ -1,6 +1,6 @@
 //! What the page shows: results of the five cases as tables and plots.
 
-use dem_io::results::{Axis, Line, Plot};
+use dem_plots::{Axis, Line, Plot};
 use dem_run::physics::bond::stiffness::BondModel;
 
 use super::bar::{Bar, euler_bernoulli_m, timoshenko_m};
@@ -162,14 +162,14 @@ pub(crate) fn of_case1() -> (String, [Plot; 2]) {
             x: axis("distance from the support (m)"),
             y: axis("deflection (m)"),
             lines: shape,
-            reference: None,
+            ..Plot::default()
         },
         Plot {
             title: "Case 1: deflection along the bar, off theory".to_owned(),
             x: axis("distance from the support (m)"),
             y: axis("off Timoshenko's theory (%)"),
             lines: errors,
-            reference: None,
+            ..Plot::default()
         },
     ];
     (table, plots)
@@ -220,7 +220,7 @@ pub(crate) fn of_case2() -> (String, Plot) {
         x: axis("length over diameter"),
         y: axis("tip off Timoshenko's theory (%)"),
         lines: drawn,
-        reference: None,
+        ..Plot::default()
     };
     (swept_head("bonds = length over diameter") + &rows, plot)
 }
@@ -236,6 +236,7 @@ pub(crate) fn of_case3() -> (String, Plot) {
         y: axis("deflection of the tip (m)"),
         lines: lines(DRAWN_TOGETHER, &places, |m, i| steady(tips[i].0[m], 1e-9)),
         reference: Some((steady(tips[0].1, 1e-9), "Timoshenko's theory".to_owned())),
+        ..Plot::default()
     };
     (swept_head("bonds") + &rows, plot)
 }
@@ -251,7 +252,7 @@ pub(crate) fn of_case4() -> (String, Plot) {
         lines: lines(DRAWN_TOGETHER, &places, |m, i| {
             per_cent(tips[i].0[m], tips[i].1)
         }),
-        reference: None,
+        ..Plot::default()
     };
     (swept_head("bonds") + &rows, plot)
 }
@@ -291,7 +292,7 @@ pub(crate) fn of_case5() -> (String, Plot) {
         x: axis("dispersion factor"),
         y: axis("tip off Timoshenko's theory (%)"),
         lines: drawn,
-        reference: None,
+        ..Plot::default()
     };
     (table, plot)
 }

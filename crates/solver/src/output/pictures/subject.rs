@@ -1,10 +1,11 @@
 //! What is to be seen of a state: its particles, coloured by the piece that they belong to, and its
 //! walls.
 
-use super::colours::{SINGLE, of_fragment};
-use super::render::Ball;
-use super::surface::{HalfSpace, Surface};
-use crate::geometry::Bounds;
+use dem_pictures::colours::{SINGLE, of_fragment};
+use dem_pictures::surface::HalfSpace;
+use dem_pictures::{Ball, Surface};
+
+use crate::geometry::{Bounds, Shape};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
@@ -29,13 +30,39 @@ pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
 /// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where
 /// others begin.
 pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
-    let plane_of = |wall: &Wall| HalfSpace::of_wall(&wall.model.shape, &wall.frame);
-    let planes: Vec<HalfSpace> = walls.iter().filter_map(plane_of).collect();
-    let surface = |wall: &Wall| match plane_of(wall) {
+    let planes: Vec<HalfSpace> = walls.iter().filter_map(half_space).collect();
+    let surface = |wall: &Wall| match half_space(wall) {
         Some(plane) => Some(Surface::plane(&plane, around, &planes)),
-        None => Surface::of_finite(&wall.model.shape, &wall.frame),
+        None => finite(wall),
     };
     walls.iter().filter_map(surface).collect()
+}
+
+fn half_space(wall: &Wall) -> Option<HalfSpace> {
+    match &wall.model.shape {
+        Shape::Plane(plane) => Some(HalfSpace {
+            point_m: wall.frame.to_space(plane.point_m()),
+            normal: wall.frame.direction_to_space(plane.normal()),
+        }),
+        _ => None,
+    }
+}
+
+/// A wall where it stands. None: a plane has no end.
+pub(super) fn finite(wall: &Wall) -> Option<Surface> {
+    let in_its_frame = match &wall.model.shape {
+        Shape::Plane(_) => return None,
+        Shape::Box(solid) => Surface::solid_box(&solid.bounds()),
+        Shape::Cylinder(cylinder) => Surface::cylinder(cylinder.ends_m(), cylinder.radius_m()),
+        Shape::Mesh(mesh) => {
+            let vertices_m: Vec<[f64; 3]> = mesh.corners_m().flatten().collect();
+            let triangles: Vec<[u32; 3]> = (0..vertices_m.len() as u32 / 3)
+                .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+                .collect();
+            Surface::mesh(&vertices_m, &triangles)
+        }
+    };
+    Some(in_its_frame.moved(&|point_m| wall.frame.to_space(point_m)))
 }
 
 /// The colour of each cluster. The largest piece of one that broke keeps its colour, so that a body

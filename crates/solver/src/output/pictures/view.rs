@@ -1,11 +1,9 @@
 //! From where a run is seen: one camera from its first picture to its last.
 
-use super::camera::Camera;
-use super::image::Image;
-use super::label::{label, scale_bar, time_text};
-use super::render::render;
-use super::subject::{balls, surfaces};
-use super::surface::Surface;
+use dem_pictures::label::{label, scale_bar, time_text};
+use dem_pictures::{Camera, Image, Surface, render};
+
+use super::subject::{balls, finite, surfaces};
 use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -39,8 +37,7 @@ impl View {
             points_m.extend(state.model.rules.regions[inlet.region].bounds().corners());
         }
         let room = with_room(Bounds::of(points_m.iter().copied()));
-        let finite = (state.walls.iter())
-            .filter_map(|wall| Surface::of_finite(&wall.model.shape, &wall.frame));
+        let finite = state.walls.iter().filter_map(finite);
         let around = finite.fold(room, |around, surface| {
             around.with(&Bounds::of(surface.points_m()))
         });

@@ -1,7 +1,13 @@
-//! How wide text is. The fonts of the viewer are not known, so this is an estimate on the wide side.
+//! Text in plots, and how wide it is. The fonts of the viewer are not known, so the width is an
+//! estimate on the wide side.
+
+/// `text` with control characters made visible and without what XML cannot hold.
+pub(crate) fn shown(text: &str) -> String {
+    dem_io::text::visible(text).replace(['\u{fffe}', '\u{ffff}'], "")
+}
 
 /// Width of `text`, px.
-pub(super) fn width(text: &str, font_size: f64) -> f64 {
+pub(crate) fn width(text: &str, font_size: f64) -> f64 {
     text.chars()
         .map(|letter| match letter {
             'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | 'I' | '(' | ')' | ' ' | 't'
@@ -17,10 +23,11 @@ pub(super) fn width(text: &str, font_size: f64) -> f64 {
         * font_size
 }
 
-/// `text`, or as much of its beginning as fits, with an ellipsis.
-pub(super) fn shortened(text: &str, font_size: f64, limit: f64) -> String {
-    if width(text, font_size) <= limit {
-        return text.to_owned();
+/// `text` as it is [`shown`], or as much of its beginning as fits, with an ellipsis.
+pub(crate) fn shortened(text: &str, font_size: f64, limit: f64) -> String {
+    let text = shown(text);
+    if width(&text, font_size) <= limit {
+        return text;
     }
     let mut end = String::new();
     for letter in text.chars() {

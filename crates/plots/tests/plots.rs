@@ -1,6 +1,6 @@
 //! Plots of anything: well-formed, nothing outside, nothing hidden by the legend.
 
-use dem_io::results::{Axis, Line, Plot, svg};
+use dem_plots::{Axis, Line, Marks, Plot, Point};
 use proptest::prelude::*;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -8,11 +8,13 @@ use quick_xml::events::{BytesStart, Event};
 /// What is drawn.
 #[derive(Debug, Default)]
 struct Picture {
+    height: f64,
     /// Left, top, width and height.
     area: [f64; 4],
     legend: Option<[f64; 4]>,
     /// Of each line its pieces; a dot is a piece of one point.
     lines: Vec<Vec<Vec<[f64; 2]>>>,
+    marks: usize,
     reference: Option<f64>,
     /// Every text with its place; those that are turned stand at [0, 0].
     texts: Vec<([f64; 2], String)>,
@@ -39,6 +41,15 @@ fn rectangle(element: &BytesStart<'_>) -> [f64; 4] {
     ["x", "y", "width", "height"].map(|name| number(element, name))
 }
 
+fn is_in(open: &[(String, String)], class: &str) -> bool {
+    open.last().is_some_and(|(_, last)| last == class)
+}
+
+/// The text of a plot's file.
+fn svg(plot: &Plot) -> String {
+    plot.svg().file()
+}
+
 /// Reads a plot back. Everything must be closed, every number finite.
 fn read(text: &str) -> Picture {
     for word in ["NaN", "inf", "\u{0}"] {
@@ -61,18 +72,19 @@ fn read(text: &str) -> Picture {
                 };
                 let name = element.name().as_ref().to_owned();
                 match name.as_str() {
-                    "rect" if attribute(&element, "id") == "area" => {
+                    "svg" => picture.height = number(&element, "height"),
+                    "rect" if attribute(&element, "class") == "area" => {
                         picture.area = rectangle(&element)
                     }
-                    "rect" if open.last().is_some_and(|(_, id)| id == "legend") => {
+                    "rect" if open.last().is_some_and(|(_, class)| class == "legend") => {
                         picture.legend = Some(rectangle(&element));
                     }
                     "g" if attribute(&element, "class") == "line" => picture.lines.push(Vec::new()),
-                    "circle" => {
+                    "circle" if is_in(&open, "line") => {
                         let point = ["cx", "cy"].map(|name| number(&element, name));
                         picture.lines.last_mut().unwrap().push(vec![point]);
                     }
-                    "polyline" => {
+                    "polyline" if is_in(&open, "line") => {
                         let points = attribute(&element, "points");
                         let points = points.split(' ').map(|pair| {
                             let (x, y) = pair.split_once(',').unwrap();
@@ -80,7 +92,12 @@ fn read(text: &str) -> Picture {
                         });
                         picture.lines.last_mut().unwrap().push(points.collect());
                     }
-                    "line" => picture.reference = Some(number(&element, "y1")),
+                    "circle" | "polygon" if is_in(&open, "mark") => picture.marks += 1,
+                    "path" if attribute(&element, "class") == "reference" => {
+                        let path = attribute(&element, "d");
+                        let y = path.split([' ', 'H']).nth(1).unwrap();
+                        picture.reference = Some(y.parse().unwrap());
+                    }
                     "text" => {
                         at = ["x", "y"].map(|name| number(&element, name));
                         picture.texts.push((at, String::new()));
@@ -89,7 +106,7 @@ fn read(text: &str) -> Picture {
                     _ => {}
                 }
                 if is_open {
-                    open.push((name, attribute(&element, "id")));
+                    open.push((name, attribute(&element, "class")));
                 }
             }
             Event::End(_) => {
@@ -158,7 +175,7 @@ fn assert_inside(picture: &Picture) {
     }
     for ([x, y], text) in &picture.texts {
         assert!(
-            (0.0..640.0).contains(x) && (0.0..400.0).contains(y),
+            (0.0..640.0).contains(x) && (0.0..picture.height).contains(y),
             "{text} at {x} {y}"
         );
     }
@@ -188,7 +205,7 @@ fn plot(x: &str, y: &str, log: [bool; 2], lines: Vec<Vec<[f64; 2]>>) -> Plot {
                 dashed: false,
             })
             .collect(),
-        reference: None,
+        ..Plot::default()
     }
 }
 
@@ -237,7 +254,7 @@ fn decades_on_an_axis_with_logarithms() {
         [10.0, 0.0],
     ]];
     let log = plot("step (s)", "error", [true; 2], points);
-    assert_texts(&log, &["step (s)", "10⁰", "10³", "10⁻⁹", "10⁻³"]);
+    assert_texts(&log, &["step (s)", "1", "100", "10⁻⁸", "10⁻⁴"]);
     let picture = read(&svg(&log));
     assert_eq!(
         picture.lines[0].len(),
@@ -259,22 +276,14 @@ fn decades_on_an_axis_with_logarithms() {
 fn few_decades_have_numbers_in_between() {
     let two = vec![vec![[2e-3, 0.1], [9e-2, 0.2]]];
     let two = plot("size (m)", "share", [true, false], two);
-    assert_texts(
-        &two,
-        &[
-            "10⁻³",
-            "2×10⁻³",
-            "5×10⁻³",
-            "10⁻²",
-            "2×10⁻²",
-            "5×10⁻²",
-            "10⁻¹",
-        ],
-    );
+    assert_texts(&two, &["0.002", "0.005", "0.01", "0.02", "0.05"]);
     let three = vec![vec![[2e-3, 0.1], [0.9, 0.2]]];
     let three = plot("size (m)", "share", [true, false], three);
-    assert!(!has(&read(&svg(&three)), "2×10⁻³"));
-    assert_texts(&three, &["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+    assert!(!has(&read(&svg(&three)), "0.02"));
+    assert_texts(&three, &["0.01", "0.1"]);
+    let tiny = vec![vec![[2e-9, 0.1], [9e-9, 0.2]]];
+    let tiny = plot("size (m)", "share", [true, false], tiny);
+    assert_texts(&tiny, &["2×10⁻⁹", "5×10⁻⁹"]);
 }
 
 #[test]
@@ -394,6 +403,61 @@ fn one_line_needs_no_legend_but_a_reference_does() {
     );
 }
 
+fn marks(name: &str, points: &[[f64; 2]]) -> Marks {
+    let point = |at: &[f64; 2]| Point {
+        at: *at,
+        x_spread: 0.1 * at[0],
+        filled: at[1] < 0.02,
+        title: format!("<run> {}", at[0]),
+    };
+    Marks {
+        name: name.to_owned(),
+        points: points.iter().map(point).collect(),
+        chains: vec![points.to_vec()],
+    }
+}
+
+#[test]
+fn marks_have_kinds_error_bars_and_a_front() {
+    let mut plot = plot("time (s)", "error", [true; 2], vec![]);
+    plot.marks = vec![
+        marks("total", &[[1.0, 0.1], [2.0, 0.01], [4.0, 0.0]]),
+        marks("incremental", &[[1.5, 0.2], [3.0, 0.05]]),
+    ];
+    plot.kinds = "formulation".to_owned();
+    plot.filled = Some(["on the front".to_owned(), "another is better".to_owned()]);
+    plot.front = vec![[1.0, 0.1], [2.0, 0.01]];
+    let text = svg(&plot);
+    let picture = read(&text);
+    assert_eq!(
+        picture.marks, 5,
+        "what has no logarithm stands at the lower end"
+    );
+    for name in [
+        "formulation",
+        "total",
+        "incremental",
+        "on the front",
+        "another is better",
+    ] {
+        assert!(has(&picture, name), "{name}");
+    }
+    assert!(picture.titles.contains(&"<run> 1.5".to_owned()));
+    assert_eq!(text.matches("class=\"chain\"").count(), 2);
+    assert_eq!(text.matches("class=\"front\"").count(), 1);
+    // Two are filled, and the sample of them; the legend covers none of them.
+    let [left, top, wide, high] = picture.area;
+    assert!(!text.contains("no data") && left + wide < 640.0 && top + high < 400.0);
+    plot.marks[1].name.clear();
+    assert!(!has(&read(&svg(&plot)), "incremental"));
+    plot.marks = (0..90)
+        .map(|kind| marks(&format!("kind {kind}"), &[[1.0, 1.0]]))
+        .collect();
+    let many = read(&svg(&plot));
+    assert!(many.texts.iter().any(|(_, text)| text.ends_with(" more")));
+    assert!(has(&many, "on the front") && has(&many, "kind 9"));
+}
+
 fn any_value() -> impl Strategy<Value = f64> {
     prop_oneof![
         any::<f64>(),
@@ -421,6 +485,12 @@ proptest! {
         }
         any.title = title;
         any.reference = reference;
+        read(&svg(&any));
+        let of_line = |line: Line| Marks {
+            chains: Vec::new(),
+            ..marks(&line.name, &line.points)
+        };
+        any.marks = any.lines.drain(..).map(of_line).collect();
         read(&svg(&any));
     }
 

@@ -1,7 +1,7 @@
 //! From values to places along an axis, and the ticks of it.
 
-use super::contents::Axis;
-use super::text::width;
+use crate::plot::Axis;
+use crate::text::width;
 
 /// Values beyond this are gaps: sums of them are not finite.
 const LARGEST: f64 = 1e300;
@@ -9,39 +9,43 @@ const LARGEST: f64 = 1e300;
 /// Room for the numbers below a plot, px.
 const LABELS: f64 = 400.0;
 
+/// Most numbers at an axis with logarithms.
+const MOST_LOG_NUMBERS: usize = 7;
+
 /// Where values stand along an axis.
 #[derive(Debug, Clone)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     /// Ends of the axis: values, or their decimal logarithms.
     low: f64,
     high: f64,
     log: bool,
     /// What stands at the axis.
-    pub(super) label: String,
+    pub(crate) label: String,
     /// Lines of the grid with their numbers.
-    pub(super) ticks: Vec<Tick>,
+    pub(crate) ticks: Vec<Tick>,
     /// Shares of the axis at which finer lines of the grid stand.
-    pub(super) fine: Vec<f64>,
+    pub(crate) fine: Vec<f64>,
 }
 
 /// A number at an axis.
 #[derive(Debug, Clone)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     /// Share of the axis, 0 to 1.
-    pub(super) share: f64,
-    pub(super) label: String,
+    pub(crate) share: f64,
+    pub(crate) label: String,
 }
 
 /// Whether a value has a place on an axis.
-pub(super) fn is_drawn(value: f64, log: bool) -> bool {
+pub(crate) fn is_drawn(value: f64, log: bool) -> bool {
     value.abs() <= LARGEST && (!log || value > 0.0)
 }
 
 impl Scale {
-    /// An axis on which all of these values have a place; `rounded`: it begins and ends at ticks.
-    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>, rounded: bool) -> Self {
+    /// An axis on which all of these values have a place, as far as they [are drawn](is_drawn);
+    /// `rounded`: a linear one begins and ends at ticks.
+    pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>, rounded: bool) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in values {
+        for value in values.filter(|value| is_drawn(*value, axis.log)) {
             low = low.min(value);
             high = high.max(value);
         }
@@ -110,69 +114,109 @@ impl Scale {
         scale
     }
 
-    /// Whole decades.
+    /// With room around the values, a factor of two at least.
     fn logarithmic(axis: &Axis, low: f64, high: f64) -> Self {
-        let (from, mut to) = if low > high {
+        let (low, high) = if low > high {
             (0.0, 1.0)
         } else {
-            ((low.log10() + 1e-9).floor(), (high.log10() - 1e-9).ceil())
+            (low.log10(), high.log10())
         };
-        if to <= from {
-            to = from + 1.0;
-        }
-        let decades = to - from;
-        let step = if decades <= 8.0 {
-            1.0
-        } else {
-            nice_step(decades / 8.0).max(2.0)
-        };
+        let span = high - low;
+        let room = (0.5 * (0.3 - span)).max(0.06 * span).max(0.04);
         let mut scale = Self {
-            low: from,
-            high: to,
+            low: low - room,
+            high: high + room,
             log: true,
             label: axis.label.clone(),
             ticks: Vec::new(),
             fine: Vec::new(),
         };
-        let share = |exponent: f64| (exponent - from) / decades;
-        let first = (from / step).ceil();
-        let count = ((to / step).floor() - first) as u32;
-        scale.ticks = (0..=count)
-            .map(|number| {
-                let exponent = (first + f64::from(number)) * step;
-                Tick {
-                    share: share(exponent),
-                    label: power_of_ten(exponent as i32),
-                }
+        if let Some(ticks) = scale.steps() {
+            scale.ticks = ticks;
+            return scale;
+        }
+        let ticks = scale.numbers();
+        let plain = ticks.iter().all(|(_, decade)| (-3..4).contains(decade));
+        scale.ticks = (ticks.into_iter())
+            .map(|(digit, decade)| Tick {
+                share: scale.share_of(digit, decade),
+                label: match (plain, digit) {
+                    (true, _) => decimal(
+                        f64::from(digit) * 10_f64.powi(decade),
+                        (-decade).max(0) as usize,
+                    ),
+                    (false, 1) => power_of_ten(decade),
+                    (false, _) => format!("{digit}×{}", power_of_ten(decade)),
+                },
             })
             .collect();
-        if decades <= 2.0 {
-            // Few decades: the numbers of their ends alone would say little.
-            for decade in 0..count {
-                for digit in [2, 5] {
-                    let exponent = from + f64::from(decade);
-                    scale.ticks.push(Tick {
-                        share: share(exponent + f64::from(digit).log10()),
-                        label: format!("{digit}×{}", power_of_ten(exponent as i32)),
-                    });
-                }
-            }
-        }
-        if decades <= 4.0 {
-            scale.fine = (0..count)
-                .flat_map(|decade| {
-                    (2..10).map(move |digit| {
-                        share(from + f64::from(decade) + f64::from(digit).log10())
-                    })
-                })
-                .collect();
+        if span <= 4.0 {
+            let fine = scale.within(&[1, 2, 3, 4, 5, 6, 7, 8, 9], 1);
+            let share = |(digit, decade)| scale.share_of(digit, decade);
+            scale.fine = fine.into_iter().map(share).collect();
         }
         scale
     }
 
-    /// The share of the axis at which a value stands: 0 to 1 for those that the axis was made for.
-    pub(super) fn share(&self, value: f64) -> f64 {
-        let value = if self.log { value.log10() } else { value };
+    /// Numbers at equal steps, where the ends of the axis are less than a factor of four apart.
+    fn steps(&self) -> Option<Vec<Tick>> {
+        let [from, to] = [self.low, self.high].map(|log| 10_f64.powf(log));
+        if to > 4.0 * from || from < 1e-3 || to > 1e4 {
+            return None;
+        }
+        let step = nice_step((to - from) / 7.0);
+        let decimals = -(step.log10() + 1e-6).floor();
+        let [first, last] = [(from / step).ceil(), (to / step).floor()];
+        let tick = |number: u32| {
+            let value = (first + f64::from(number)) * step;
+            Tick {
+                share: self.share(value),
+                label: decimal(value, decimals.max(0.0) as usize),
+            }
+        };
+        Some((0..=(last - first) as u32).map(tick).collect())
+    }
+
+    /// Digits and decades that have a number: as many as fit.
+    fn numbers(&self) -> Vec<(u32, i32)> {
+        let few = [
+            &[1, 2, 3, 4, 5, 6, 7, 8, 9][..],
+            &[1, 2, 3, 5],
+            &[1, 2, 5],
+            &[1, 3],
+        ];
+        let few = few.into_iter().map(|digits| self.within(digits, 1));
+        let many = [1, 2, 3, 5, 10, 20, 50].map(|every| self.within(&[1], every));
+        let mut fitting = few.chain(many).filter(|all| all.len() <= MOST_LOG_NUMBERS);
+        fitting.next().unwrap_or_else(|| self.within(&[1], 100))
+    }
+
+    /// These digits of every so manyth decade, as far as they have a place.
+    fn within(&self, digits: &[u32], every: i32) -> Vec<(u32, i32)> {
+        let decades = self.low.floor() as i32..=self.high.floor() as i32;
+        decades
+            .filter(|decade| decade.rem_euclid(every) == 0)
+            .flat_map(|decade| digits.iter().map(move |digit| (*digit, decade)))
+            .filter(|(digit, decade)| {
+                let log = f64::from(*decade) + f64::from(*digit).log10();
+                (self.low..=self.high).contains(&log)
+            })
+            .collect()
+    }
+
+    fn share_of(&self, digit: u32, decade: i32) -> f64 {
+        let log = f64::from(decade) + f64::from(digit).log10();
+        (log - self.low) / (self.high - self.low)
+    }
+
+    /// The share of the axis at which a value stands: 0 to 1 for those that the axis was made for,
+    /// 0 for what has no logarithm.
+    pub(crate) fn share(&self, value: f64) -> f64 {
+        let value = match self.log {
+            true if value > 0.0 => value.log10(),
+            true => self.low,
+            false => value,
+        };
         // Rounding must not carry a point over the edge.
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
@@ -187,7 +231,8 @@ fn nice_step(raw: f64) -> f64 {
     factor.unwrap_or(10.0) * power
 }
 
-/// The label of an axis whose values go up to `largest`, and the power of ten by which they are divided.
+/// The label of an axis whose values go up to `largest`, and the power of ten by which they are
+/// divided.
 fn with_prefix(label: &str, largest: f64) -> (String, i32) {
     const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
     let power = (largest.log10() / 3.0 + 1e-9).floor() as i32 * 3;
@@ -232,22 +277,40 @@ fn decimal(value: f64, decimals: usize) -> String {
 
 /// `10⁻³`.
 fn power_of_ten(exponent: i32) -> String {
-    let raised = exponent
-        .to_string()
-        .chars()
-        .map(|letter| match letter {
-            '-' => '⁻',
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            _ => '⁹',
-        })
-        .collect::<String>();
-    format!("10{raised}")
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |sign: char| {
+        sign.to_digit(10)
+            .map_or('⁻', |digit| RAISED[digit as usize])
+    };
+    let exponent: String = exponent.to_string().chars().map(raised).collect();
+    format!("10{exponent}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a plot, px.
+    const AREA: f64 = 500.0;
+
+    #[test]
+    fn axes_with_logarithms_have_numbers_that_fit() {
+        for (low, high) in [
+            (0.01, 0.013),
+            (0.01, 0.5),
+            (1e-3, 20.0),
+            (1e-12, 1e-1),
+            (3.0, 3.0),
+        ] {
+            let scale = Scale::new(&Axis::log(""), [low, high].into_iter(), false);
+            let names: Vec<&str> = scale.ticks.iter().map(|tick| tick.label.as_str()).collect();
+            assert!((3..=9).contains(&names.len()), "{low} {high} {names:?}");
+            let room = scale.ticks.windows(2).map(|two| {
+                let words = 0.5 * (width(&two[0].label, 12.0) + width(&two[1].label, 12.0));
+                AREA * (two[1].share - two[0].share) - words
+            });
+            assert!(room.fold(AREA, f64::min) > 4.0, "{low} {high} {names:?}");
+            assert!(scale.share(low) > 0.0 && scale.share(high) < 1.0);
+        }
+    }
 }

@@ -3,19 +3,18 @@
 //! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the
 //! wall begins, which is fainter and falls on walls only.
 
-use crate::output::pictures::vector::dot_f32 as dot;
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::band::crossings;
 use super::{Body, range};
-use crate::output::pictures::camera::Camera;
-use crate::output::pictures::vector::minus;
+use crate::camera::Camera;
 
 /// Towards the lamp in view space, where y points downwards: from the upper left, a little from the
 /// front. Any length.
-const LAMP: [f32; 3] = [-0.42, -0.78, 0.46];
+const LAMP: Vector3<f32> = Vector3::new(-0.42, -0.78, 0.46);
 /// Towards the middle of the sky. Any length.
-const ZENITH: [f32; 3] = [-0.08, -0.76, 0.64];
+const ZENITH: Vector3<f32> = Vector3::new(-0.08, -0.76, 0.64);
 
 /// Directions of the sky.
 const SKY: usize = 14;
@@ -37,7 +36,7 @@ pub(super) struct Lights {
     lamp: Map,
     sky: Vec<Map>,
     /// Towards the middle of the sky.
-    pub(super) zenith: [f32; 3],
+    pub(super) zenith: Vector3<f32>,
 }
 
 /// What is lit.
@@ -66,13 +65,13 @@ impl Lights {
         let [far, close] = camera.depth_px();
         let high = [f64::from(width), f64::from(height), close.max(far)];
         let low = [0.0, 0.0, far];
-        let inside = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k].clamp(low[k], high[k]) as f32);
-        let points: Vec<[f32; 3]> = triangles.iter().flatten().map(inside).collect();
-        let zenith = unit(ZENITH);
+        let inside = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k].clamp(low[k], high[k]) as f32).into();
+        let points: Vec<Vector3<f32>> = triangles.iter().flatten().map(inside).collect();
+        let zenith = ZENITH.normalize();
         let map =
             |towards, texel, most| Map::new(towards, &near, triangles, &points, [texel, most]);
         Self {
-            lamp: map(unit(LAMP), lamp, LAMP_TEXELS),
+            lamp: map(LAMP.normalize(), lamp, LAMP_TEXELS),
             sky: directions(zenith)
                 .into_par_iter()
                 .map(|towards| map(towards, sky, SKY_TEXELS))
@@ -82,27 +81,27 @@ impl Lights {
     }
 
     /// Towards the lamp.
-    pub(super) fn lamp(&self) -> [f32; 3] {
+    pub(super) fn lamp(&self) -> Vector3<f32> {
         self.lamp.towards
     }
 
     /// How much of the lamp is seen from a point of a ball, 0 to 1.
-    pub(super) fn lamp_on_ball(&self, point: [f32; 3], bias: f32) -> f32 {
+    pub(super) fn lamp_on_ball(&self, point: Vector3<f32>, bias: f32) -> f32 {
         self.lamp.soft(point, bias, Receiver::Ball)
     }
 
     /// How much of the lamp is seen from a point of a flat wall that looks towards it, 0 to 1.
-    pub(super) fn lamp_on_wall(&self, point: [f32; 3], facing: f32) -> f32 {
+    pub(super) fn lamp_on_wall(&self, point: Vector3<f32>, facing: f32) -> f32 {
         let bias = 1.0 + 3.0 * self.lamp.texel * steepness(facing);
         self.lamp.soft(point, 1.0, Receiver::Wall(bias))
     }
 
     /// How much of the sky is seen from a point of a flat wall, 0 to 1.
-    pub(super) fn sky_at(&self, point: [f32; 3], normal: [f32; 3]) -> f32 {
+    pub(super) fn sky_at(&self, point: Vector3<f32>, normal: Vector3<f32>) -> f32 {
         let mut seen = 0.0;
         let mut all = 1e-6;
         for map in &self.sky {
-            let facing = dot(normal, map.towards);
+            let facing = normal.dot(&map.towards);
             if facing > 0.05 {
                 let bias = 1.0 + 2.0 * map.texel * steepness(facing);
                 all += facing;
@@ -128,7 +127,7 @@ impl Lights {
 }
 
 /// Directions around the zenith, more of them near to it.
-fn directions(zenith: [f32; 3]) -> [[f32; 3]; SKY] {
+fn directions(zenith: Vector3<f32>) -> [Vector3<f32>; SKY] {
     let [right, up] = across(zenith);
     let mut turn = [1.0, 0.0];
     std::array::from_fn(|k| {
@@ -139,15 +138,15 @@ fn directions(zenith: [f32; 3]) -> [[f32; 3]; SKY] {
             GOLDEN[0] * turn[0] - GOLDEN[1] * turn[1],
             GOLDEN[1] * turn[0] + GOLDEN[0] * turn[1],
         ];
-        [0, 1, 2].map(|k| along * zenith[k] + out * (turn[0] * right[k] + turn[1] * up[k]))
+        along * zenith + out * (turn[0] * right + turn[1] * up)
     })
 }
 
 /// How near to a light the nearest ball and the nearest wall are, for each texel of a grid across
 /// its direction.
 struct Map {
-    towards: [f32; 3],
-    across: [[f32; 3]; 2],
+    towards: Vector3<f32>,
+    across: [Vector3<f32>; 2],
     /// The corner of the first texel.
     low: [f32; 2],
     /// Side of a texel, px.
@@ -164,10 +163,10 @@ impl Map {
     /// The map of all these balls and points: at least so large texels, px, and at most so many
     /// along a side.
     fn new(
-        towards: [f32; 3],
+        towards: Vector3<f32>,
         bodies: &[&Body],
         triangles: &[[[f64; 3]; 3]],
-        points: &[[f32; 3]],
+        points: &[Vector3<f32>],
         [texel, most]: [f32; 2],
     ) -> Self {
         let across = across(towards);
@@ -175,14 +174,14 @@ impl Map {
         let mut high = [f32::NEG_INFINITY; 2];
         for point in points {
             for k in 0..2 {
-                let place = dot(*point, across[k]);
+                let place = point.dot(&across[k]);
                 low[k] = low[k].min(place);
                 high[k] = high[k].max(place);
             }
         }
         for body in bodies {
             for k in 0..2 {
-                let place = dot(body.centre, across[k]);
+                let place = body.centre.dot(&across[k]);
                 low[k] = low[k].min(place - body.radius);
                 high[k] = high[k].max(place + body.radius);
             }
@@ -217,11 +216,11 @@ impl Map {
     }
 
     /// Place in texels, and depth.
-    fn place(&self, point: [f32; 3]) -> [f32; 3] {
+    fn place(&self, point: Vector3<f32>) -> [f32; 3] {
         [
-            (dot(point, self.across[0]) - self.low[0]) / self.texel,
-            (dot(point, self.across[1]) - self.low[1]) / self.texel,
-            dot(point, self.towards),
+            (point.dot(&self.across[0]) - self.low[0]) / self.texel,
+            (point.dot(&self.across[1]) - self.low[1]) / self.texel,
+            point.dot(&self.towards),
         ]
     }
 
@@ -247,9 +246,10 @@ impl Map {
     }
 
     fn add_triangle(&mut self, corners: &[[f64; 3]; 3]) {
-        let placed = corners.map(|corner| self.place(corner.map(|x| x as f32)).map(f64::from));
+        let placed =
+            corners.map(|corner| self.place(corner.map(|x| x as f32).into()).map(f64::from));
         let [a, b, c] = placed;
-        let [u, v] = [b, c].map(|p| minus(p, a));
+        let [u, v] = [b, c].map(|p| Vector3::from(p) - Vector3::from(a));
         let area = u[1] * v[0] - u[0] * v[1];
         if area.abs() < 1e-9 {
             return;
@@ -336,7 +336,7 @@ impl Map {
     }
 
     /// How much of a point is lit: four texels.
-    fn smooth(&self, point: [f32; 3], bias: f32, receiver: Receiver) -> f32 {
+    fn smooth(&self, point: Vector3<f32>, bias: f32, receiver: Receiver) -> f32 {
         let [x, y, z] = self.place(point);
         if self.is_free([x, y, z], bias, receiver) {
             return 1.0;
@@ -351,7 +351,7 @@ impl Map {
     }
 
     /// How much of a point is lit, with a soft border: 16 texels.
-    fn soft(&self, point: [f32; 3], bias: f32, receiver: Receiver) -> f32 {
+    fn soft(&self, point: Vector3<f32>, bias: f32, receiver: Receiver) -> f32 {
         let [x, y, z] = self.place(point);
         if self.is_free([x, y, z], bias, receiver) {
             return 1.0;
@@ -394,25 +394,13 @@ fn steepness(facing: f32) -> f32 {
     ((1.0 - facing * facing).max(0.0).sqrt() / facing.max(0.05)).min(10.0)
 }
 
-fn unit(a: [f32; 3]) -> [f32; 3] {
-    let length = dot(a, a).sqrt();
-    a.map(|x| x / length)
-}
-
 /// Two unit vectors across a unit vector and each other.
-fn across(a: [f32; 3]) -> [[f32; 3]; 2] {
-    let cross = |a: [f32; 3], b: [f32; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
-    let other = if a[0].abs() < 0.6 {
-        [1.0, 0.0, 0.0]
+fn across(a: Vector3<f32>) -> [Vector3<f32>; 2] {
+    let other = if a.x.abs() < 0.6 {
+        Vector3::x()
     } else {
-        [0.0, 1.0, 0.0]
+        Vector3::y()
     };
-    let right = unit(cross(other, a));
-    [right, cross(a, right)]
+    let right = other.cross(&a).normalize();
+    [right, a.cross(&right)]
 }

@@ -1,5 +1,7 @@
 //! A band of rows of the picture, with four samples a pixel.
 
+use nalgebra::Vector3;
+
 use super::shade::{self, linear, mixed, stored};
 use super::{Face, Line, Scene};
 
@@ -61,8 +63,8 @@ impl Face {
         a[2] + self.slope[0] * (x - a[0]) + self.slope[1] * (y - a[1])
     }
 
-    pub(super) fn point(&self, x: f32, y: f32) -> [f32; 3] {
-        [x, y, self.depth(f64::from(x), f64::from(y)) as f32]
+    pub(super) fn point(&self, x: f32, y: f32) -> Vector3<f32> {
+        Vector3::new(x, y, self.depth(f64::from(x), f64::from(y)) as f32)
     }
 }
 
@@ -146,7 +148,7 @@ impl Band {
         let wide = 2 * self.width;
         for &number in numbers {
             let body = scene.bodies[number as usize];
-            let [x, y, z] = body.centre;
+            let [x, y, z]: [f32; 3] = body.centre.into();
             let (middle, radius) = (f64::from(y) - self.top, f64::from(body.radius));
             for row in Self::samples(middle - radius, middle + radius, 2 * ROWS) {
                 let dy = 0.5 * (row as f64 + 0.5) - middle;

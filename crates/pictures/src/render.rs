@@ -11,12 +11,12 @@ mod band;
 mod light;
 mod shade;
 
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::camera::Camera;
 use super::image::Image;
 use super::surface::{Surface, Triangle};
-use super::vector::{are_finite, minus};
 use band::{Band, ROWS};
 use light::Lights;
 
@@ -37,7 +37,7 @@ pub struct Ball {
 /// A ball in view space, px.
 #[derive(Debug, Clone, Copy)]
 struct Body {
-    centre: [f32; 3],
+    centre: Vector3<f32>,
     radius: f32,
     colour: [f32; 3],
     /// How much of the sky it sees: the mean, and how that grows along each axis.
@@ -51,7 +51,7 @@ struct Face {
     /// How depth grows to the right and downwards.
     slope: [f64; 2],
     /// Unit vector towards the viewer.
-    normal: [f32; 3],
+    normal: Vector3<f32>,
     colour: [f32; 3],
     opacity: f32,
 }
@@ -130,7 +130,7 @@ fn body(camera: &Camera, ball: &Ball) -> Option<Body> {
     let radius = ball.radius_m * camera.px_per_m();
     let is_sane = radius > 0.0 && radius < FARTHEST_PX;
     is_sane.then(|| Body {
-        centre: centre.map(|x| x as f32),
+        centre: centre.map(|x| x as f32).into(),
         radius: radius as f32,
         colour: shade::linear(ball.colour),
         sky: [1.0, 0.0, 0.0, 0.0],
@@ -150,7 +150,7 @@ fn corners(camera: &Camera, triangle: &Triangle) -> Option<[[f64; 3]; 3]> {
 
 fn face(wall: &Surface, corners: [[f64; 3]; 3]) -> Option<Face> {
     let [a, b, c] = corners;
-    let [u, v] = [b, c].map(|p| minus(p, a));
+    let [u, v] = [b, c].map(|p| Vector3::from(p) - Vector3::from(a));
     // Positive where it is seen from outside: y points downwards.
     let area = u[1] * v[0] - u[0] * v[1];
     if area.abs() < 1e-9 || (wall.solid && area < 0.0) {
@@ -161,10 +161,11 @@ fn face(wall: &Surface, corners: [[f64; 3]; 3]) -> Option<Face> {
         (u[2] * v[0] - u[0] * v[2]) / area,
     ];
     let length = (slope[0] * slope[0] + slope[1] * slope[1] + 1.0).sqrt();
-    are_finite([slope[0], slope[1], length]).then(|| Face {
+    // Not so either where a slope is not finite.
+    length.is_finite().then(|| Face {
         corners,
         slope,
-        normal: [-slope[0], -slope[1], 1.0].map(|x| (x / length) as f32),
+        normal: Vector3::new(-slope[0], -slope[1], 1.0).map(|x| (x / length) as f32),
         colour: shade::linear(wall.colour),
         opacity: wall.opacity.clamp(0.0, 1.0),
     })

@@ -1,6 +1,6 @@
 //! A font of strokes, smooth at every size.
 
-use crate::output::pictures::image::Image;
+use crate::image::Image;
 
 /// Units between the base line and the top of a digit. A glyph is up to 4 units wide.
 const HIGH: f64 = 8.0;

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::vector::{across, are_finite, cross, dot, minus, plus, unit};
-use crate::geometry::{Bounds, Frame, Shape};
+use dem_io::Bounds;
+use nalgebra::Vector3;
+
+use super::vector::{across, unit};
 
 /// Sides of a polygon that stands for a circle.
 const ROUND: u32 = 96;
@@ -52,19 +54,6 @@ pub struct HalfSpace {
     pub normal: [f64; 3],
 }
 
-impl HalfSpace {
-    /// A wall's shape where it stands, if it is a plane.
-    pub fn of_wall(shape: &Shape, frame: &Frame) -> Option<Self> {
-        match shape {
-            Shape::Plane(plane) => Some(Self {
-                point_m: frame.to_space(plane.point_m()),
-                normal: frame.direction_to_space(plane.normal()),
-            }),
-            _ => None,
-        }
-    }
-}
-
 /// A wall as it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
@@ -84,23 +73,23 @@ impl Surface {
     /// The surface of half of space: the part of the plane that lies around a scene and in none of
     /// the other `solids`.
     pub fn plane(plane: &HalfSpace, around: &Bounds, solids: &[HalfSpace]) -> Self {
-        let HalfSpace { point_m, normal } = *plane;
-        let Some(normal) = unit(normal) else {
+        let point_m = Vector3::from(plane.point_m);
+        let Some(normal) = unit(plane.normal.into()) else {
             return Self::mesh(&[], &[]);
         };
         let right = along_an_axis(normal);
-        let up = cross(normal, right);
-        let reach = |axis: [f64; 3]| {
+        let up = normal.cross(&right);
+        let reach = |axis: Vector3<f64>| {
             let along = around
                 .corners()
-                .map(|corner| dot(minus(corner, point_m), axis));
+                .map(|corner| (Vector3::from(corner) - point_m).dot(&axis));
             let low = along.into_iter().fold(f64::INFINITY, f64::min);
             let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
             [low, high]
         };
         let [x, y] = [reach(right), reach(up)];
         let over = OVER * (x[1] - x[0]).max(y[1] - y[0]);
-        let corner = |x, y| plus(plus(point_m, x, right), y, up);
+        let corner = |x: f64, y: f64| (point_m + x * right + y * up).into();
         let patch = [
             corner(x[0] - over, y[0] - over),
             corner(x[1] + over, y[0] - over),
@@ -115,24 +104,6 @@ impl Surface {
             solid: true,
             ..Self::mesh(&patch, &triangles)
         }
-    }
-
-    /// A wall's shape where it stands. None: a plane has no end, and is drawn by
-    /// [`Surface::plane`].
-    pub fn of_finite(shape: &Shape, frame: &Frame) -> Option<Self> {
-        let in_its_frame = match shape {
-            Shape::Plane(_) => return None,
-            Shape::Box(solid) => Self::solid_box(&solid.bounds()),
-            Shape::Cylinder(cylinder) => Self::cylinder(cylinder.ends_m(), cylinder.radius_m()),
-            Shape::Mesh(mesh) => {
-                let vertices_m: Vec<[f64; 3]> = mesh.corners_m().flatten().collect();
-                let triangles: Vec<[u32; 3]> = (0..vertices_m.len() as u32 / 3)
-                    .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-                    .collect();
-                Self::mesh(&vertices_m, &triangles)
-            }
-        };
-        Some(in_its_frame.moved(&|point_m| frame.to_space(point_m)))
     }
 
     /// A solid box with sides along the axes, m.
@@ -157,19 +128,20 @@ impl Surface {
 
     /// A solid cylinder between the middles of its two flat ends, m, shape 2 x 3.
     pub fn cylinder(ends_m: [[f64; 3]; 2], radius_m: f64) -> Self {
-        let Some(axis) = unit(minus(ends_m[1], ends_m[0])) else {
+        let ends = ends_m.map(Vector3::from);
+        let Some(axis) = unit(ends[1] - ends[0]) else {
             return Self::mesh(&[], &[]);
         };
         let right = across(axis);
-        let up = cross(axis, right);
+        let up = axis.cross(&right);
         let mut vertices = ends_m.to_vec();
         let mut triangles = Vec::new();
         for side in 0..ROUND {
             let (sine, cosine) =
                 (std::f64::consts::TAU * f64::from(side) / f64::from(ROUND)).sin_cos();
-            for end in ends_m {
-                let out = plus(plus(end, radius_m * cosine, right), radius_m * sine, up);
-                vertices.push(out);
+            for end in ends {
+                let out = end + radius_m * cosine * right + radius_m * sine * up;
+                vertices.push(out.into());
             }
             let this = 2 + 2 * side;
             let next = 2 + 2 * ((side + 1) % ROUND);
@@ -195,10 +167,8 @@ impl Surface {
         let corners = |t: &[u32; 3]| -> Option<Triangle> {
             let [a, b, c] = t.map(|v| vertices_m.get(v as usize).copied());
             let corners_m = [a?, b?, c?];
-            corners_m
-                .into_iter()
-                .all(are_finite)
-                .then_some(Triangle { corners_m })
+            let is_finite = corners_m.as_flattened().iter().all(|x| x.is_finite());
+            is_finite.then_some(Triangle { corners_m })
         };
         let triangles: Vec<Triangle> = triangles.iter().filter_map(corners).collect();
         Self {
@@ -234,22 +204,23 @@ impl Surface {
 }
 
 /// A unit vector across a unit vector, as near to one of the axes as possible.
-fn along_an_axis(normal: [f64; 3]) -> [f64; 3] {
+fn along_an_axis(normal: Vector3<f64>) -> Vector3<f64> {
     let least = (0..3)
         .min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs()))
         .unwrap_or(0);
-    let mut axis = [0.0; 3];
+    let mut axis = Vector3::zeros();
     axis[least] = 1.0;
-    unit(plus(axis, -normal[least], normal)).unwrap_or(axis)
+    unit(axis + -normal[least] * normal).unwrap_or(axis)
 }
 
 /// The part of a convex polygon, m, shape n x 3, that is not in a solid. One that lies in its plane
 /// is left as it is.
 fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
-    let Some(normal) = unit(solid.normal) else {
+    let Some(normal) = unit(solid.normal.into()) else {
         return polygon.to_vec();
     };
-    let height = |point| dot(minus(point, solid.point_m), normal);
+    let point_m = Vector3::from(solid.point_m);
+    let height = |point: [f64; 3]| (Vector3::from(point) - point_m).dot(&normal);
     let size = Bounds::of(polygon.iter().copied()).diagonal_m();
     let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let mut left = Vec::new();
@@ -259,7 +230,8 @@ fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
             left.push(a);
         }
         if (from < 0.0) != (to < 0.0) {
-            left.push(plus(a, from / (from - to), minus(b, a)));
+            let (a, b) = (Vector3::from(a), Vector3::from(b));
+            left.push((a + from / (from - to) * (b - a)).into());
         }
     }
     left
@@ -306,15 +278,16 @@ fn edges(triangles: &[Triangle]) -> Vec<Edge> {
 
 /// The cosine of the angle between two triangles on one edge: -1 where they are one flat part.
 fn fold(ends: [[f64; 3]; 2], beside: [[f64; 3]; 2]) -> f64 {
-    let Some(along) = unit(minus(ends[1], ends[0])) else {
+    let ends = ends.map(Vector3::from);
+    let Some(along) = unit(ends[1] - ends[0]) else {
         return -1.0;
     };
     let out = beside.map(|corner| {
-        let from = minus(corner, ends[0]);
-        unit(plus(from, -dot(from, along), along))
+        let from = Vector3::from(corner) - ends[0];
+        unit(from + -from.dot(&along) * along)
     });
     match out {
-        [Some(a), Some(b)] => dot(a, b),
+        [Some(a), Some(b)] => a.dot(&b),
         _ => -1.0,
     }
 }
@@ -333,7 +306,10 @@ mod tests {
     }
 
     fn volume(wall: &Surface) -> f64 {
-        let of = |t: &Triangle| dot(t.corners_m[0], cross(t.corners_m[1], t.corners_m[2])) / 6.0;
+        let of = |t: &Triangle| {
+            let [a, b, c] = t.corners_m.map(Vector3::from);
+            a.dot(&b.cross(&c)) / 6.0
+        };
         wall.triangles.iter().map(of).sum()
     }
 
@@ -360,8 +336,8 @@ mod tests {
         let bounds = Bounds::of(wall.points_m());
         assert!(bounds.low[0] < 0.0 && bounds.high[1] > 1.0);
         assert_eq!((bounds.low[2], bounds.high[2]), (-1.0, -1.0));
-        let [a, b, c] = wall.triangles[0].corners_m;
-        assert!(cross(minus(b, a), minus(c, a))[2] > 0.0);
+        let [a, b, c] = wall.triangles[0].corners_m.map(Vector3::from);
+        assert!((b - a).cross(&(c - a)).z > 0.0);
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! From where the scene is seen: without perspective, so that one scale holds in the whole picture.
 
+use dem_io::Bounds;
+use nalgebra::Vector3;
+
 use super::image::MAX_SIDE_PX;
-use super::vector::{are_finite, cross, dot, minus, plus, unit};
-use crate::geometry::Bounds;
+use super::vector::unit;
 
 /// Free margin at the left and the right, as a share of the width.
 const SIDE: f64 = 0.04;
@@ -13,7 +15,7 @@ const BOTTOM: f64 = 0.12;
 
 /// Where the three-quarter view looks when x lies across the picture: from the front, the right and
 /// above.
-const THREE_QUARTER: [f64; 3] = [-0.42, 0.80, -0.43];
+const THREE_QUARTER: Vector3<f64> = Vector3::new(-0.42, 0.80, -0.43);
 
 /// Points farther away than this are taken for nonsense, m.
 const FARTHEST_M: f64 = 1e12;
@@ -22,9 +24,9 @@ const FARTHEST_M: f64 = 1e12;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// Unit vectors of the picture: to the right, up, and towards the viewer.
-    axes: [[f64; 3]; 3],
+    axes: [Vector3<f64>; 3],
     /// The point in the middle of the picture, m.
-    middle_m: [f64; 3],
+    middle_m: Vector3<f64>,
     px_per_m: f64,
     size_px: [u32; 2],
     /// Depths of the nearest and the farthest point that it was fitted to, px.
@@ -50,10 +52,10 @@ impl Camera {
         size_px: [u32; 2],
     ) -> Self {
         let size_px = size_px.map(|side| side.min(MAX_SIDE_PX));
-        let axes = axes(direction, up);
-        let seen = sane(points_m).map(|p| axes.map(|axis| dot(axis, p)));
+        let axes = axes(direction.into(), up.into());
+        let seen = sane(points_m).map(|p| axes.map(|axis| axis.dot(&Vector3::from(p))));
         let mut view = Bounds::of(seen);
-        if !are_finite(view.low) {
+        if !view.low.into_iter().all(f64::is_finite) {
             view = Bounds {
                 low: [-0.5; 3],
                 high: [0.5; 3],
@@ -67,7 +69,7 @@ impl Camera {
         let [x, y, z] = [0, 1, 2].map(|k| 0.5 * (view.low[k] + view.high[k]));
         let y = y - 0.5 * (BOTTOM - TOP) * height / px_per_m;
         let [right, up, back] = axes;
-        let middle_m = plus(plus(right.map(|c| c * x), y, up), z, back);
+        let middle_m = x * right + y * up + z * back;
         let depth_px = [view.low[2], view.high[2]].map(|depth| (depth - z) * px_per_m);
         Self {
             axes,
@@ -83,7 +85,8 @@ impl Camera {
     pub fn three_quarter(points_m: &[[f64; 3]], size_px: [u32; 2]) -> Self {
         let bounds = Bounds::of(sane(points_m));
         let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
-        Self::around(three_quarter(y > x), [0.0, 0.0, 1.0], points_m, size_px)
+        let direction = three_quarter(y > x).into();
+        Self::around(direction, [0.0, 0.0, 1.0], points_m, size_px)
     }
 
     /// Width and height of the picture, px.
@@ -99,8 +102,8 @@ impl Camera {
     /// Where a point, m, lies in the picture, px: from the left, from the top, and from the middle
     /// of the scene towards the viewer. Length 3.
     pub fn project(&self, point_m: [f64; 3]) -> [f64; 3] {
-        let from = minus(point_m, self.middle_m);
-        let [x, y, z] = self.axes.map(|axis| dot(axis, from) * self.px_per_m);
+        let from = Vector3::from(point_m) - self.middle_m;
+        let [x, y, z] = self.axes.map(|axis| axis.dot(&from) * self.px_per_m);
         let [width, height] = self.size_px.map(f64::from);
         [0.5 * width + x, 0.5 * height - y, z]
     }
@@ -116,28 +119,27 @@ fn sane(points_m: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
     points_m.iter().copied().filter(is_sane)
 }
 
-fn three_quarter(is_y_longer: bool) -> [f64; 3] {
-    let [x, y, z] = THREE_QUARTER;
+fn three_quarter(is_y_longer: bool) -> Vector3<f64> {
     if is_y_longer {
-        [-y, x, z]
+        Vector3::new(-THREE_QUARTER.y, THREE_QUARTER.x, THREE_QUARTER.z)
     } else {
         THREE_QUARTER
     }
 }
 
-fn axes(direction: [f64; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
+fn axes(direction: Vector3<f64>, up: Vector3<f64>) -> [Vector3<f64>; 3] {
     let ahead = unit(direction)
         .or(unit(THREE_QUARTER))
-        .unwrap_or([0.0, 1.0, 0.0]);
-    let ups = [up, [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+        .unwrap_or(Vector3::y());
+    let ups = [up, Vector3::z(), Vector3::y(), Vector3::x()];
     let right = ups
         .into_iter()
         .filter_map(unit)
-        .map(|up| cross(ahead, up))
-        .find(|right| dot(*right, *right) > 1e-12)
+        .map(|up| ahead.cross(&up))
+        .find(|right| right.norm_squared() > 1e-12)
         .and_then(unit)
-        .unwrap_or([1.0, 0.0, 0.0]);
-    [right, cross(right, ahead), ahead.map(|c| -c)]
+        .unwrap_or(Vector3::x());
+    [right, right.cross(&ahead), -ahead]
 }
 
 #[cfg(test)]
@@ -178,7 +180,7 @@ mod tests {
         for direction in nothing.into_iter().chain([[0.0, 0.0, -1.0]]) {
             for shown in [&points[..], &[], &[[3.0; 3]]] {
                 let camera = Camera::around(direction, [0.0, 0.0, 1.0], shown, [0, 540]);
-                assert!(are_finite(camera.project([3.0; 3])));
+                assert!(camera.project([3.0; 3]).into_iter().all(f64::is_finite));
             }
         }
     }

@@ -1,0 +1,21 @@
+//! Pictures of spheres and surfaces, drawn without any other program, and films of them.
+//!
+//! [`Camera`] says from where the scene is seen, [`render()`] draws [`Ball`]s and [`Surface`]s into an
+//! [`Image`], [`label`] writes the time and a scale into it, [`png_file`] and [`film`] make files.
+//!
+//! Equal input gives equal bytes. Nothing here panics: what is not finite is left out.
+
+pub mod camera;
+pub mod colours;
+pub mod film;
+pub mod image;
+pub mod label;
+pub mod png_file;
+pub mod render;
+pub mod surface;
+mod vector;
+
+pub use camera::Camera;
+pub use image::Image;
+pub use render::{Ball, render};
+pub use surface::Surface;

@@ -1,0 +1,23 @@
+//! Plots as SVG and pages as HTML: each is one file that needs no other, and shows in every browser,
+//! editor and word processor.
+//!
+//! A [`Plot`] has lines, marks with error bars or both over a pair of axes; a [`Map`] shows places to
+//! scale; a [`Page`] holds text, tables and both of them. All are plain data, and equal data gives
+//! equal bytes. Tags are written by `maud` alone, so that no text can be taken for one.
+
+mod colours;
+mod draw;
+mod legend;
+mod map;
+mod page;
+mod plot;
+mod scale;
+mod svg;
+mod text;
+mod thin;
+
+pub use colours::MOST_LINES;
+pub use map::{Circle, Dot, Guide, Map};
+pub use page::{Column, Page, Row, Table};
+pub use plot::{Axis, Line, Marks, Plot, Point};
+pub use svg::Svg;

@@ -1,0 +1,162 @@
+//! Pages that need no other file.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::svg::Svg;
+use crate::text::shown;
+
+/// The one style of all pages.
+const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;background:#fff;max-width:860px;\
+margin:2em auto;padding:0 1em;line-height:1.4}\
+table{border-collapse:collapse;margin:.6em 0 1.6em;font-size:14px}\
+td,th{padding:.2em 1em .2em 0;text-align:left;border-bottom:1px solid #e4e4e4;vertical-align:top}\
+td.n,th.n{text-align:right}tr.bad td{color:#a33}.wide{overflow-x:auto}\
+svg{display:block;max-width:100%;height:auto;margin:1em 0}h2{margin-top:1.6em}\
+p.small{color:#555;font-size:14px}";
+
+/// A page, from its title downwards.
+#[derive(Debug, Clone)]
+pub struct Page {
+    title: String,
+    content: Vec<Markup>,
+}
+
+/// A table. Without names of columns it has no head.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    /// The columns, from the left.
+    pub columns: Vec<Column>,
+    /// The rows, from the top.
+    pub rows: Vec<Row>,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// It holds numbers, which end at one line.
+    pub is_number: bool,
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Row {
+    /// What stands in its columns; those at the end may be missing.
+    pub cells: Vec<String>,
+    /// Of something that failed: red.
+    pub is_bad: bool,
+}
+
+impl From<Vec<String>> for Row {
+    /// A row of nothing that failed.
+    fn from(cells: Vec<String>) -> Self {
+        let is_bad = false;
+        Self { cells, is_bad }
+    }
+}
+
+impl Column {
+    /// A column of texts.
+    pub fn text(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            is_number: false,
+        }
+    }
+
+    /// A column of numbers.
+    pub fn number(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            is_number: true,
+        }
+    }
+
+    fn class(&self) -> Option<&'static str> {
+        self.is_number.then_some("n")
+    }
+}
+
+impl Page {
+    /// A page of nothing but its title.
+    pub fn new(title: &str) -> Self {
+        Self {
+            title: shown(title),
+            content: Vec::new(),
+        }
+    }
+
+    /// Adds a heading.
+    pub fn heading(&mut self, text: &str) {
+        self.content.push(html! { h2 { (shown(text)) } });
+    }
+
+    /// Adds a paragraph.
+    pub fn paragraph(&mut self, text: &str) {
+        self.content.push(html! { p { (shown(text)) } });
+    }
+
+    /// Adds a paragraph in small letters.
+    pub fn small(&mut self, text: &str) {
+        self.content
+            .push(html! { p class="small" { (shown(text)) } });
+    }
+
+    /// Adds a list, unless it is empty.
+    pub fn list(&mut self, items: &[String]) {
+        if !items.is_empty() {
+            let items = html! { ul { @for item in items { li { (shown(item)) } } } };
+            self.content.push(items);
+        }
+    }
+
+    /// Adds a plot or a map.
+    pub fn figure(&mut self, svg: &Svg) {
+        self.content.push(PreEscaped(svg.element().to_owned()));
+    }
+
+    /// Adds a table.
+    pub fn table(&mut self, table: &Table) {
+        let Table { columns, rows } = table;
+        let class = |at: usize| columns.get(at).and_then(Column::class);
+        self.content.push(html! {
+            div class="wide" {
+                table {
+                    @if columns.iter().any(|column| !column.name.is_empty()) {
+                        tr { @for column in columns { th class=[column.class()] { (shown(&column.name)) } } }
+                    }
+                    @for Row { cells, is_bad } in rows {
+                        tr class=[is_bad.then_some("bad")] {
+                            @for (at, cell) in cells.iter().enumerate() {
+                                td class=[class(at)] { (shown(cell)) }
+                            }
+                        }
+                        "\n"
+                    }
+                }
+            }
+        });
+    }
+
+    /// The text of an HTML file.
+    pub fn html(&self) -> String {
+        let whole = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    title { (self.title) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                "\n"
+                body {
+                    h1 { (self.title) }
+                    @for part in &self.content { "\n" (part) }
+                    "\n"
+                }
+            }
+        };
+        whole.into_string() + "\n"
+    }
+}

@@ -1,0 +1,65 @@
+//! The frame of every plot: size, font, title and white paper.
+
+use maud::{Markup, html};
+
+use crate::colours::INK;
+use crate::text::{shortened, shown};
+
+/// Width of every plot, px.
+pub(crate) const WIDTH: f64 = 640.0;
+
+const SPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
+const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
+
+/// Elements without content, which XML closes short.
+const EMPTY: [&str; 5] = ["circle", "path", "polygon", "polyline", "rect"];
+
+/// A plot as it stands in a file or on a page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Svg(String);
+
+impl Svg {
+    /// `height`, px. `title`: in bold letters above, and for who points at the plot.
+    pub(crate) fn new(height: f64, title: &str, content: &Markup) -> Self {
+        let size = format!("0 0 {WIDTH} {height:.0}");
+        let whole = html! {
+            svg width=(WIDTH) height={ (format!("{height:.0}")) } viewBox=(size)
+                font-family=(FONTS) font-size="12" fill=(INK) {
+                title { (shown(title)) }
+                rect width=(WIDTH) height={ (format!("{height:.0}")) } fill="#ffffff" {}
+                @if !title.is_empty() {
+                    // Bold letters are wider.
+                    text x=(WIDTH / 2.0) y="25" text-anchor="middle" font-size="15"
+                        font-weight="bold" { (shortened(title, 17.0, WIDTH - 40.0)) }
+                }
+                (content)
+            }
+        };
+        let short = EMPTY.iter().fold(whole.into_string(), |text, name| {
+            text.replace(&format!("></{name}>"), "/>")
+        });
+        // An element a line. Within texts `>` is escaped.
+        Self(short.replace("><", ">\n<") + "\n")
+    }
+
+    /// The text of an SVG file.
+    pub fn file(&self) -> String {
+        self.0.replacen("<svg", &format!("<svg{SPACE}"), 1)
+    }
+
+    /// The element within a page.
+    pub(crate) fn element(&self) -> &str {
+        &self.0
+    }
+}
+
+/// A place or length, px.
+pub(crate) fn px(length: f64) -> String {
+    format!("{length:.2}")
+}
+
+/// Places as `x,y x,y ...`, px.
+pub(crate) fn places(points: impl IntoIterator<Item = [f64; 2]>) -> String {
+    let pairs = points.into_iter().map(|[x, y]| format!("{x:.2},{y:.2}"));
+    pairs.collect::<Vec<_>>().join(" ")
+}

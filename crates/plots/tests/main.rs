@@ -1,0 +1,10 @@
+//! Plots and pages as others read them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod pages;
+mod plots;
