@@ -1,51 +1,60 @@
-//! Disjoint sets (union-find), such as the pieces that bonds hold together.
+//! Disjoint sets (union-find), such as the pieces that bonds hold together, in a plain array: each
+//! element names another one of its set, and the smallest names itself.
 
-/// Disjoint sets of the numbers from 0 on, with their sizes. The smaller set joins the larger one.
+/// The smallest element of the set of `x`. Halves the way to it.
+pub fn find(names: &mut [u32], mut x: u32) -> u32 {
+    while names[x as usize] != x {
+        let next = names[x as usize];
+        names[x as usize] = names[next as usize];
+        x = names[x as usize];
+    }
+    x
+}
+
+/// Makes one set of the sets of `a` and `b`. Their smallest elements before, the smaller first; None
+/// if they were one set already.
+pub fn join(names: &mut [u32], a: u32, b: u32) -> Option<[u32; 2]> {
+    let (a, b) = (find(names, a), find(names, b));
+    if a == b {
+        return None;
+    }
+    names[a.max(b) as usize] = a.min(b);
+    Some([a.min(b), a.max(b)])
+}
+
+/// Disjoint sets of the numbers from 0 on, with their sizes.
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
-    parent: Vec<u32>,
-    size: Vec<u32>,
+    names: Vec<u32>,
+    sizes: Vec<u32>,
 }
 
 impl DisjointSets {
     /// `count` sets of one member each.
     pub fn new(count: usize) -> Self {
         Self {
-            parent: (0..count as u32).collect(),
-            size: vec![1; count],
+            names: (0..count as u32).collect(),
+            sizes: vec![1; count],
         }
     }
 
-    /// The member that stands for the set of `a`: the same for all its members until it is joined.
-    pub fn root(&mut self, mut a: u32) -> u32 {
-        while self.parent[a as usize] != a {
-            self.parent[a as usize] = self.parent[self.parent[a as usize] as usize];
-            a = self.parent[a as usize];
-        }
-        a
+    /// The smallest member of the set of `a`.
+    pub fn root(&mut self, a: u32) -> u32 {
+        find(&mut self.names, a)
     }
 
     /// Joins the sets of two members; the sizes of the smaller and the larger before, or None if they
     /// were one already.
     pub fn join(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
-        let (a, b) = (self.root(a), self.root(b));
-        if a == b {
-            return None;
-        }
-        let (small, large) = if self.size(a) < self.size(b) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let sizes = (self.size(small), self.size(large));
-        self.parent[small as usize] = large;
-        self.size[large as usize] += sizes.0;
-        Some(sizes)
+        let [root, joined] = join(&mut self.names, a, b)?;
+        let sizes = [root, joined].map(|root| self.size(root));
+        self.sizes[root as usize] = sizes[0] + sizes[1];
+        Some((sizes[0].min(sizes[1]), sizes[0].max(sizes[1])))
     }
 
     /// Number of members in the set that `root` stands for.
     pub fn size(&self, root: u32) -> u32 {
-        self.size[root as usize]
+        self.sizes[root as usize]
     }
 }
 

@@ -12,6 +12,7 @@ pub mod disjoint;
 pub mod hash;
 pub mod interpolation;
 pub mod program;
+pub mod random;
 pub mod results;
 pub mod safe_write;
 pub mod scene;

@@ -26,7 +26,6 @@
 pub mod check;
 pub mod cli;
 pub mod clock;
-mod disjoint;
 pub mod geometry;
 pub mod interrupt;
 pub mod laboratory;

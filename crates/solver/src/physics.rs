@@ -4,6 +4,5 @@ pub mod bond;
 pub mod contact;
 pub mod dual;
 pub mod number;
-pub mod random;
 pub mod rigid;
 pub mod rotation;

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::mass::{centre_text, moments_text, of_body, percent_text};
 use super::parts::{About, Body};
+use crate::disjoint::DisjointSets;
 use crate::text::visible;
 use crate::units::{show_length, significant};
 
@@ -105,28 +106,13 @@ pub fn body_summary(body: &Body) -> BodySummary {
 
 /// Number of particles in each piece that bonds hold together, by the first particle of each.
 fn piece_sizes(body: &Body) -> Vec<usize> {
-    let mut parents: Vec<u32> = (0..).take(body.positions.len()).collect();
+    let mut sets = DisjointSets::new(body.positions.len());
     for &[a, b] in &body.bonds {
-        let (a, b) = (root(&mut parents, a), root(&mut parents, b));
-        // The smaller number leads, so that the result does not depend on the order of the bonds.
-        parents[a.max(b) as usize] = a.min(b);
+        sets.join(a, b);
     }
-    let mut sizes = vec![0_usize; parents.len()];
-    for particle in (0..).take(parents.len()) {
-        sizes[root(&mut parents, particle) as usize] += 1;
-    }
-    sizes.retain(|size| *size > 0);
-    sizes
-}
-
-/// The particle that leads the piece of `particle`. Halves the way to it.
-fn root(parents: &mut [u32], mut particle: u32) -> u32 {
-    while parents[particle as usize] != particle {
-        let grandparent = parents[parents[particle as usize] as usize];
-        parents[particle as usize] = grandparent;
-        particle = grandparent;
-    }
-    particle
+    let particles = (0..).take(body.positions.len());
+    let roots: Vec<u32> = particles.filter(|&p| sets.root(p) == p).collect();
+    roots.iter().map(|&root| sets.size(root) as usize).collect()
 }
 
 impl fmt::Display for BodySummary {

@@ -5,6 +5,7 @@
 
 use super::bonded_packing::BondedPacking;
 use super::depth::{DepthProbe, DepthQuery};
+use dem_io::random::nth;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
@@ -95,7 +96,7 @@ impl Cells {
         let corner = self.corner(cell);
         let mut points = [[0.0; 3]; 2];
         for k in 0..3 {
-            let random = mixed(3 * index + k as u64);
+            let random = nth(3 * index + k as u64);
             let fractions = [(random >> 32) as f64, (random & 0xffff_ffff) as f64];
             for (point, fraction) in points.iter_mut().zip(fractions) {
                 point[k] = corner[k] + (fraction + 0.5) / 4_294_967_296.0 * self.step[k];
@@ -109,14 +110,6 @@ impl Cells {
         let cell = |x: f64| ((x - self.low[axis]) / self.step[axis]).floor();
         cell(from).max(0.0) as usize..((cell(to) + 1.0).max(0.0) as usize).min(self.count[axis])
     }
-}
-
-/// A random number from a counter (splitmix64).
-fn mixed(counter: u64) -> u64 {
-    let mut z = counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 const GENERATING: [u8; 2] = [1, 4];

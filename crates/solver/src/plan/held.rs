@@ -4,10 +4,10 @@
 use dem_io::{Diagnostic, Result};
 use nalgebra::{Matrix6, SymmetricEigen, Vector3, Vector6};
 
-use crate::disjoint::{find, join};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
+use dem_io::disjoint::{find, join};
 
 /// Smallest share of the best held rigid motion with which another counts as held: some 1e-6 in
 /// lengths.

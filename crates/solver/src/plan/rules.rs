@@ -126,7 +126,7 @@ fn region(entry: &SceneRegion) -> Result<Region> {
             let region = Region::Inside(triangles, bounds);
             let centre = [0, 1, 2].map(|k| 0.5 * (bounds.low[k] + bounds.high[k]));
             let is_somewhere = (0..1000).any(|n| {
-                let share = [1, 2, 3].map(|of| crate::physics::random::uniform(n, &[of]));
+                let share = [1, 2, 3].map(|of| dem_io::random::uniform(n, &[of]));
                 region.point(share).is_some()
             });
             if !is_somewhere && !region.contains(centre) {

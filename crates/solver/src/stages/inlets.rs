@@ -2,7 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::random::uniform;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::state::State;
@@ -11,6 +10,7 @@ use crate::state::events::PopulationEvent;
 use crate::state::population::InletProgress;
 use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;
+use dem_io::random::uniform;
 
 /// Places looked at for a body in one step.
 const TRIES: u32 = 10;

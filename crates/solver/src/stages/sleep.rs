@@ -11,7 +11,6 @@ use super::contacts::contact_energy_j;
 use super::neighbours::near_pairs;
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
-use crate::disjoint::{find, join};
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
@@ -21,6 +20,7 @@ use crate::state::particles::Wrench;
 use crate::state::partitions::divide_awake;
 use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep};
 use crate::state::walls::{Push, Wall};
+use dem_io::disjoint::{find, join};
 use dem_io::units::significant;
 
 /// Which bodies sleep.

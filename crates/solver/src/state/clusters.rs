@@ -13,9 +13,9 @@ pub mod triggers;
 
 use serde::{Deserialize, Serialize};
 
-use crate::disjoint::{find, join};
 use crate::state::bonds::Bonds;
 use crate::state::partitions::first_bonds;
+use dem_io::disjoint::{find, join};
 
 pub use fragments::{Fragment, fragments};
 pub use triggers::Triggers;

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::disjoint::{find, join};
+use dem_io::disjoint::{find, join};
 
 use super::triangle::Triangle;
 

@@ -8,7 +8,7 @@
 //! need
 //! not be stored.
 
-use crate::physics::random::{hash, uniform};
+use dem_io::random::{hash, uniform};
 
 /// What stands for a body in [`strength_factor`]: its name in the scene, and for bodies that come
 /// through inlets how many came before it. 0: it stood there at the start, bonded or as a clump.
