@@ -110,13 +110,13 @@ const CASES: [Case; 12] = [
     Case {
         name: "loads",
         stage: LOADS,
-        tables: "[loads.push]\nof = \"cake\"\nforce = [0, 0, 1e-3]\n",
+        tables: "[loads.push]\ngroup = \"cake\"\nforce = [0, 0, 1e-3]\n",
         ..CASE
     },
     Case {
         name: "supports",
         stage: SUPPORTS,
-        tables: "[supports.hold]\nof = \"cake\"\nfixed = [\"x\"]\n",
+        tables: "[supports.hold]\ngroup = \"cake\"\nfixed = [\"x\"]\n",
         ..CASE
     },
     Case {

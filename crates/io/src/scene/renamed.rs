@@ -67,6 +67,8 @@ pub(super) fn new_name(title: &str, old: &str) -> Option<(&'static str, String)>
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+
     use super::*;
     use crate::scene::schema::Schema;
     use crate::scene::study::keys::MEASURE as STUDY_MEASURE;

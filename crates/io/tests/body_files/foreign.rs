@@ -214,7 +214,7 @@ fn lammps_as_write_data_writes_it() {
 #[test]
 fn tables_from_spreadsheets_and_matlab() {
     let particles = "\u{feff}id, radius_m ,x_m,y_m,z_m\r\n7,0.0006,0,0,0\r\n8,5e-4,0.001,0,0\r\n9,7.0E-4,0,1e-3,.0001\r\n\r\n";
-    let bonds = "b,a\n1,0\n0,2\n";
+    let bonds = "particle_b,particle_a\n1,0\n0,2\n";
     three(csv::read(&mut particles.as_bytes(), &mut bonds.as_bytes()));
     let particles = "% x y z r\n 0 0 0 0.0006\n1.0000000e-03\t0 0 5e-4\n\n0,0.001,0.0001,7e-4\n";
     three(txt::read(

@@ -28,7 +28,7 @@ fn the_bending_sample_is_dense_isotropic_even_and_true_to_its_sizes() {
         let off = density - number("interior_generating_density/value");
         assert!(off.abs() < 0.015, "{density}");
     }
-    assert_eq!(made.count("/history/taken_out"), 0);
+    assert_eq!(made.count("/history/removed"), 0);
     assert_eq!(made.count("/history/voids_left"), 0);
 }
 

@@ -46,7 +46,7 @@ fn particle_damping() {
         &format!("{HEAD}run.local_damping = 0.2\n{body}"),
         "run.local_damping",
         "clumps",
-        "leave it out",
+        "remove it",
     );
 }
 
@@ -70,7 +70,7 @@ fn materials_that_meet_without_a_word() {
          [inlets.feed]\nbodies = [\"lump\"]\nregion = \"gate\"\nrate = 1\n",
         lump("lump", "")
     );
-    refused(&fed, "[contacts]", "stuff with stuff", "add stuff-stuff");
+    refused(&fed, "[contacts]", "stuff-stuff", "add stuff-stuff");
 }
 
 #[test]

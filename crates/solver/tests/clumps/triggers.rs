@@ -113,14 +113,14 @@ fn a_region_a_time_a_force_and_an_energy_replace_when_they_are_reached() {
 #[test]
 fn any_takes_the_first_and_all_waits_for_the_last() {
     let both = "when = { enters = \"low\", time = 3e-4 }";
-    let (early_s, cause, _) = replaced(&format!("{both}\nneed = \"any\"")).unwrap();
+    let (early_s, cause, _) = replaced(&format!("{both}\nrequire = \"any\"")).unwrap();
     assert_eq!(cause, "time");
     assert_eq!(replaced(both).unwrap().0, early_s);
-    let (late_s, ..) = replaced(&format!("{both}\nneed = \"all\"")).unwrap();
+    let (late_s, ..) = replaced(&format!("{both}\nrequire = \"all\"")).unwrap();
     assert!((early_s - 3e-4).abs() < 1.01 * STEP_S && (late_s - 5e-4).abs() < 1.01 * STEP_S);
     // All at once: it is in the region before it feels a force, and there is none when it has left.
-    let force = "when = { enters = \"low\", force = 1e-3 }\nneed = \"all\"";
+    let force = "when = { enters = \"low\", force = 1e-3 }\nrequire = \"all\"";
     let (at_s, _, [_, now]) = replaced(force).unwrap();
     assert!((at_s - 1e-3).abs() < 10.0 * STEP_S && now.force_n[2] > 1e-3);
-    assert!(replaced("when = { enters = \"low\", time = 2.5e-3 }\nneed = \"all\"").is_none());
+    assert!(replaced("when = { enters = \"low\", time = 2.5e-3 }\nrequire = \"all\"").is_none());
 }

@@ -207,7 +207,7 @@ fn every_split_is_an_event() {
     assert_eq!(splits.len(), summary.fragments.unwrap().splits);
     let mut parents = Vec::new();
     for line in splits {
-        let (time, detail) = line.split_once(",split,,,,,,,,,\"cluster ").unwrap();
+        let (time, detail) = line.split_once(",split,,,,,,,,,\"fragment ").unwrap();
         let time_s: f64 = time.split(',').nth(1).unwrap().parse().unwrap();
         let parent: usize = detail.split_once(" -> ").unwrap().0.parse().unwrap();
         assert_eq!(tree[parent].3, Some(time_s));

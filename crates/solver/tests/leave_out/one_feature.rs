@@ -116,7 +116,7 @@ fn of_what_acts_on_particles() {
         &FREE,
     );
     expect(
-        "damping of particles",
+        "local damping",
         &scene(", local_damping = 0.1", "", "", ""),
         &with(&FREE, &["local damping"]),
         &with(&FREE, &["local damping"]),
@@ -127,7 +127,7 @@ fn of_what_acts_on_particles() {
             "",
             "",
             "",
-            "[loads.push]\nof = \"row\"\nforce = [0, 0, 1]\n",
+            "[loads.push]\ngroup = \"row\"\nforce = [0, 0, 1]\n",
         ),
         &with(&FREE, &["loads"]),
         &with(&FREE, &["loads"]),
@@ -138,7 +138,7 @@ fn of_what_acts_on_particles() {
             "",
             "",
             "",
-            "[supports.hold]\nof = \"row\"\nfixed = [\"z\"]\n",
+            "[supports.hold]\ngroup = \"row\"\nfixed = [\"z\"]\n",
         ),
         &with(&FREE, &["supports"]),
         &with(&FREE, &["supports"]),
@@ -199,7 +199,7 @@ fn of_what_touches() {
         "",
         ", failure = { tensile_strength = 10 }",
         "",
-        &format!("{MEETS}[groups.end]\nbody = \"row\"\nparticles = [2]\n[loads.pull]\nof = \"end\"\nforce = [0.1, 0, 0]\n"),
+        &format!("{MEETS}[groups.end]\nbody = \"row\"\nparticles = [2]\n[loads.pull]\ngroup = \"end\"\nforce = [0.1, 0, 0]\n"),
     )
     .replace("0.02, 0, 0, 0.01", "0.019, 0, 0, 0.01");
     let parts = ["failure", "cluster search", "relaxation", "loads"];

@@ -21,19 +21,19 @@ quantity = \"position_z\"
 #[test]
 fn an_absolute_tolerance_is_in_the_unit_of_the_measure() {
     for (more, good) in [
-        ("reference = 2.1\ntolerance_absolute = \"11 cm\"", true),
-        ("reference = 2.1\ntolerance_absolute = \"9 cm\"", false),
-        ("reference = 0\ntolerance_absolute = \"2.1 m\"", true),
+        ("reference = 2.1\nabsolute_tolerance = \"11 cm\"", true),
+        ("reference = 2.1\nabsolute_tolerance = \"9 cm\"", false),
+        ("reference = 0\nabsolute_tolerance = \"2.1 m\"", true),
         (
-            "reference = 2.1\ntolerance = 0.04\ntolerance_absolute = 0.2",
+            "reference = 2.1\ntolerance = 0.04\nabsolute_tolerance = 0.2",
             false,
         ),
         (
-            "reference = 2.1\ntolerance = 0.05\ntolerance_absolute = 0.09",
+            "reference = 2.1\ntolerance = 0.05\nabsolute_tolerance = 0.09",
             false,
         ),
         (
-            "reference = 2.1\ntolerance = 0.05\ntolerance_absolute = 0.2",
+            "reference = 2.1\ntolerance = 0.05\nabsolute_tolerance = 0.2",
             true,
         ),
     ] {

@@ -76,8 +76,8 @@ prop_compose! {
     ) -> String {
         let mut text = String::new();
         if let Some(spin) = spin { text += &format!("angular_velocity = [0, {spin:e}, 1]\n"); }
-        if let Some((at, how)) = support { text += &format!("[groups.s]\nparticles = [{at}]\n[supports.s]\nof = \"s\"\n{how}\n"); }
-        if let Some((at, force)) = load { text += &format!("[groups.l]\nparticles = [{at}]\n[loads.l]\nof = \"l\"\nforce = [{force:e}, 0, 1]\n"); }
+        if let Some((at, how)) = support { text += &format!("[groups.s]\nparticles = [{at}]\n[supports.s]\ngroup = \"s\"\n{how}\n"); }
+        if let Some((at, force)) = load { text += &format!("[groups.l]\nparticles = [{at}]\n[loads.l]\ngroup = \"l\"\nforce = [{force:e}, 0, 1]\n"); }
         if let Some(what) = measure { text += &format!("[measures.m]\nquantity = \"{what}\"\n"); }
         let mut run = String::new();
         if let Some(g) = gravity { run += &format!("run.gravity = [0, 0, {g:e}]\n"); }

@@ -70,8 +70,8 @@ fn of_a_body_that_is_divided_among_them() {
              [bodies.block]\nfile = \"block.vtp\"\nmaterial = \"cake\"\nbonds = \"cake\"\n\
              [groups.foot]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1e-3] }}\n\
              [groups.head]\nbox = {{ min = [-1, -1, 69e-3], max = [1, 1, 1] }}\n\
-             [supports.foot]\nof = \"foot\"\nfixed = true\n\
-             [loads.head]\nof = \"head\"\nforce = [\"3 N\", 0, \"5 N\"]\nramp = \"0.1 ms\"\n\
+             [supports.foot]\ngroup = \"foot\"\nfixed = true\n\
+             [loads.head]\ngroup = \"head\"\nforce = [\"3 N\", 0, \"5 N\"]\nramp = \"0.1 ms\"\n\
              [measures.broken]\nquantity = \"broken_bonds\"\n\
              [measures.energy]\nof = \"head\"\nquantity = \"elastic_energy\"\n"
         )

@@ -39,8 +39,8 @@ fn nobody_sleeps_on_what_moves() {
 
 #[test]
 fn nobody_sleeps_who_is_held_or_loaded_or_lies_on_such() {
-    let loads = "[loads.push]\nof = \"lying\"\nforce = [0, 0, -1e-5]\n";
-    let supports = "[supports.hold]\nof = \"lying\"\nfixed = [\"ry\"]\n";
+    let loads = "[loads.push]\ngroup = \"lying\"\nforce = [0, 0, -1e-5]\n";
+    let supports = "[supports.hold]\ngroup = \"lying\"\nfixed = [\"ry\"]\n";
     for more in [loads, supports] {
         never_sleeps(&lying("", more), 0.03);
         let on_it = slab("rider", [0.0, 0.0, 2e-3], CLUMP);

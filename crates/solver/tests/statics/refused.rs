@@ -31,7 +31,7 @@ particles = [{particles}]
 }
 
 const THREE: &str = "[0, 0, 0, 0.2], [0.4, 0, 0, 0.2], [0.8, 0, 0, 0.2]";
-const CLAMP: &str = "[groups.end]\nparticles = [0]\n[supports.end]\nof = \"end\"\n";
+const CLAMP: &str = "[groups.end]\nparticles = [0]\n[supports.end]\ngroup = \"end\"\n";
 
 #[test]
 fn a_body_that_nothing_holds() {
@@ -67,7 +67,7 @@ fn a_body_that_is_held_too_little() {
         assert!(said.contains(free), "{said}");
     }
     // Two points hold all but the turn about the line through them.
-    let hinges = "[groups.ends]\nparticles = [0, 2]\n[supports.ends]\nof = \"ends\"\nfixed = [\"x\", \"y\", \"z\"]";
+    let hinges = "[groups.ends]\nparticles = [0, 2]\n[supports.ends]\ngroup = \"ends\"\nfixed = [\"x\", \"y\", \"z\"]";
     let said = refusal(THREE, "bond_list = [[0, 1], [1, 2]]", hinges).to_string();
     assert!(said.contains("1 of its 6 rigid motions is free"), "{said}");
 }
