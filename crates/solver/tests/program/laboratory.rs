@@ -188,7 +188,7 @@ fn a_sample_is_bent_by_four_pins() {
     assert_eq!(said["ended_by"], "breakage");
     let test = &said["test"];
     for (name, wanted) in [
-        ("span", 0.17),
+        ("support span", 0.17),
         ("loading span", 0.08),
         ("width", 0.03),
         ("height", 0.035),

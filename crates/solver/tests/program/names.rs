@@ -136,7 +136,7 @@ fn in_a_scene_are_refused_and_shown() {
     let text = fs::read_to_string(good("breaking.toml")).unwrap();
     for (table, old) in [
         ("bodies", "[bodies.bar]"),
-        ("sets", "[groups.left]"),
+        ("groups", "[groups.left]"),
         ("measures", "[measures.pull]"),
         ("materials", "[materials.cake]"),
         ("supports", "[supports.left]"),

@@ -442,8 +442,8 @@ fn what_is_refused() {
     let paths = [
         (
             "\"run.safety_factor\"",
-            "\"run.safty\"",
-            "study.toml:6: --set run.safty=0.2: unknown key run.safty; did you mean 'safety'?",
+            "\"run.safty_factor\"",
+            "study.toml:6: --set run.safty_factor=0.2: unknown key run.safty_factor; did you mean 'safety_factor'?",
         ),
         (
             "reference = { richardson = \"run.safety_factor\" }",
