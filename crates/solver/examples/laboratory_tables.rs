@@ -56,7 +56,7 @@ const BENDING_HEAD: [&str; 8] = [
     "packing",
     "bonds",
     "E by eq. 18",
-    "modulus of the body over that of bonds",
+    "specimen modulus over bond modulus",
     "failure force",
     "half the rate changes E, force",
     "crack from the middle",

@@ -86,7 +86,7 @@ impl Row<'_> {
         planned(&format!(
             r#"
             version = 1
-            run = {{ end_time = "1 h", time_step = {time_step}, safety = 1 }}
+            run = {{ end_time = "1 h", time_step = {time_step}, safety_factor = 1 }}
             materials.stone = {{ density = {DENSITY_KG_M3:e}, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e} }}
             bodies.row = {{ particles = [{}], bond_list = [{}], material = "stone", bonds = "glue" }}
             groups.first = {{ particles = [0] }}

@@ -265,7 +265,7 @@ fn a_scene_that_has_changed_is_not_gone_on_with() {
     assert!(other != text);
     let other = bench.write("other.toml", other);
     let said = bench.bad(Path::new(&other), &["--output", "out", "--resume"], 2);
-    assert!(said.contains("other bodies or bonds"), "{said}");
+    assert!(said.contains("other bodies, bonds or walls"), "{said}");
 }
 
 #[test]
