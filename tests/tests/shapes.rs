@@ -3,7 +3,7 @@
 
 // The generator (`cargo run --example make_shapes`) itself.
 #[path = "../../crates/io/examples/make_shapes/shapes/mod.rs"]
-mod shapes;
+mod generator;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -114,7 +114,7 @@ fn sagitta(facets: &[[Point; 3]], radius: f64) -> f64 {
 #[test]
 fn the_generator_writes_these_bytes() {
     let made = tempfile::tempdir().unwrap();
-    shapes::write_all(made.path()).unwrap();
+    generator::write_all(made.path()).unwrap();
     let mut names: Vec<String> = fs::read_dir(made.path())
         .unwrap()
         .map(|e| e.unwrap().file_name().into_string().unwrap())

@@ -194,7 +194,9 @@ fn damped_bonds() -> [String; 2] {
         let [decrement, half_s] = half_swing(&crossings(mode, &mut state, 5));
         let bound = zeta * STEP + STEP * STEP;
         let damping = match damping.split_once('=') {
-            Some(("damping_coefficient ", _)) => "`damping_coefficient`, a tenth of the critical".to_owned(),
+            Some(("damping_coefficient ", _)) => {
+                "`damping_coefficient`, a tenth of the critical".to_owned()
+            }
             _ => format!("`{damping}`"),
         };
         let what = format!("{}, {damping}", mode.name());

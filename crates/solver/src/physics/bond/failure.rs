@@ -112,10 +112,11 @@ impl Screen {
             shear_pa: load.shear_n * radius_m,
             torsion_pa: load.torsion_n_m.scale(2.0),
         });
-        let mut used = squared[0].scale(self.per_strength_squared[0]);
-        for k in 1..COUNT {
-            used = used.maximum(squared[k].scale(self.per_strength_squared[k]));
-        }
+        let used: [T; COUNT] =
+            std::array::from_fn(|k| squared[k].scale(self.per_strength_squared[k]));
+        let used = used[1..]
+            .iter()
+            .fold(used[0], |most, &one| most.maximum(one));
         let volume = (radius_m * radius_m * radius_m).scale(PI);
         [used, volume * volume]
     }
