@@ -18,6 +18,6 @@ impl FailureCriterion for VonMises {
     fn squared<T: Number>(stresses: &Stresses<T>) -> T {
         let pulled = stresses.axial_pa.if_positive(stresses.axial_pa) + stresses.bending_pa;
         let shear = stresses.shear_pa + stresses.torsion_pa;
-        pulled * pulled + (shear * shear).scale(3.0)
+        pulled * pulled + shear.scale(3.0) * shear
     }
 }
