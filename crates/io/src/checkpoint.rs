@@ -24,7 +24,7 @@ use crate::hash::fnv1a_of_parts;
 use crate::safe_write::write_file;
 
 /// Version of the layout and of the state in it: raised when either changes. Other versions are refused.
-pub const FORMAT_VERSION: u32 = 6;
+pub const FORMAT_VERSION: u32 = 7;
 
 /// Program and version that writes checkpoints.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));

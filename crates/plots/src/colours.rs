@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::svg::{places, px};
+use crate::numbers::{places, px};
 
 pub(crate) const INK: &str = "#222222";
 pub(crate) const GREY: &str = "#888888";

@@ -4,9 +4,10 @@ use maud::{Markup, html};
 
 use crate::colours::{GREY, INK, REFERENCE, Stroke, colour, shape};
 use crate::legend::{Entry, Legend, Sample};
+use crate::numbers::{places, px};
 use crate::plot::{Marks, Plot, Point};
 use crate::scale::{Scale, is_drawn};
-use crate::svg::{Svg, WIDTH, places, px};
+use crate::svg::{Svg, WIDTH};
 use crate::text::{shortened, shown, width};
 use crate::thin;
 
@@ -26,8 +27,14 @@ struct Area {
     y: Scale,
 }
 
-/// The plot as SVG.
-pub(crate) fn svg(plot: &Plot) -> Svg {
+impl Plot {
+    /// The plot as SVG.
+    pub fn svg(&self) -> Svg {
+        svg(self)
+    }
+}
+
+fn svg(plot: &Plot) -> Svg {
     let reference = (plot.reference.as_ref()).filter(|(value, _)| is_drawn(*value, plot.y.log));
     let area = area(plot, reference.map(|(value, _)| *value));
     let lines: Vec<_> = (plot.lines.iter())

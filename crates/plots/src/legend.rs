@@ -3,7 +3,8 @@
 use maud::{Markup, html};
 
 use crate::colours::{Stroke, shape};
-use crate::svg::{WIDTH, px};
+use crate::numbers::px;
+use crate::svg::WIDTH;
 use crate::text::{shortened, width};
 
 const FONT: f64 = 12.0;

@@ -9,6 +9,7 @@ mod colours;
 mod draw;
 mod legend;
 mod map;
+mod numbers;
 mod page;
 mod plot;
 mod scale;

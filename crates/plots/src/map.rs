@@ -3,7 +3,8 @@
 use maud::{Markup, html};
 
 use crate::colours::{GREY, INK, viridis};
-use crate::svg::{Svg, WIDTH, px};
+use crate::numbers::px;
+use crate::svg::{Svg, WIDTH};
 
 /// Room around what is shown, px.
 const SIDE: f64 = 24.0;

@@ -1,7 +1,5 @@
 //! What a plot shows.
 
-use crate::svg::Svg;
-
 /// A plot of lines and marks over one pair of axes, 640 px wide.
 ///
 /// Values that are not finite are gaps, and so are those of no logarithm on an axis that has one.
@@ -95,11 +93,4 @@ pub struct Point {
     pub filled: bool,
     /// What is told to who points at it.
     pub title: String,
-}
-
-impl Plot {
-    /// The plot as SVG.
-    pub fn svg(&self) -> Svg {
-        crate::draw::svg(self)
-    }
 }

@@ -111,7 +111,7 @@ impl<'a> Run<'a> {
             for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
                 probe.history = history;
             }
-            if !state.clumps.templates.is_empty() {
+            if !(state.clumps.templates.is_empty() && state.model.rules.are_none()) {
                 renumber_probes(&mut probes, &[], &bodies, &mut state);
                 order = FrameOrder::new(&bodies, &state);
             }

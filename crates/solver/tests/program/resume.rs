@@ -360,3 +360,36 @@ fn bytes_of(bench: &Bench) -> std::collections::BTreeMap<String, Vec<u8>> {
     );
     found
 }
+
+/// Particles are counted anew when a body has left: loads and supports keep to theirs.
+#[test]
+fn loads_keep_to_their_particles_where_a_body_has_left_before() {
+    let bench = Bench::new();
+    let scene = bench.write(
+        "leaving.toml",
+        r#"
+version = 1
+run = { end_time = "20 ms", time_step = "10 us" }
+materials.stone = { density = 2600, young_modulus = "10 MPa", poisson_ratio = 0.25 }
+contacts.stone-stone = { restitution = 0.5 }
+bodies.a = { particles = [[0, 0, 0, "1 mm"]], material = "stone", velocity = [0, 0, -1] }
+bodies.b = { particles = [["5 mm", 0, 0, "1 mm"]], material = "stone" }
+bodies.c = { particles = [["9 mm", 0, 0, "1 mm"]], material = "stone" }
+loads.b = { group = "b", force = [0, "1e-5 N", 0] }
+supports.c = { group = "c", velocity = { y = "1 mm/s" } }
+regions.below = { box = { min = ["-2 mm", "-2 mm", "-1 m"], max = ["2 mm", "2 mm", "-5 mm"] } }
+outlets.below = { inside = "below" }
+"#,
+    );
+    bench.good(&scene, &["--output", "whole"]);
+    let half = ["--set", "run.end_time=10 ms", "--output", "part"];
+    bench.good(&scene, &half);
+    let events = fs::read_to_string(bench.path("part/events.csv")).unwrap();
+    assert!(events.contains("discharged"), "{events}");
+    bench.good(&scene, &["--output", "part", "--resume"]);
+    let [whole, part] = ["whole", "part"].map(|folder| {
+        let (_, rows) = table(&bench.path(folder).join("series.csv"));
+        rows.last().unwrap().clone()
+    });
+    assert_eq!(whole, part);
+}
