@@ -379,6 +379,7 @@ loads.b = { group = "b", force = [0, "1e-5 N", 0] }
 supports.c = { group = "c", velocity = { y = "1 mm/s" } }
 regions.below = { box = { min = ["-2 mm", "-2 mm", "-1 m"], max = ["2 mm", "2 mm", "-5 mm"] } }
 outlets.below = { inside = "below" }
+output = { frames = "5 ms" }
 "#,
     );
     bench.good(&scene, &["--output", "whole"]);
@@ -392,4 +393,9 @@ outlets.below = { inside = "below" }
         rows.last().unwrap().clone()
     });
     assert_eq!(whole, part);
+    let frames = ["whole", "part"].map(|folder| {
+        let last = bench.path(folder).join("frames/frame_000004.vtp");
+        fs::read(last).unwrap()
+    });
+    assert!(frames[0] == frames[1]);
 }
