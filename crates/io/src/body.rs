@@ -1,7 +1,7 @@
 //! A body: spheres, the bonds between them, and what is known of both.
 //!
-//! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending of the file's name,
-//! [`summary`] says what a body holds, [`mass`] what it weighs.
+//! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending
+//! of the file's name, [`summary`] says what a body holds, [`mass`] what it weighs.
 
 pub mod check;
 pub mod csv;

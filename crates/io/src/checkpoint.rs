@@ -1,6 +1,7 @@
 //! Checkpoints: the state of a run in one file that is whole or refused.
 //!
-//! What the state's bytes mean, only the program knows that writes them. Layout, numbers little endian:
+//! What the state's bytes mean, only the program knows that writes them. Layout, numbers little
+//! endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -12,8 +13,9 @@
 //! | ... | the state |
 //! | 8 | FNV-1a, 64 bit, of all bytes before |
 //!
-//! FNV-1a is good enough here: it notices every change of a single byte (each of its steps can be undone), and misses any
-//! other damage once in 2^64 times. It takes a nanosecond a byte, less than the disk.
+//! FNV-1a is good enough here: it notices every change of a single byte (each of its steps can be
+//! undone), and misses any other damage once in 2^64 times. It takes a nanosecond a byte, less than
+//! the disk.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -23,7 +25,8 @@ use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a_of_parts;
 use crate::safe_write::write_file;
 
-/// Version of the layout and of the state in it: raised when either changes. Other versions are refused.
+/// Version of the layout and of the state in it: raised when either changes. Other versions are
+/// refused.
 pub const FORMAT_VERSION: u32 = 7;
 
 /// Program and version that writes checkpoints.
@@ -36,7 +39,8 @@ const START_AGAIN: &str = "take an older checkpoint, or start the run again with
 /// Writes the state of a run, `payload`, to the file `path`, which appears whole or not at all.
 ///
 /// # Errors
-/// Missing folder, no permission, full disk (all exit code 1). A checkpoint that stood there is unchanged.
+/// Missing folder, no permission, full disk (all exit code 1). A checkpoint that stood there is
+/// unchanged.
 pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
     let mut head = MAGIC.to_vec();
     head.extend(FORMAT_VERSION.to_le_bytes());
@@ -54,7 +58,8 @@ pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
 /// The state that [`write_checkpoint`] wrote to the file `path`.
 ///
 /// # Errors
-/// There is no such file, it is no checkpoint, of another version, cut off or damaged (all exit code 2).
+/// There is no such file, it is no checkpoint, of another version, cut off or damaged (all exit
+/// code 2).
 pub fn read_checkpoint(path: &Path) -> Result<Vec<u8>> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let mut bytes = fs::read(path).map_err(|error| {

@@ -11,8 +11,8 @@ pub fn find(names: &mut [u32], mut x: u32) -> u32 {
     x
 }
 
-/// Makes one set of the sets of `a` and `b`. Their smallest elements before, the smaller first; None
-/// if they were one set already.
+/// Makes one set of the sets of `a` and `b`. Their smallest elements before, the smaller first;
+/// None if they were one set already.
 pub fn join(names: &mut [u32], a: u32, b: u32) -> Option<[u32; 2]> {
     let (a, b) = (find(names, a), find(names, b));
     if a == b {
@@ -43,8 +43,8 @@ impl DisjointSets {
         find(&mut self.names, a)
     }
 
-    /// Joins the sets of two members; the sizes of the smaller and the larger before, or None if they
-    /// were one already.
+    /// Joins the sets of two members; the sizes of the smaller and the larger before, or None if
+    /// they were one already.
     pub fn join(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
         let [root, joined] = join(&mut self.names, a, b)?;
         let sizes = [root, joined].map(|root| self.size(root));

@@ -1,8 +1,9 @@
-//! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an algorithm of either program.
+//! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an
+//! algorithm of either program.
 //!
-//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <-> files; TOML -> [`scene`], [`study`]; what a run
-//! has to tell -> [`results`]; its state <-> [`checkpoint`].
-//! Lengths are metres unless a name says otherwise.
+//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <->
+//! files; TOML -> [`scene`], [`study`]; what a run has to tell -> [`results`]; its state <->
+//! [`checkpoint`]. Lengths are metres unless a name says otherwise.
 
 pub mod body;
 mod bounds;

@@ -1,4 +1,5 @@
-//! Files that appear whole or not at all: written under a temporary name in the same folder, then renamed.
+//! Files that appear whole or not at all: written under a temporary name in the same folder, then
+//! renamed.
 //!
 //! A temporary file is locked as long as its writer lives. What a killed writer has left is
 //! therefore known by its name and by being
@@ -33,7 +34,8 @@ static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// Folders in which this process has looked for abandoned files.
 static CLEANED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// A file written in full under a temporary name. Dropped without [`PendingFile::publish`], it vanishes.
+/// A file written in full under a temporary name. Dropped without [`PendingFile::publish`], it
+/// vanishes.
 #[derive(Debug)]
 pub struct PendingFile {
     target: PathBuf,
@@ -42,12 +44,14 @@ pub struct PendingFile {
 }
 
 impl PendingFile {
-    /// Writes what will become the file `path`, in the same folder. An existing file stays as it is until `publish`.
+    /// Writes what will become the file `path`, in the same folder. An existing file stays as it is
+    /// until `publish`.
     ///
     /// A device or a named pipe is written to directly; a reader that closes it early is no error.
     ///
     /// # Errors
-    /// Missing folder, no permission, full disk, `path` is a folder (all exit code 1). Nothing is left behind.
+    /// Missing folder, no permission, full disk, `path` is a folder (all exit code 1). Nothing is
+    /// left behind.
     pub fn write(
         path: &Path,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -98,7 +102,8 @@ impl PendingFile {
             temporary
                 .as_file()
                 .set_permissions(existing.permissions())?;
-            // What stood there is lost with the rename, so the new bytes have to be on the disk before.
+            // What stood there is lost with the rename, so the new bytes have to be on the disk
+            // before.
             temporary.as_file().sync_all()?;
         }
         Ok(())
@@ -224,7 +229,8 @@ pub fn write_standard_error(error: &Diagnostic) {
     let _ = io::stderr().write_all(format!("error: {error}\n").as_bytes());
 }
 
-/// Removes the temporary files of writes that are under way: for a program that is interrupted and about to leave.
+/// Removes the temporary files of writes that are under way: for a program that is interrupted and
+/// about to leave.
 pub fn remove_unfinished() {
     for path in unfinished().drain(..) {
         // Nothing is left to be done about a file that cannot be removed.

@@ -1,8 +1,9 @@
 //! STL bytes -> facets, behind our own checks.
 //!
-//! Binary or ASCII is decided by the length (a binary file of n facets has 84 + 50 n bytes), because binary headers may begin with
-//! "solid" too. The single facets of a binary file are read by stl_io, once the length and the header are checked here. ASCII is
-//! read by our own code: stl_io stops after the first `solid` block and names no line.
+//! Binary or ASCII is decided by the length (a binary file of n facets has 84 + 50 n bytes),
+//! because binary headers may begin with "solid" too. The single facets of a binary file are read
+//! by stl_io, once the length and the header are checked here. ASCII is read by our own code:
+//! stl_io stops after the first `solid` block and names no line.
 
 mod ascii;
 mod facets;
@@ -24,9 +25,10 @@ const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
 /// Reads an ASCII or binary STL.
 ///
 /// # Errors
-/// Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary are let pass when all are zeros or
-/// blanks), a coordinate that is not a finite number (with the facet counted from 1, and the line of an ASCII file), or
-/// ASCII that does not follow the grammar (with the line). The place does not name the file.
+/// Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary are let
+/// pass when all are zeros or blanks), a coordinate that is not a finite number (with the facet
+/// counted from 1, and the line of an ASCII file), or ASCII that does not follow the grammar (with
+/// the line). The place does not name the file.
 pub fn read_facets(bytes: &[u8]) -> Result<Facets> {
     if bytes.is_empty() {
         return Err(Diagnostic::input(
@@ -74,8 +76,9 @@ fn binary_length(bytes: &[u8]) -> Option<usize> {
     Some(BINARY_START + BINARY_FACET * u32::from_le_bytes(count) as usize)
 }
 
-/// Whether the beginning holds nothing that text does not have. The count and the numbers of a binary file always do. Only a file
-/// that begins with "solid" may have letters beyond ASCII (in names), in any encoding.
+/// Whether the beginning holds nothing that text does not have. The count and the numbers of a
+/// binary file always do. Only a file that begins with "solid" may have letters beyond ASCII (in
+/// names), in any encoding.
 fn is_text(bytes: &[u8]) -> bool {
     let beginning = &bytes[..bytes.len().min(4096)];
     let has_control = beginning
@@ -92,8 +95,8 @@ fn starts_with_word(text: &[u8], word: &[u8]) -> bool {
         && text.get(word.len()).is_none_or(u8::is_ascii_whitespace)
 }
 
-/// The part of a binary file with the length that its header promises. An error for another kind of file, missing bytes, or
-/// bytes too many that are more than padding.
+/// The part of a binary file with the length that its header promises. An error for another kind of
+/// file, missing bytes, or bytes too many that are more than padding.
 fn checked_binary(bytes: &[u8]) -> Result<&[u8]> {
     let length = bytes.len();
     let Some(promised) = binary_length(bytes) else {
@@ -168,7 +171,8 @@ fn read_binary(bytes: &[u8]) -> Result<Facets> {
     })
 }
 
-/// A binary STL with a line feed for its first byte, so that stl_io cannot take it for ASCII. The header means nothing.
+/// A binary STL with a line feed for its first byte, so that stl_io cannot take it for ASCII. The
+/// header means nothing.
 struct NeverAscii<'a>(Cursor<&'a [u8]>);
 
 impl Read for NeverAscii<'_> {

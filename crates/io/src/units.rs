@@ -1,4 +1,5 @@
-//! Numbers with units, as people write them: "2 mm", "2.05 g/cm3". Inside the program everything is SI.
+//! Numbers with units, as people write them: "2 mm", "2.05 g/cm3". Inside the program everything is
+//! SI.
 
 use std::f64::consts::PI;
 

@@ -1,9 +1,11 @@
-//! Writing VTK XML PolyData (.vtp): what the files of bodies and the frames of a run have in common.
+//! Writing VTK XML PolyData (.vtp): what the files of bodies and the frames of a run have in
+//! common.
 //!
-//! The header is text; the arrays follow it as numbers in binary (appended raw, little endian), so that nothing is lost.
-//! Each value is computed when its turn comes to be written, so that no array has to be held in memory, and there is one for
-//! every point or line. Points are particles, lines are bonds of two points each. There are no vertex cells: cell data
-//! would have to cover them too. Connectivity and offsets are signed: ParaView refuses unsigned ones.
+//! The header is text; the arrays follow it as numbers in binary (appended raw, little endian), so
+//! that nothing is lost. Each value is computed when its turn comes to be written, so that no array
+//! has to be held in memory, and there is one for every point or line. Points are particles, lines
+//! are bonds of two points each. There are no vertex cells: cell data would have to cover them too.
+//! Connectivity and offsets are signed: ParaView refuses unsigned ones.
 //!
 //! [VTK XML formats](https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html)
 
@@ -78,7 +80,8 @@ pub(crate) struct PolyData<'a> {
 }
 
 impl PolyData<'_> {
-    /// Writes the file. `write_fields` writes the field data, with [`write_number`] and [`write_text`].
+    /// Writes the file. `write_fields` writes the field data, with [`write_number`] and
+    /// [`write_text`].
     ///
     /// # Errors
     /// Those of `out`.

@@ -1,4 +1,5 @@
-//! What a run writes: the folder and its files, whole, readable by others, and the same after an interruption.
+//! What a run writes: the folder and its files, whole, readable by others, and the same after an
+//! interruption.
 
 mod checkpoints;
 mod folder;

@@ -1,8 +1,8 @@
 //! Prints the tables of README.md as Markdown, in the bending sample of `data/shapes`:
 //!
 //! ```text
-//! cargo run --release -p dem-pack --example quality_table              # quality beside time, for each --densify
-//! cargo run --release -p dem-pack --example quality_table -- growth    # 10,000 to 1,000,000 spheres: time and memory
+//! cargo run --release -p dem-pack --example quality_table           # quality, each --densify
+//! cargo run --release -p dem-pack --example quality_table -- growth # time and memory
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
 //! ```
 //!

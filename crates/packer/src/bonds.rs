@@ -1,8 +1,8 @@
 //! Bonds: which pairs of spheres are joined.
 //!
-//! A pair is joined when the distance of its centres is at most `bond_range * (R_a + R_b)`,
-//! true radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one shape stay
-//! two.
+//! A pair is joined when the distance of its centres is at most `bond_range * (R_a + R_b)`, true
+//! radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one
+//! shape stay two.
 
 use crate::spheres::Spheres;
 use dem_io::{Diagnostic, Result};

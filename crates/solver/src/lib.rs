@@ -1,5 +1,5 @@
-//! Runs scenes with bonded bodies: TOML scene -> [`plan()`] -> [`State`] -> [`step()`], step, ... ->
-//! results.
+//! Runs scenes with bonded bodies: TOML scene -> [`plan()`] -> [`State`] -> [`step()`], step, ...
+//! -> results.
 //!
 //! ```
 //! use dem_io::{read_bodies, scene_from_text};

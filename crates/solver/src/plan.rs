@@ -33,7 +33,6 @@ use crate::state::State;
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::SetLoad;
-use crate::state::particles::Wrench;
 use crate::state::population::{InletProgress, OutletTotals};
 use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::Held;
@@ -130,7 +129,7 @@ pub fn plan(
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
     if state.model.particle_damping > 0.0 {
-        state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
+        state.divide();
     }
     state.supports = supports(scene, &sets)?;
     start(scene, &sets, &bodies, &mut state)?;

@@ -140,6 +140,11 @@ impl State {
         state
     }
 
+    /// Whether there are clumps, or bodies can come, go or become others.
+    pub fn bodies_change(&self) -> bool {
+        !(self.clumps.templates.is_empty() && self.model.rules.are_none())
+    }
+
     /// Divides the work on particles and bonds anew, and makes room for damping forces.
     pub fn divide(&mut self) {
         let free = self.particles.free;
@@ -149,6 +154,9 @@ impl State {
         let damped = self.bonds.rules.iter().any(|rule| rule.damped);
         let resistances = if damped { free } else { 0 };
         scratch.bond_resistance = vec![Wrench::default(); resistances];
+        let is_damped = self.model.particle_damping > 0.0;
+        let resistances = if is_damped { self.particles.len() } else { 0 };
+        scratch.particle_resistance = vec![Wrench::default(); resistances];
     }
 
     /// The state that comes from a checkpoint, with the model that was planned for it and all that
@@ -176,9 +184,6 @@ impl State {
         self.scratch.threads = threads;
         self.divide();
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
-        if self.model.particle_damping > 0.0 {
-            self.scratch.particle_resistance = vec![Wrench::default(); self.particles.len()];
-        }
         if let Some(clusters) = &mut self.clusters {
             clusters.rebuild(&self.bonds)?;
         }

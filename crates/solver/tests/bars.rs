@@ -39,7 +39,8 @@ pub(crate) enum BondDamping {
     Chen(f64),
     /// The same with the stiffness of each mode.
     ChenByMode(f64),
-    /// Platzer 2022: this fraction of 2 sqrt(k_n m_red) on the velocity, and this factor on the moments.
+    /// Platzer 2022: this fraction of 2 sqrt(k_n m_red) on the velocity, and this factor on the
+    /// moments.
     Platzer(f64, f64),
 }
 

@@ -4,14 +4,17 @@ use super::parts::Body;
 use crate::diagnostic::{Diagnostic, Result};
 
 impl Body {
-    /// Whether this is a body: particles with finite centres and positive radii, bonds with positive radii and lengths
-    /// between two different particles that exist, the smaller index first, no pair bonded twice, arrays of equal length, no NUL
-    /// character in what is known of it.
+    /// Whether this is a body: particles with finite centres and positive radii, bonds with
+    /// positive radii and lengths between two different particles that exist, the smaller index
+    /// first, no pair bonded twice, arrays of equal length, no NUL character in what is known of
+    /// it.
     ///
-    /// Takes linear time; at most 8 bytes per particle and 4 per bond of memory, none if the bonds are sorted.
+    /// Takes linear time; at most 8 bytes per particle and 4 per bond of memory, none if the bonds
+    /// are sorted.
     ///
     /// # Errors
-    /// The first rule broken: number of the particle or bond (counted from 0), value, limit, remedy.
+    /// The first rule broken: number of the particle or bond (counted from 0), value, limit,
+    /// remedy.
     pub fn check(&self) -> Result<()> {
         check_lengths(self)?;
         check_particles(self)?;
@@ -167,12 +170,14 @@ fn check_about(body: &Body) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a pair of particles bonded twice. Every bond must join two existing particles, the smaller number first.
+/// Refuses a pair of particles bonded twice. Every bond must join two existing particles, the
+/// smaller number first.
 fn check_double_bonds(body: &Body) -> Result<()> {
     if body.bonds.is_sorted_by(|p, q| p < q) {
         return Ok(());
     }
-    // Counting sort by the smaller number: the partners of particle a end up in partners[ends[a - 1]..ends[a]].
+    // Counting sort by the smaller number: the partners of particle a end up in partners[ends[a -
+    // 1]..ends[a]].
     let mut ends = vec![0_usize; body.positions.len()];
     for &[a, _] in &body.bonds {
         ends[a as usize] += 1;

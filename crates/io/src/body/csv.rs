@@ -1,8 +1,10 @@
-//! Bodies as a pair of CSV files for spreadsheets and scripts: `cake.particles.csv` and `cake.bonds.csv`.
+//! Bodies as a pair of CSV files for spreadsheets and scripts: `cake.particles.csv` and
+//! `cake.bonds.csv`.
 //!
-//! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and `particle_a,particle_b,bond_radius_m,initial_length_m`.
-//! The ends `particle_a` and `particle_b` of a bond are the numbers of particles, counted from 0 in the order of their file. Every number reads
-//! back as the same bits. [`About`](super::About) has no place here and is left out.
+//! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and
+//! `particle_a,particle_b,bond_radius_m,initial_length_m`. The ends `particle_a` and `particle_b`
+//! of a bond are the numbers of particles, counted from 0 in the order of their file. Every number
+//! reads back as the same bits. [`About`](super::About) has no place here and is left out.
 
 use std::io::{self, BufRead, Write};
 
@@ -48,12 +50,13 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from its two files. Columns may stand in any order, others are left out. Without the column `bond_radius_m` a bond
-/// is as thick as the smaller of its particles, without `initial_length_m` it is as long as they are apart.
+/// Reads a body from its two files. Columns may stand in any order, others are left out. Without
+/// the column `bond_radius_m` a bond is as thick as the smaller of its particles, without
+/// `initial_length_m` it is as long as they are apart.
 ///
 /// # Errors
-/// A column is missing, a line makes no sense or has no end (the file is cut off), or not a body by [`Body::check`]. The place begins with "particles" or "bonds"
-/// where it is known.
+/// A column is missing, a line makes no sense or has no end (the file is cut off), or not a body by
+/// [`Body::check`]. The place begins with "particles" or "bonds" where it is known.
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     read_particles(particles, &mut parts).map_err(|error| error.within("particles"))?;
@@ -119,7 +122,8 @@ fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
     Ok(())
 }
 
-/// Where each of the columns stands, as the first line says. The first `required` of them must be there.
+/// Where each of the columns stands, as the first line says. The first `required` of them must be
+/// there.
 fn read_columns<const N: usize>(
     lines: &mut Lines<'_>,
     names: [&str; N],

@@ -29,7 +29,8 @@ struct Pair {
 }
 
 impl Pair {
-    /// `cake.csv`, `cake.particles.csv` or `cake.bonds.csv` -> `cake.particles.csv` and `cake.bonds.csv`.
+    /// `cake.csv`, `cake.particles.csv` or `cake.bonds.csv` -> `cake.particles.csv` and
+    /// `cake.bonds.csv`.
     fn named(path: &Path) -> Self {
         let ending = path.extension().unwrap_or_default();
         let name = path.with_extension("");
@@ -118,7 +119,8 @@ impl Storage {
     }
 }
 
-/// The files that a body has which is written to `path`: one, two (.csv, .txt), or none (`-`, standard output).
+/// The files that a body has which is written to `path`: one, two (.csv, .txt), or none (`-`,
+/// standard output).
 ///
 /// # Errors
 /// An unknown ending, with the list of the known ones.
@@ -130,11 +132,12 @@ pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
     })
 }
 
-/// Reads a body from `path`; `-` is a .vtp on standard input. For .csv and .txt either file of the pair may be named,
-/// or the name that they have in common (`cake.csv`).
+/// Reads a body from `path`; `-` is a .vtp on standard input. For .csv and .txt either file of the
+/// pair may be named, or the name that they have in common (`cake.csv`).
 ///
 /// # Errors
-/// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins with the file's name.
+/// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins
+/// with the file's name.
 pub fn read_body(path: &Path) -> Result<Body> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     match Storage::named(path)? {
@@ -162,8 +165,8 @@ pub fn read_body(path: &Path) -> Result<Body> {
 /// Files appear whole or not at all; of two files, neither appears before both are written.
 ///
 /// # Errors
-/// Not a body by [`Body::check`], an unknown ending, standard output is a terminal (exit code 2); missing folder, no permission,
-/// full disk (exit code 1).
+/// Not a body by [`Body::check`], an unknown ending, standard output is a terminal (exit code 2);
+/// missing folder, no permission, full disk (exit code 1).
 pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     let storage = Storage::named(path)?;
     body.check()?;

@@ -1,11 +1,13 @@
 //! Bodies as LAMMPS data files for `atom_style bpm/sphere`, which OVITO reads too.
 //!
 //! An atom is a particle (`atom-ID molecule-ID atom-type diameter density x y z`), a bond is a bond
-//! (`bond-ID bond-type atom1 atom2`); atoms are numbered from 1; one molecule, one type of each; SI units (`units si`).
-//! Positions, diameters and the density read back as the same bits. Bond radii and lengths have no place here: LAMMPS takes
-//! the lengths from the positions of the atoms, and so does [`read`].
+//! (`bond-ID bond-type atom1 atom2`); atoms are numbered from 1; one molecule, one type of each; SI
+//! units (`units si`). Positions, diameters and the density read back as the same bits. Bond radii
+//! and lengths have no place here: LAMMPS takes the lengths from the positions of the atoms, and so
+//! does [`read`].
 //!
-//! [read_data](https://docs.lammps.org/read_data.html), [Howto_bpm](https://docs.lammps.org/Howto_bpm.html)
+//! [read_data](https://docs.lammps.org/read_data.html),
+//! [Howto_bpm](https://docs.lammps.org/Howto_bpm.html)
 
 use std::io::{self, BufRead, Write};
 
@@ -19,7 +21,8 @@ pub const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;
 /// Densities of atoms may differ by rounding, as LAMMPS itself computes them from masses.
 const DENSITY_TOLERANCE: f64 = 1e-9;
 
-/// Writes a body as LAMMPS data. The box is larger than the body by the largest diameter on each side.
+/// Writes a body as LAMMPS data. The box is larger than the body by the largest diameter on each
+/// side.
 ///
 /// # Errors
 /// Those of `out`.
@@ -74,13 +77,13 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from LAMMPS data as `write_data` and [`write()`] write them. Atoms may stand in any order.
-/// A bond is as thick as the smaller of its particles and as long as they are apart. Velocities, coefficients, molecules and
-/// types are left out.
+/// Reads a body from LAMMPS data as `write_data` and [`write()`] write them. Atoms may stand in any
+/// order. A bond is as thick as the smaller of its particles and as long as they are apart.
+/// Velocities, coefficients, molecules and types are left out.
 ///
 /// # Errors
-/// Another atom style, atoms not numbered 1, 2, 3, ..., of several densities or beyond a periodic boundary, wrong counts, a
-/// line that makes no sense, or not a body by [`Body::check`].
+/// Another atom style, atoms not numbered 1, 2, 3, ..., of several densities or beyond a periodic
+/// boundary, wrong counts, a line that makes no sense, or not a body by [`Body::check`].
 pub fn read(input: &mut dyn BufRead) -> Result<Body> {
     let mut data = Data::default();
     let mut section = Section::Head;

@@ -26,7 +26,8 @@ impl<'a> Lines<'a> {
     /// The next line without the white space around it, and its number, counted from 1.
     ///
     /// # Errors
-    /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line break, too.
+    /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line
+    /// break, too.
     pub(crate) fn next(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
         let mut some = Read::take(&mut *self.input, LONGEST_LINE);
@@ -92,7 +93,8 @@ pub(crate) fn float(word: Option<&str>, what: &str) -> Result<f64> {
         .map_err(|_| not_a_number(word, what, "a number"))
 }
 
-/// The particle that `word` names, of so many, the first of which has the number `first`. Counted from 0.
+/// The particle that `word` names, of so many, the first of which has the number `first`. Counted
+/// from 0.
 pub(super) fn particle(
     word: Option<&str>,
     what: &str,

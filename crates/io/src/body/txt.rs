@@ -35,11 +35,13 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from its two files. Commas may stand between the numbers, lines that begin with % or # are left out.
-/// A bond is as thick as the smaller of its particles and as long as they are apart.
+/// Reads a body from its two files. Commas may stand between the numbers, lines that begin with %
+/// or # are left out. A bond is as thick as the smaller of its particles and as long as they are
+/// apart.
 ///
 /// # Errors
-/// A line makes no sense or has no end (the file is cut off), or not a body by [`Body::check`]. The place begins with "particles" or "bonds" where it is known.
+/// A line makes no sense or has no end (the file is cut off), or not a body by [`Body::check`]. The
+/// place begins with "particles" or "bonds" where it is known.
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     each_line(particles, |words| {

@@ -1,8 +1,9 @@
 //! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open as they stand.
 //!
-//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius`, cell data `bond_radius`
-//! and `bond_initial_length` (m), field data: `body_format_version`, `length_unit` and one array for each known field of
-//! [`About`]. How it is encoded, [`crate::vtk`] says.
+//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius`,
+//! cell data `bond_radius` and `bond_initial_length` (m), field data: `body_format_version`,
+//! `length_unit` and one array for each known field of [`About`]. How it is encoded, [`crate::vtk`]
+//! says.
 
 mod contents;
 mod decode;

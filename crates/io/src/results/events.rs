@@ -1,6 +1,8 @@
-//! Events of a run (bonds that break, bodies that are replaced, changes of the plan) as one CSV table that grows.
+//! Events of a run (bonds that break, bodies that are replaced, changes of the plan) as one CSV
+//! table that grows.
 //!
-//! Columns: see [`COLUMNS`]. What does not apply to an event is left empty. Every number reads back as the same bits.
+//! Columns: see [`COLUMNS`]. What does not apply to an event is left empty. Every number reads back
+//! as the same bits.
 
 use std::fmt::{Display, Write};
 use std::path::Path;
@@ -54,11 +56,12 @@ impl EventFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its checkpoint.
+    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
+    /// checkpoint.
     ///
     /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot be opened or written to
-    /// (exit code 1).
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
         Ok(Self {
             table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
@@ -82,8 +85,8 @@ impl EventFile {
         self.table.length_bytes()
     }
 
-    /// Waits until all events are on the disk, where a power failure leaves them. To be called before a checkpoint is
-    /// written that counts on them.
+    /// Waits until all events are on the disk, where a power failure leaves them. To be called
+    /// before a checkpoint is written that counts on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).

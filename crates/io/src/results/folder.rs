@@ -50,7 +50,8 @@ pub enum Existing {
     Refuse,
     /// Remove the files that an earlier run wrote, and nothing else: `--force`.
     Replace,
-    /// Leave all as it is, but for what killed writes have left, for a run that goes on: `--resume`.
+    /// Leave all as it is, but for what killed writes have left, for a run that goes on:
+    /// `--resume`.
     Continue,
 }
 
@@ -62,11 +63,13 @@ pub struct ResultsFolder {
 }
 
 impl ResultsFolder {
-    /// Makes the folder `path` or takes the one that is there, and makes sure that it can be written to.
+    /// Makes the folder `path` or takes the one that is there, and makes sure that it can be
+    /// written to.
     ///
     /// # Errors
-    /// It is not empty, by `existing`; there is none to continue; another run is writing into it (all exit code 2). Its parent
-    /// is missing, a file has its name, no permission to write in it (all exit code 1).
+    /// It is not empty, by `existing`; there is none to continue; another run is writing into it
+    /// (all exit code 2). Its parent is missing, a file has its name, no permission to write in it
+    /// (all exit code 1).
     pub fn create(path: &Path, existing: Existing) -> Result<Self> {
         if existing != Existing::Continue {
             make_folder(path)?;
@@ -279,7 +282,8 @@ impl ResultsFolder {
     }
 
     fn remove_results(&self) -> Result<()> {
-        // First, so that a folder of which only a part could be removed is not taken for a run to continue.
+        // First, so that a folder of which only a part could be removed is not taken for a run to
+        // continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
@@ -290,7 +294,8 @@ impl ResultsFolder {
         })
     }
 
-    /// Removes the files of the folder `part` that are `ours` by their name. A file of a write that was killed is ours, too.
+    /// Removes the files of the folder `part` that are `ours` by their name. A file of a write that
+    /// was killed is ours, too.
     fn remove_files(&self, part: &str, ours: impl Fn(&str) -> bool) -> Result<()> {
         let folder = self.path.join(part);
         if !folder.is_dir() {
@@ -375,7 +380,8 @@ pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be writing there.
+/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be
+/// writing there.
 ///
 /// # Errors
 /// There is no such folder, or it cannot be read.
@@ -446,8 +452,8 @@ fn make_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// Takes the lock of a folder, which the system releases when the program ends, however it does. The file stays: another run
-/// may be about to lock it.
+/// Takes the lock of a folder, which the system releases when the program ends, however it does.
+/// The file stays: another run may be about to lock it.
 fn lock(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
     let file = File::options()

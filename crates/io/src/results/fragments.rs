@@ -1,8 +1,8 @@
-//! Fragments of bodies that break: how each moves at chosen moments, as one CSV table that grows, and which broke off which, as
-//! one that is written at the end.
+//! Fragments of bodies that break: how each moves at chosen moments, as one CSV table that grows,
+//! and which broke off which, as one that is written at the end.
 //!
-//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. What a fragment does not have is left empty. Every number reads back as the same
-//! bits, but for a zero, which has no sign.
+//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. What a fragment does not have is left empty.
+//! Every number reads back as the same bits, but for a zero, which has no sign.
 
 use std::fmt::{Display, Write};
 use std::path::Path;
@@ -64,11 +64,12 @@ impl FragmentFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its checkpoint.
+    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
+    /// checkpoint.
     ///
     /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot be opened or written to
-    /// (exit code 1).
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
         Ok(Self {
             table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
@@ -92,8 +93,8 @@ impl FragmentFile {
         self.table.length_bytes()
     }
 
-    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before a checkpoint is written
-    /// that counts on them.
+    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
+    /// a checkpoint is written that counts on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).

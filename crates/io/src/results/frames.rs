@@ -1,7 +1,8 @@
-//! Frames of a run for ParaView: one .vtp file each, and one index of all with their times, `frames.pvd`.
+//! Frames of a run for ParaView: one .vtp file each, and one index of all with their times,
+//! `frames.pvd`.
 //!
-//! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data `TimeValue` (s).
-//! How it is encoded, [`crate::vtk`] says.
+//! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data
+//! `TimeValue` (s). How it is encoded, [`crate::vtk`] says.
 
 use std::io::{self, Write};
 
@@ -86,10 +87,12 @@ impl FrameFiles {
         }
     }
 
-    /// The frames of an interrupted run up to its checkpoint, which had these times, s. Later ones are removed.
+    /// The frames of an interrupted run up to its checkpoint, which had these times, s. Later ones
+    /// are removed.
     ///
     /// # Errors
-    /// A frame is missing (exit code 2); the index cannot be written or a later frame not removed (exit code 1).
+    /// A frame is missing (exit code 2); the index cannot be written or a later frame not removed
+    /// (exit code 1).
     pub fn continue_at(folder: &ResultsFolder, times_s: Vec<f64>) -> Result<Self> {
         for number in 0..times_s.len() {
             let path = folder.frame(number);
@@ -118,7 +121,8 @@ impl FrameFiles {
     /// Writes the next frame, then the index with it.
     ///
     /// # Errors
-    /// No permission, full disk (exit code 1): frames and index before are kept. The frame is wrong by [`Frame::check`].
+    /// No permission, full disk (exit code 1): frames and index before are kept. The frame is wrong
+    /// by [`Frame::check`].
     pub fn append(&mut self, frame: &Frame<'_>) -> Result<()> {
         frame.check()?;
         self.folder.make_frames_folder()?;

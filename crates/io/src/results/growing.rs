@@ -10,7 +10,8 @@ use crate::safe_write::{explain, write_file};
 const PUT_BACK: &str =
     "put back the file that belongs to the checkpoint, or start the run again without --resume";
 
-/// The file of a table. Every row is handed to the system as soon as it is appended, so that a crash of the program loses none.
+/// The file of a table. Every row is handed to the system as soon as it is appended, so that a
+/// crash of the program loses none.
 #[derive(Debug)]
 pub(super) struct GrowingTable {
     path: PathBuf,
@@ -83,7 +84,8 @@ impl GrowingTable {
         Ok(())
     }
 
-    /// Appends whole rows, each with its line break. If that fails, the file keeps the rows that it had.
+    /// Appends whole rows, each with its line break. If that fails, the file keeps the rows that it
+    /// had.
     pub(super) fn append(&mut self, rows: &str) -> Result<()> {
         match self.file.write_all(rows.as_bytes()) {
             Ok(()) => {
@@ -112,7 +114,8 @@ impl GrowingTable {
     }
 }
 
-/// A text as it may stand between two commas: quoted if need be (RFC 4180). Line breaks become blanks, so that a row is a line.
+/// A text as it may stand between two commas: quoted if need be (RFC 4180). Line breaks become
+/// blanks, so that a row is a line.
 pub(super) fn field(text: &str) -> String {
     let line = text.replace(['\n', '\r'], " ");
     if line.contains([',', '"']) {

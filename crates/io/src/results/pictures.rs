@@ -1,4 +1,5 @@
-//! Pictures of a run: one PNG file each, `pictures/picture-00000.png` and so on. What is in them, only the program knows that draws them.
+//! Pictures of a run: one PNG file each, `pictures/picture-00000.png` and so on. What is in them,
+//! only the program knows that draws them.
 
 use std::path::Path;
 
@@ -58,7 +59,8 @@ impl PictureFiles {
         self.count
     }
 
-    /// Writes some pictures side by side to `film-strip.png`, and one after the other to `film.png`: both as the bytes of a PNG file. Replaces earlier ones.
+    /// Writes some pictures side by side to `film-strip.png`, and one after the other to
+    /// `film.png`: both as the bytes of a PNG file. Replaces earlier ones.
     ///
     /// # Errors
     /// No permission, full disk (exit code 1).

@@ -1,6 +1,7 @@
 //! Time series as one CSV table that grows while a run goes on.
 //!
-//! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number reads back as the same bits.
+//! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number
+//! reads back as the same bits.
 
 use std::fmt::Write;
 use std::fs::File;
@@ -19,7 +20,8 @@ pub struct SeriesFile {
 }
 
 impl SeriesFile {
-    /// A new file with these columns after the time, named with their units: `kinetic_energy_j`. Replaces what stood there.
+    /// A new file with these columns after the time, named with their units: `kinetic_energy_j`.
+    /// Replaces what stood there.
     ///
     /// # Errors
     /// Missing folder, no permission, full disk (all exit code 1).
@@ -30,11 +32,12 @@ impl SeriesFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its checkpoint.
+    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
+    /// checkpoint.
     ///
     /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot be opened or written to
-    /// (exit code 1).
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, columns: &[String], length_bytes: u64) -> Result<Self> {
         Ok(Self {
             table: GrowingTable::continue_at(path, &header(columns), length_bytes)?,
@@ -42,7 +45,8 @@ impl SeriesFile {
         })
     }
 
-    /// Appends a row: the time and one value for each column, in SI units. It is in the file when this returns.
+    /// Appends a row: the time and one value for each column, in SI units. It is in the file when
+    /// this returns.
     ///
     /// # Errors
     /// Full disk (exit code 1): the rows before are kept. Not as many values as columns.
@@ -68,8 +72,8 @@ impl SeriesFile {
         self.table.length_bytes()
     }
 
-    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before a checkpoint is written
-    /// that counts on them.
+    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
+    /// a checkpoint is written that counts on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).
@@ -92,7 +96,8 @@ pub struct Series {
 /// Reads the file of a [`SeriesFile`].
 ///
 /// # Errors
-/// There is no such file, its first column is not the time, a row is not whole or no numbers (all exit code 2).
+/// There is no such file, its first column is not the time, a row is not whole or no numbers (all
+/// exit code 2).
 pub fn read_series(path: &Path) -> Result<Series> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let file = File::open(path).map_err(|error| {

@@ -7,7 +7,8 @@ use serde::Serialize;
 use crate::diagnostic::Result;
 use crate::safe_write::write_file;
 
-/// Writes `value` to the file `path` as indented JSON, whole or not at all. Numbers that are not finite become `null`.
+/// Writes `value` to the file `path` as indented JSON, whole or not at all. Numbers that are not
+/// finite become `null`.
 ///
 /// # Errors
 /// As [`write_file`]; `value` cannot be put as JSON (exit code 1).

@@ -88,11 +88,11 @@ pub enum StrainRateMeasure {
 /// What breaks a bond; whichever comes first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
-    /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's sigma_max with
-    /// the sign of the force).
+    /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's
+    /// sigma_max with the sign of the force).
     pub tensile_strength_pa: Option<f64>,
-    /// `compressive_strength`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None: nothing
-    /// breaks there.
+    /// `compressive_strength`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None:
+    /// nothing breaks there.
     pub compressive_strength_pa: Option<f64>,
     /// `shear_strength`: largest shear stress, Pa (MUSEN's tau_max).
     pub shear_strength_pa: Option<f64>,

@@ -10,7 +10,8 @@ use crate::diagnostic::Result;
 pub struct Clusters {
     /// `interval`: steps between two looks at what has broken. At least 1.
     pub interval: u64,
-    /// `min_broken_bonds`: bonds that must have broken since the last search for another. At least 1.
+    /// `min_broken_bonds`: bonds that must have broken since the last search for another. At least
+    /// 1.
     pub min_broken_bonds: u64,
     /// `force_every`: so many intervals after the last search there is another in any case. 0:
     /// never.

@@ -104,7 +104,8 @@ pub enum ContactLaw {
     Linear {
         /// `normal_stiffness`, N/m.
         normal_n_m: f64,
-        /// `tangential_stiffness_ratio`: tangential over normal stiffness, 2/7 unless given; in (0, 1].
+        /// `tangential_stiffness_ratio`: tangential over normal stiffness, 2/7 unless given; in (0,
+        /// 1].
         tangential_stiffness_ratio: f64,
     },
 }

@@ -8,8 +8,8 @@ use super::targets::{GROUP_KEY, Targets};
 use crate::diagnostic::Result;
 use crate::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-/// How the particles of a group start, on top of how their bodies do. What several of these say of a
-/// particle adds up.
+/// How the particles of a group start, on top of how their bodies do. What several of these say of
+/// a particle adds up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
     /// `group`: a group, a body or `all`.

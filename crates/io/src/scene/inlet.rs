@@ -69,8 +69,8 @@ pub(super) static INLET: Schema = Schema {
 /// Feeds bodies during the run. Those that it names do not stand in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inlet {
-    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0, of any
-    /// sum. All 1 unless given. At least one.
+    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0, of
+    /// any sum. All 1 unless given. At least one.
     pub bodies: Vec<(String, f64)>,
     /// `region`: a name of `[regions]`, in which the centres of new bodies are put at random.
     pub region: String,

@@ -14,10 +14,9 @@ use crate::units::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What is measured. Of a group, positions and velocities are those of its centre of mass, energies,
-/// forces and counts are
-/// sums. Walls have positions, forces and torques, fragments a count and masses, groups all but
-/// torques, count and masses.
+/// What is measured. Of a group, positions and velocities are those of its centre of mass,
+/// energies, forces and counts are sums. Walls have positions, forces and torques, fragments a
+/// count and masses, groups all but torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
@@ -37,8 +36,8 @@ pub enum Quantity {
     AngularVelocity(u8),
     /// "reaction_x", ... force of supports on the group, N.
     Reaction(u8),
-    /// "reaction_torque_x", ... torque of supports on the group, each about its particle's centre, N
-    /// m.
+    /// "reaction_torque_x", ... torque of supports on the group, each about its particle's centre,
+    /// N m.
     ReactionTorque(u8),
     /// "kinetic_energy", J.
     KineticEnergy,

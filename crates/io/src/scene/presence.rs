@@ -65,8 +65,8 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the group `field` of the body `body`, or of all bodies, where it could pick particles
-    /// of a clump, or where the body is fed.
+    /// Refuses the group `field` of the body `body`, or of all bodies, where it could pick
+    /// particles of a clump, or where the body is fed.
     pub(super) fn refuse_group(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
             let table = Table::any(field)?;

@@ -12,9 +12,9 @@ use crate::diagnostic::Result;
 pub struct Relaxation {
     /// `enabled`: such an overlap becomes the origin of the pair's contact law.
     pub enabled: bool,
-    /// `min_overlap`: smaller ones, as a fraction of the reduced radius, are not kept; in [0, 1). The
-    /// force that a pair then has at once gives it energy, which grows with this to the power of
-    /// 2.5: at 1e-3 a whole body can gain 1e-4 of its own.
+    /// `min_overlap`: smaller ones, as a fraction of the reduced radius, are not kept; in [0, 1).
+    /// The force that a pair then has at once gives it energy, which grows with this to the power
+    /// of 2.5: at 1e-3 a whole body can gain 1e-4 of its own.
     pub min_overlap: f64,
 }
 

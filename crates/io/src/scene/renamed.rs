@@ -1,5 +1,5 @@
-//! Keys of scenes and studies that had another name before version 0.1: whoever uses one is told the
-//! new one.
+//! Keys of scenes and studies that had another name before version 0.1: whoever uses one is told
+//! the new one.
 
 /// Title of the table in the schema, old key, new key.
 const RENAMED: [(&str, &str, &str); 36] = [

@@ -15,13 +15,13 @@ pub struct Run {
     pub end_time_s: f64,
     /// `integrator`, "leapfrog" unless given.
     pub integrator: Integrator,
-    /// `rest_energy_ratio`, in (0, 1): end sooner, when the kinetic energy has been below this share of the
-    /// elastic energy during the last fifth of the run.
+    /// `rest_energy_ratio`, in (0, 1): end sooner, when the kinetic energy has been below this
+    /// share of the elastic energy during the last fifth of the run.
     pub rest_energy_ratio: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety_factor` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1 and
-    /// more are for trials only.
+    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1
+    /// and more are for trials only.
     pub safety_factor: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
     pub adaptive: bool,

@@ -132,8 +132,8 @@ pub struct Test {
     pub kind: TestKind,
     /// `body` that is tested; the only one unless given.
     pub body: String,
-    /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are pulled. At
-    /// least one.
+    /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are
+    /// pulled. At least one.
     pub crosshead: Vec<String>,
     /// `direction` in which they move, of length 1; for tension along x, y or z. Length 3.
     pub direction: [f64; 3],

@@ -1,5 +1,6 @@
-//! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop endfacet)* endsolid NAME`, any number
-//! of times; upper or lower case, any white space. Normals are skipped unread: many programs write them badly or not at all.
+//! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop
+//! endfacet)* endsolid NAME`, any number of times; upper or lower case, any white space. Normals
+//! are skipped unread: many programs write them badly or not at all.
 
 use super::facets::{Facets, REMEDY_AGAIN, is_blank};
 use crate::diagnostic::{Diagnostic, Result};
@@ -149,7 +150,8 @@ impl<'a> Words<'a> {
         (self.next > start).then(|| &self.text[start..self.next])
     }
 
-    /// The next word of a facet that is not complete yet. A word at the very end of the text may be cut short.
+    /// The next word of a facet that is not complete yet. A word at the very end of the text may be
+    /// cut short.
     fn need(&mut self, facet: usize) -> Result<&'a [u8]> {
         let word = self
             .next_word()

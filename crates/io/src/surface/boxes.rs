@@ -73,7 +73,8 @@ impl Bounds {
         near <= far
     }
 
-    /// Whether the ray from `origin` meets the box; `inverse` is 1/direction, no component of it infinite.
+    /// Whether the ray from `origin` meets the box; `inverse` is 1/direction, no component of it
+    /// infinite.
     pub(super) fn on_ray(&self, origin: Point, inverse: Point) -> bool {
         let (mut near, mut far) = (0.0_f64, f64::INFINITY);
         for k in 0..3 {
@@ -90,7 +91,8 @@ impl Bounds {
 /// Boxes of a leaf.
 const LEAF: usize = 4;
 
-/// A complete binary tree over boxes in the order of their place on a space-filling curve (Morton order).
+/// A complete binary tree over boxes in the order of their place on a space-filling curve (Morton
+/// order).
 pub(super) struct Tree {
     /// Number of each box, in the order of the curve.
     order: Vec<u32>,
@@ -127,7 +129,8 @@ impl Tree {
         begin.min(self.boxes.len())..(begin + LEAF).min(self.boxes.len())
     }
 
-    /// Calls `found` with the number of every box for which `meets` is true. `meets` must be true of a box around such a box.
+    /// Calls `found` with the number of every box for which `meets` is true. `meets` must be true
+    /// of a box around such a box.
     pub(super) fn visit(&self, meets: impl Fn(&Bounds) -> bool, mut found: impl FnMut(u32)) {
         let mut stack = [0_usize; 64];
         let mut height = 1;
@@ -150,7 +153,8 @@ impl Tree {
         }
     }
 
-    /// Calls `found` with each pair of boxes that are no farther apart than `gap` along any axis, as long as it returns true.
+    /// Calls `found` with each pair of boxes that are no farther apart than `gap` along any axis,
+    /// as long as it returns true.
     pub(super) fn near_pairs(&self, gap: f64, mut found: impl FnMut(u32, u32) -> bool) {
         let mut stack = vec![(1_usize, 1_usize)];
         while let Some((a, b)) = stack.pop() {
@@ -188,8 +192,8 @@ impl Tree {
     }
 }
 
-/// Sorts box numbers by the place of the boxes' middles on the Morton curve through them; middles that share a cell of it, by a finer
-/// curve through these alone.
+/// Sorts box numbers by the place of the boxes' middles on the Morton curve through them; middles
+/// that share a cell of it, by a finer curve through these alone.
 fn sort_along_curve(order: &mut [u32], boxes: &[Bounds]) {
     let middle = |i: u32| {
         let b = &boxes[i as usize];

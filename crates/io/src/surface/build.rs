@@ -34,14 +34,16 @@ const FLAT: f64 = 1e-10;
 
 /// Reads the STL in `bytes` and makes a solid of it. `source` names it in messages.
 ///
-/// The result does not depend on the order of the facets, on the corner that each begins with, or on which way round they are wound.
-/// Corners within 3e-5 of the bounding box's diagonal are welded where that closes the surface, and edges split on one side only
-/// within the same distance. With `fill_holes`, holes are closed whose boundary is at most half the diagonal long, or that
-/// lack just one facet.
+/// The result does not depend on the order of the facets, on the corner that each begins with, or
+/// on which way round they are wound. Corners within 3e-5 of the bounding box's diagonal are welded
+/// where that closes the surface, and edges split on one side only within the same distance. With
+/// `fill_holes`, holes are closed whose boundary is at most half the diagonal long, or that lack
+/// just one facet.
 ///
 /// # Errors
-/// A file that is no whole STL (see [`read_facets`]), a surface that is not closed, that has edges with an odd number of facets,
-/// that has no two sides, or that encloses nothing. The message names the number and the place of what is wrong.
+/// A file that is no whole STL (see [`read_facets`]), a surface that is not closed, that has edges
+/// with an odd number of facets, that has no two sides, or that encloses nothing. The message names
+/// the number and the place of what is wrong.
 pub fn surface_from_stl(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {
     let unit_m = settings.unit_m * settings.scale;
     build(bytes, unit_m, settings.fill_holes)
@@ -127,7 +129,8 @@ fn drop_superfluous(mesh: &mut Mesh, repairs: &mut Repairs) {
     repairs.duplicate_facets += dropped.duplicate;
 }
 
-/// Closes gaps within the tolerance, if there are any: between corners, then between corners and edges.
+/// Closes gaps within the tolerance, if there are any: between corners, then between corners and
+/// edges.
 fn weld_and_split(mesh: &mut Mesh, diagonal: f64, unit_m: f64, repairs: &mut Repairs) {
     let edges = Edges::of(mesh);
     if edges.bad_count() == 0 {
@@ -192,8 +195,8 @@ struct Part {
     turned: usize,
 }
 
-/// Winds every part so that its volume is positive, drops parts without volume, and sorts the mesh by part: from here on its order
-/// does not depend on that of the facets.
+/// Winds every part so that its volume is positive, drops parts without volume, and sorts the mesh
+/// by part: from here on its order does not depend on that of the facets.
 fn wind_outwards(mesh: &mut Mesh, frame: &Frame, remarks: &mut Remarks) -> Result<Vec<Part>> {
     let connected =
         connect(mesh, &Edges::of(mesh)).map_err(|half_edge| one_sided(mesh, half_edge, frame))?;

@@ -19,10 +19,12 @@ pub(super) struct Dropped {
     pub(super) duplicate: usize,
 }
 
-/// Drops triangles without area and all but one of each set of equal triangles, and sorts the rest by their vertices.
+/// Drops triangles without area and all but one of each set of equal triangles, and sorts the rest
+/// by their vertices.
 ///
-/// An even number of equal triangles may also be where two parts touch or overlap, face on face. Where that closes the surface, none
-/// is kept of those that stand there both ways round (a wall between the parts), and two of those that stand there one way round.
+/// An even number of equal triangles may also be where two parts touch or overlap, face on face.
+/// Where that closes the surface, none is kept of those that stand there both ways round (a wall
+/// between the parts), and two of those that stand there one way round.
 pub(super) fn drop_superfluous(mesh: &mut Mesh) -> Dropped {
     let all = mesh.triangles.len();
     let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT);
@@ -50,8 +52,9 @@ pub(super) struct Equal {
     pub(super) both_ways: bool,
 }
 
-/// Drops triangles no higher than `no_height` (local units) and all but one of each set of equal ones, wound as most of its set are, and sorts the rest by
-/// their vertices. How many had no area, and the set of each that is kept.
+/// Drops triangles no higher than `no_height` (local units) and all but one of each set of equal
+/// ones, wound as most of its set are, and sorts the rest by their vertices. How many had no area,
+/// and the set of each that is kept.
 pub(super) fn keep_one_of_equal(mesh: &mut Mesh, no_height: f64) -> (usize, Vec<Equal>) {
     let mut sorted: Vec<([u32; 3], bool)> = (0..mesh.triangles.len() as u32)
         .filter(|t| has_area(mesh, *t, no_height))
@@ -100,8 +103,9 @@ fn height(mesh: &Mesh, triangle: u32) -> f64 {
     length(normal(corners)) / longest
 }
 
-/// Drops triangles lower than `tolerance` (local units) that hang loose: at least two of their edges have an odd number of facets.
-/// In single precision, three corners on a line are seldom exactly so. Returns how many.
+/// Drops triangles lower than `tolerance` (local units) that hang loose: at least two of their
+/// edges have an odd number of facets. In single precision, three corners on a line are seldom
+/// exactly so. Returns how many.
 pub(super) fn drop_loose_slivers(mesh: &mut Mesh, tolerance: f64) -> usize {
     let before = mesh.triangles.len();
     for _ in 0..SLIVER_ROUNDS {
@@ -132,8 +136,8 @@ pub(super) fn drop_loose_slivers(mesh: &mut Mesh, tolerance: f64) -> usize {
     before - mesh.triangles.len()
 }
 
-/// Decides for each patch of `pairs`, triangles that hang together, whether one of each is kept, and winds those that stand there both
-/// ways like a neighbour.
+/// Decides for each patch of `pairs`, triangles that hang together, whether one of each is kept,
+/// and winds those that stand there both ways like a neighbour.
 fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
     let edges = Edges::of(mesh);
     let place = |h: u32| {
@@ -150,7 +154,8 @@ fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
             });
         }
     }
-    // Edges of each patch with an odd number of facets when one of each pair is kept, and otherwise.
+    // Edges of each patch with an odd number of facets when one of each pair is kept, and
+    // otherwise.
     let mut odd = vec![[0_usize; 2]; pairs.len()];
     for group in edges.groups() {
         let members: Vec<usize> = group.iter().filter_map(|h| place(*h)).collect();

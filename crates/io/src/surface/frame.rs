@@ -1,11 +1,13 @@
-//! Local coordinates: near the origin and of size one, so that neither an offset nor a scale costs digits.
+//! Local coordinates: near the origin and of size one, so that neither an offset nor a scale costs
+//! digits.
 
 use super::mesh::Mesh;
 use super::vector::{Point, bounds, subtract};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
 
-/// Shapes smaller or larger than this, in units of the file or in metres, are refused: their volume would not be a number.
+/// Shapes smaller or larger than this, in units of the file or in metres, are refused: their volume
+/// would not be a number.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// Where local coordinates lie in those of the file: `file = corner + size * local`.
@@ -13,7 +15,8 @@ const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 pub(super) struct Frame {
     /// Smallest corner of the bounding box, in units of the file.
     pub(super) corner: Point,
-    /// A local unit in units of the file: the power of two that makes the largest extent 1 to 2 local units.
+    /// A local unit in units of the file: the power of two that makes the largest extent 1 to 2
+    /// local units.
     pub(super) size: f64,
 }
 
@@ -48,7 +51,8 @@ impl Frame {
         })
     }
 
-    /// File coordinates to local ones. Exact for the size; the difference from the corner is rounded once.
+    /// File coordinates to local ones. Exact for the size; the difference from the corner is
+    /// rounded once.
     pub(super) fn to_local(self, facets: Vec<[Point; 3]>) -> Vec<[Point; 3]> {
         let mut facets = facets;
         for corner in facets.as_flattened_mut() {
@@ -73,7 +77,8 @@ impl Frame {
         significant(self.size * local, 4)
     }
 
-    /// Moves and scales the mesh so that it fills the frame again, if triangles at its border were dropped.
+    /// Moves and scales the mesh so that it fills the frame again, if triangles at its border were
+    /// dropped.
     pub(super) fn fit(&mut self, mesh: &mut Mesh) {
         let (min, max) = bounds(mesh.vertices.iter().copied());
         let size = power_of_two_below(largest_extent(min, max));

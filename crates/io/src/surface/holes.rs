@@ -4,11 +4,12 @@ use super::mesh::{Edges, Mesh};
 use super::vector::{Point, distance, length, mean, normal};
 use std::collections::BTreeMap;
 
-/// A hole with a longer boundary, as a share of the diagonal of the bounding box, is not small; but one with three edges,
-/// where just one facet is missing, always is.
+/// A hole with a longer boundary, as a share of the diagonal of the bounding box, is not small; but
+/// one with three edges, where just one facet is missing, always is.
 pub(super) const LONGEST_BOUNDARY: f64 = 0.5;
 
-/// Up to so many edges, a hole is closed by the triangles of least area over its vertices; beyond, by a fan around its middle.
+/// Up to so many edges, a hole is closed by the triangles of least area over its vertices; beyond,
+/// by a fan around its middle.
 const MOST_EDGES_FOR_LEAST_AREA: usize = 200;
 
 /// The boundary of a hole: vertices in the order in which new triangles must run along them.
@@ -39,7 +40,8 @@ impl Hole {
     }
 }
 
-/// The loops of open edges; `turned` tells which triangles are wound the other way than they stand in the mesh.
+/// The loops of open edges; `turned` tells which triangles are wound the other way than they stand
+/// in the mesh.
 pub(super) fn find(mesh: &Mesh, edges: &Edges, turned: &[bool]) -> Vec<Hole> {
     let mut steps: Vec<[u32; 2]> = edges
         .open()
@@ -132,7 +134,8 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
 fn least_area(mesh: &Mesh, edges: &ExistingEdges, boundary: &[u32]) -> Option<Vec<[u32; 3]>> {
     let n = boundary.len();
     let point = |i: usize| mesh.vertices[boundary[i] as usize];
-    // area[i][j]: least area over the vertices i..=j; apex[i][j]: the third corner of the triangle on the chord i-j.
+    // area[i][j]: least area over the vertices i..=j; apex[i][j]: the third corner of the triangle
+    // on the chord i-j.
     let mut area = vec![vec![0.0_f64; n]; n];
     let mut apex = vec![vec![0_usize; n]; n];
     for span in 2..n {

@@ -16,8 +16,8 @@ pub(super) struct Intersections {
     pub(super) shells: Vec<[u32; 2]>,
 }
 
-/// Finds the pairs of triangles of which an edge of one goes through the other. Triangles that only touch, or lie in one plane, do
-/// not cross. `tree` holds the boxes of the triangles.
+/// Finds the pairs of triangles of which an edge of one goes through the other. Triangles that only
+/// touch, or lie in one plane, do not cross. `tree` holds the boxes of the triangles.
 pub(super) fn find(mesh: &Mesh, tree: &Tree, shell_of: &[u32]) -> Intersections {
     let mut pairs = 0;
     let mut first: Option<([u32; 2], Point)> = None;
@@ -56,8 +56,8 @@ fn crossing_place(first: [Point; 3], second: [Point; 3]) -> Option<Point> {
         .or_else(|| edge_through(first, sides_of_first, second))
 }
 
-/// Signed distances of the corners of `other` from the plane of `triangle`, times twice its area; those within rounding are zero.
-/// `None` when the corners do not lie on both sides.
+/// Signed distances of the corners of `other` from the plane of `triangle`, times twice its area;
+/// those within rounding are zero. `None` when the corners do not lie on both sides.
 fn sides(triangle: [Point; 3], other: [Point; 3]) -> Option<[f64; 3]> {
     let normal = normal(triangle);
     let area = length(normal);
@@ -75,7 +75,8 @@ fn sides(triangle: [Point; 3], other: [Point; 3]) -> Option<[f64; 3]> {
     (sides.iter().any(|s| *s > 0.0) && sides.iter().any(|s| *s < 0.0)).then_some(sides)
 }
 
-/// Where an edge of `triangle`, whose corners lie at `sides` of the plane of `other`, goes through `other`.
+/// Where an edge of `triangle`, whose corners lie at `sides` of the plane of `other`, goes through
+/// `other`.
 fn edge_through(triangle: [Point; 3], sides: [f64; 3], other: [Point; 3]) -> Option<Point> {
     (0..3).find_map(|k| {
         let (from, to) = (sides[k], sides[(k + 1) % 3]);

@@ -15,7 +15,8 @@ impl Mesh {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
-    /// Start and end of a half-edge: half-edge 3t + k runs from corner k of triangle t to the next corner.
+    /// Start and end of a half-edge: half-edge 3t + k runs from corner k of triangle t to the next
+    /// corner.
     pub(super) fn half_edge(&self, half_edge: u32) -> [u32; 2] {
         let triangle = self.triangles[half_edge as usize / 3];
         let k = half_edge as usize % 3;
@@ -27,7 +28,8 @@ impl Mesh {
         self.half_edge(half_edge).map(|v| self.vertices[v as usize])
     }
 
-    /// Volume enclosed by some triangles, negative when they are wound inwards. Summed relative to a vertex of theirs.
+    /// Volume enclosed by some triangles, negative when they are wound inwards. Summed relative to
+    /// a vertex of theirs.
     pub(super) fn signed_volume(&self, triangles: impl IntoIterator<Item = u32>) -> f64 {
         let mut reference = None;
         let mut sum = 0.0;
@@ -48,8 +50,9 @@ impl Mesh {
             .sum()
     }
 
-    /// Puts vertices and triangles in an order that does not depend on the order before: vertices by their coordinates, each
-    /// triangle beginning with its smallest vertex. Vertices without a triangle are left out. The triangles keep their order.
+    /// Puts vertices and triangles in an order that does not depend on the order before: vertices
+    /// by their coordinates, each triangle beginning with its smallest vertex. Vertices without a
+    /// triangle are left out. The triangles keep their order.
     pub(super) fn order_vertices(&mut self) {
         let mut used = vec![false; self.vertices.len()];
         self.triangles
@@ -108,7 +111,8 @@ impl Edges {
         Self::of_triangles(&mesh.triangles, mesh.vertices.len())
     }
 
-    /// Groups the half-edges of triangles over so many vertices: bucket by smaller vertex, sort each bucket by larger vertex.
+    /// Groups the half-edges of triangles over so many vertices: bucket by smaller vertex, sort
+    /// each bucket by larger vertex.
     pub(super) fn of_triangles(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
         let mut bucket_starts = vec![0_u32; vertex_count + 1];
         let half_edge_count = 3 * triangles.len() as u32;

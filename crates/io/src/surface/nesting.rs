@@ -25,9 +25,11 @@ struct Votes {
     on: usize,
 }
 
-/// How the shells lie in each other, and whether some overlap without a triangle going through another (faces in one plane).
+/// How the shells lie in each other, and whether some overlap without a triangle going through
+/// another (faces in one plane).
 ///
-/// Shells that cross, overlap or touch from inside count as one around others, and do not lie in each other. `parts` holds the triangles of each shell.
+/// Shells that cross, overlap or touch from inside count as one around others, and do not lie in
+/// each other. `parts` holds the triangles of each shell.
 pub(super) fn find(
     rays: &Rays,
     parts: &[Range<u32>],

@@ -1,4 +1,5 @@
-//! Facets -> welded triangles of a surface that need not enclose anything: a plate, a chute, a hopper without a lid.
+//! Facets -> welded triangles of a surface that need not enclose anything: a plate, a chute, a
+//! hopper without a lid.
 
 use super::duplicates::keep_one_of_equal;
 use super::frame::Frame;
@@ -14,7 +15,8 @@ use crate::stl::read_facets;
 /// A triangle lower than this share of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;
 
-/// A triangulated surface, open or closed, as it stands in the file: neither wound nor closed nor checked for crossings.
+/// A triangulated surface, open or closed, as it stands in the file: neither wound nor closed nor
+/// checked for crossings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenSurface {
     /// Where it came from, for messages: file name or "standard input".
@@ -27,7 +29,8 @@ pub struct OpenSurface {
     pub triangles: Vec<[u32; 3]>,
     /// Facets in the file.
     pub facets_read: usize,
-    /// Corners that were moved onto another one within 3e-5 of the diagonal, because that closed a gap.
+    /// Corners that were moved onto another one within 3e-5 of the diagonal, because that closed a
+    /// gap.
     pub welded_vertices: usize,
     /// Edges that were split on one side only, and now are on both.
     pub t_junctions: usize,
@@ -35,20 +38,24 @@ pub struct OpenSurface {
     pub degenerate_facets: usize,
     /// Facets that stood there already (either way round), dropped.
     pub duplicate_facets: usize,
-    /// Triangles that are wound against the others that they hang together with: those of each part that are the fewer. 0: each part is wound one way.
+    /// Triangles that are wound against the others that they hang together with: those of each part
+    /// that are the fewer. 0: each part is wound one way.
     pub turned_facets: usize,
-    /// Whether what the triangles enclose has a volume below 0, as where those of a closed surface look inwards. Says nothing of an open one.
+    /// Whether what the triangles enclose has a volume below 0, as where those of a closed surface
+    /// look inwards. Says nothing of an open one.
     pub is_inside_out: bool,
     /// One sentence for each thing that is odd about the file but harmless.
     pub warnings: Vec<String>,
 }
 
-/// Reads the STL in `bytes`, whose unit is `unit_m` metres, as a surface that may be open. `source` names it in messages.
+/// Reads the STL in `bytes`, whose unit is `unit_m` metres, as a surface that may be open. `source`
+/// names it in messages.
 ///
 /// Equal corners become one, and near ones where that closes a gap.
 ///
 /// # Errors
-/// A unit that is no positive number, a file that is no whole STL (see [`read_facets`]), a size outside all reason, or facets of which none has an area.
+/// A unit that is no positive number, a file that is no whole STL (see [`read_facets`]), a size
+/// outside all reason, or facets of which none has an area.
 pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<OpenSurface> {
     read(bytes, unit_m)
         .map(|surface| OpenSurface {
@@ -112,10 +119,12 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
     })
 }
 
-/// Drops triangles without area and all but one of equal ones, and sorts the rest. How many of each.
+/// Drops triangles without area and all but one of equal ones, and sorts the rest. How many of
+/// each.
 ///
-/// Not the rule for solids, which drops both of a pair that stands there both ways round: here such a pair is a plate. It is wound as most of equal ones are,
-/// and as its neighbours are where there are as many of either way.
+/// Not the rule for solids, which drops both of a pair that stands there both ways round: here such
+/// a pair is a plate. It is wound as most of equal ones are, and as its neighbours are where there
+/// are as many of either way.
 fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     let all = mesh.triangles.len();
     let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT * diagonal);
@@ -130,7 +139,8 @@ fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     [degenerate, all - degenerate - kept.len()]
 }
 
-/// Which triangles are wound against most of those that they hang together with over edges of two; `counts` says which of these count.
+/// Which triangles are wound against most of those that they hang together with over edges of two;
+/// `counts` says which of these count.
 fn turned(mesh: &Mesh, counts: impl Fn(u32) -> bool) -> Vec<bool> {
     let mut sets = Sets::new(mesh.triangles.len());
     for group in Edges::of(mesh).groups() {

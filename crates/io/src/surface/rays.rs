@@ -4,7 +4,8 @@ use super::boxes::{Bounds, Tree};
 use super::mesh::Mesh;
 use super::vector::{Point, cross, dot, length, subtract};
 
-/// Directions in no special position to the axes or to each other. Not of length 1, none along an axis.
+/// Directions in no special position to the axes or to each other. Not of length 1, none along an
+/// axis.
 const DIRECTIONS: [Point; 8] = [
     [0.531, 0.321, 0.785],
     [-0.414, 0.732, 0.541],
@@ -47,7 +48,8 @@ pub(super) struct Around {
 }
 
 impl Rays<'_> {
-    /// The crossings of a ray, in no order. False where it grazes a facet, so that they cannot be relied on.
+    /// The crossings of a ray, in no order. False where it grazes a facet, so that they cannot be
+    /// relied on.
     pub(super) fn crossings(&self, origin: Point, direction: Point, hits: &mut Vec<Hit>) -> bool {
         hits.clear();
         let mut sure = true;
@@ -67,7 +69,8 @@ impl Rays<'_> {
         sure
     }
 
-    /// The shells that wind around a point or have it on them. `None` when every direction grazes a facet.
+    /// The shells that wind around a point or have it on them. `None` when every direction grazes a
+    /// facet.
     pub(super) fn around(&self, point: Point) -> Option<Around> {
         let mut hits = Vec::new();
         let direction = DIRECTIONS

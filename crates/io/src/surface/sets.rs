@@ -34,8 +34,9 @@ impl Sets {
         (root, turned)
     }
 
-    /// Joins the sets of `a` and `b`, with `b` turned relative to `a` or not. The smallest member stays the root.
-    /// False, and nothing done, when they are in one set already and stand the other way.
+    /// Joins the sets of `a` and `b`, with `b` turned relative to `a` or not. The smallest member
+    /// stays the root. False, and nothing done, when they are in one set already and stand the
+    /// other way.
     pub(super) fn join(&mut self, a: u32, b: u32, turned: bool) -> bool {
         let (root_a, turned_a) = self.find(a);
         let (root_b, turned_b) = self.find(b);

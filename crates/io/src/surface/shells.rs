@@ -9,15 +9,17 @@ use std::f64::consts::TAU;
 pub(super) struct Connected {
     /// Triangles of each part, ascending; parts in the order of their first triangle.
     pub(super) parts: Vec<Vec<u32>>,
-    /// Which triangles must be turned so that all of a part are wound alike. The first of each part is not.
+    /// Which triangles must be turned so that all of a part are wound alike. The first of each part
+    /// is not.
     pub(super) turned: Vec<bool>,
 }
 
-/// Finds the parts that hang together over shared edges, and the triangles that are wound against their neighbours.
-/// Edges with one facet or another odd number connect nothing.
+/// Finds the parts that hang together over shared edges, and the triangles that are wound against
+/// their neighbours. Edges with one facet or another odd number connect nothing.
 ///
-/// Where four or more facets meet in an edge, two or more parts touch there: each part is continued over the edge by itself
-/// where it can be, and otherwise facets are paired that lie next to each other around the edge.
+/// Where four or more facets meet in an edge, two or more parts touch there: each part is continued
+/// over the edge by itself where it can be, and otherwise facets are paired that lie next to each
+/// other around the edge.
 ///
 /// # Errors
 /// The half-edge where no winding of the triangles fits.

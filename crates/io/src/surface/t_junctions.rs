@@ -1,4 +1,5 @@
-//! T-junctions: edges that are split by a vertex on one side only. They are closed in space but not by shared edges.
+//! T-junctions: edges that are split by a vertex on one side only. They are closed in space but not
+//! by shared edges.
 
 use super::boxes::{Bounds, Tree};
 use super::mesh::{Edges, Mesh};
@@ -7,9 +8,9 @@ use super::vector::{along, distance, dot, subtract};
 /// A triangle has three edges, and new triangles may have to be split again.
 const ROUNDS: usize = 12;
 
-/// Splits open edges at the vertices of other open edges that lie on them, within `tolerance` (local units), and their triangles
-/// with them, so that both sides of a T-junction have the same edges. Returns how many edges were split. Ends when that closes
-/// nothing more.
+/// Splits open edges at the vertices of other open edges that lie on them, within `tolerance`
+/// (local units), and their triangles with them, so that both sides of a T-junction have the same
+/// edges. Returns how many edges were split. Ends when that closes nothing more.
 pub(super) fn split(mesh: &mut Mesh, tolerance: f64) -> usize {
     let mut split_edges = 0;
     let mut open_before = usize::MAX;
@@ -89,7 +90,8 @@ fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
     found
 }
 
-/// The open edges that meet, at both ends, another open edge on the same line: the edges of every T-junction do.
+/// The open edges that meet, at both ends, another open edge on the same line: the edges of every
+/// T-junction do.
 fn continued_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<u32> {
     let mut ends: Vec<(u32, u32)> = Vec::with_capacity(2 * open.len());
     for half_edge in open {
@@ -125,7 +127,8 @@ fn on_one_line(mesh: &Mesh, from: u32, a: u32, b: u32, tolerance: f64) -> bool {
     distance(near, along(from, share, to_far)) <= tolerance
 }
 
-/// Replaces the triangle of `half_edge` by a fan from its opposite corner to the pieces of the half-edge.
+/// Replaces the triangle of `half_edge` by a fan from its opposite corner to the pieces of the
+/// half-edge.
 fn split_triangle(mesh: &mut Mesh, half_edge: u32, on_edge: &[OnEdge]) {
     let triangle = half_edge as usize / 3;
     let opposite = mesh.triangles[triangle][(half_edge as usize + 2) % 3];

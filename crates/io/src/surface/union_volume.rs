@@ -7,11 +7,13 @@ use super::vector::{Point, along, cross, dot, unit};
 /// Columns along each side of the cross-section.
 const COLUMNS: usize = 256;
 
-/// Neither the columns nor their rows stand in a special direction to the axes: faces parallel to them would be integrated badly.
+/// Neither the columns nor their rows stand in a special direction to the axes: faces parallel to
+/// them would be integrated badly.
 const DIRECTION: Point = [0.237, 0.141, 0.961];
 const ACROSS: Point = [0.313, 0.829, -0.457];
 
-/// What the sum of the signed volumes of the shells has too much (or too little, when negative), local units.
+/// What the sum of the signed volumes of the shells has too much (or too little, when negative),
+/// local units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Excess {
     pub(super) volume: f64,
@@ -19,8 +21,8 @@ pub(super) struct Excess {
     pub(super) error: f64,
 }
 
-/// Integrates, over `region`, the winding number less one where it is positive, and the winding number where it is negative. Outside
-/// `region`, the winding number must be 0 or 1.
+/// Integrates, over `region`, the winding number less one where it is positive, and the winding
+/// number where it is negative. Outside `region`, the winding number must be 0 or 1.
 pub(super) fn excess(rays: &Rays, region: Bounds) -> Excess {
     let direction = unit(DIRECTION);
     let across = unit(cross(direction, ACROSS));

@@ -1,11 +1,13 @@
-//! Corners of facets -> shared vertices: first those that are equal, then, where that leaves open edges, those that are near.
+//! Corners of facets -> shared vertices: first those that are equal, then, where that leaves open
+//! edges, those that are near.
 
 use super::boxes::{Bounds, Tree};
 use super::mesh::{Edges, Mesh};
 use super::sets::Sets;
 use super::vector::{Point, distance, mean};
 
-/// Corners farther apart than this share of the diagonal of the bounding box are never taken for one.
+/// Corners farther apart than this share of the diagonal of the bounding box are never taken for
+/// one.
 pub(super) const LARGEST_TOLERANCE: f64 = 3e-5;
 
 /// The tolerances that are tried, as shares of the diagonal.
@@ -14,8 +16,8 @@ const TOLERANCES: [f64; 8] = [1e-8, 3e-8, 1e-7, 3e-7, 1e-6, 3e-6, 1e-5, LARGEST_
 /// With more near pairs than this for each vertex, the tolerance is too large for the surface.
 const MOST_NEIGHBOURS: usize = 16;
 
-/// Welds corners that are equal (0.0 and -0.0 are). Vertices are sorted by their coordinates, so that the result does not depend
-/// on the order of the facets, except that triangle i is facet i.
+/// Welds corners that are equal (0.0 and -0.0 are). Vertices are sorted by their coordinates, so
+/// that the result does not depend on the order of the facets, except that triangle i is facet i.
 pub(super) fn equal_corners(facets: &[[Point; 3]]) -> Mesh {
     let slots = (2 * facets.len()).next_power_of_two().max(16);
     let mut table = vec![u32::MAX; slots];
@@ -46,7 +48,8 @@ pub(super) fn equal_corners(facets: &[[Point; 3]]) -> Mesh {
     mesh
 }
 
-/// The slot of the hash table (a power of two long) that holds the vertex equal to `point`, or the empty one where it belongs.
+/// The slot of the hash table (a power of two long) that holds the vertex equal to `point`, or the
+/// empty one where it belongs.
 fn find_slot(table: &[u32], vertices: &[Point], point: &Point) -> usize {
     let mut hash = 0_u64;
     for x in point {
@@ -69,8 +72,9 @@ pub(super) struct Welded {
     pub(super) tolerance: f64,
 }
 
-/// Welds vertices of open edges that are near each other, with growing tolerance, until no edge is open; `None` when that closes
-/// no edge. Of several tolerances that leave as many open edges, the smallest is taken. Some triangles may lose their area.
+/// Welds vertices of open edges that are near each other, with growing tolerance, until no edge is
+/// open; `None` when that closes no edge. Of several tolerances that leave as many open edges, the
+/// smallest is taken. Some triangles may lose their area.
 pub(super) fn near_vertices(mesh: &mut Mesh, edges: &Edges, diagonal: f64) -> Option<Welded> {
     let mut at_bad_edge: Vec<u32> = edges
         .groups()
@@ -116,8 +120,9 @@ struct Clusters {
 /// Very many vertices lie within a tolerance of each other.
 struct TooDense;
 
-/// Clusters of those of `vertices` that lie within `tolerance` of each other. `None` when there are none, or one is much wider than
-/// that: then the distances between neighbouring vertices of the surface are no larger than the tolerance.
+/// Clusters of those of `vertices` that lie within `tolerance` of each other. `None` when there are
+/// none, or one is much wider than that: then the distances between neighbouring vertices of the
+/// surface are no larger than the tolerance.
 fn clusters_within(
     mesh: &Mesh,
     vertices: &[u32],
@@ -171,7 +176,8 @@ fn clusters_within(
 }
 
 impl Clusters {
-    /// Edges that will have an odd number of facets, not counting triangles of which two corners become one.
+    /// Edges that will have an odd number of facets, not counting triangles of which two corners
+    /// become one.
     fn bad_edges(&self, mesh: &Mesh) -> usize {
         let joined = mesh
             .triangles

@@ -62,7 +62,8 @@ fn other_files_cut_off_anywhere_never_break_the_reader() {
             every_reader(&bytes[..end]);
         }
     }
-    // The counts at its head show where a LAMMPS file is cut; within its last number the missing line break does.
+    // The counts at its head show where a LAMMPS file is cut; within its last number the missing
+    // line break does.
     let bytes = lammps_bytes();
     for end in 0..bytes.len() {
         assert!(lammps::read(&mut &bytes[..end]).is_err(), "{end}");
@@ -72,7 +73,8 @@ fn other_files_cut_off_anywhere_never_break_the_reader() {
 type Write = fn(&Body, &mut dyn std::io::Write) -> std::io::Result<()>;
 type Read = fn(&mut dyn std::io::BufRead, &mut dyn std::io::BufRead) -> dem_io::Result<Body>;
 
-/// Tables do not say how long they are. A cut shows within a line, and where a bond names a particle that is gone.
+/// Tables do not say how long they are. A cut shows within a line, and where a bond names a
+/// particle that is gone.
 #[test]
 fn tables_cut_off_are_refused_unless_whole_bonds_are_missing() {
     let kinds: [(Write, Write, Read); 2] = [

@@ -1,4 +1,5 @@
-//! Any bytes through every reader of bodies. Used by the tests here and by the fuzz target `read_body`.
+//! Any bytes through every reader of bodies. Used by the tests here and by the fuzz target
+//! `read_body`.
 
 use dem_io::body::{csv, lammps, txt, vtp};
 use dem_io::{Body, Result};

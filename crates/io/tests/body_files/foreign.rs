@@ -1,4 +1,5 @@
-//! Files as other programs write them. The vtk-*.vtp beside this file were written by VTK 9.7 (vtkXMLPolyDataWriter).
+//! Files as other programs write them. The vtk-*.vtp beside this file were written by VTK 9.7
+//! (vtkXMLPolyDataWriter).
 
 use dem_io::body::{csv, lammps, txt, vtp};
 use dem_io::{Body, Result};

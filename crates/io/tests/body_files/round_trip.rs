@@ -50,8 +50,9 @@ proptest! {
     }
 }
 
-/// A reader of its own for this layout, as plain as the format allows: header by text search, arrays by their offset.
-/// (The crate vtkio cannot take its place: as published it reads appended data in base64 only.)
+/// A reader of its own for this layout, as plain as the format allows: header by text search,
+/// arrays by their offset. (The crate vtkio cannot take its place: as published it reads appended
+/// data in base64 only.)
 #[test]
 fn an_independent_reader_sees_the_same() {
     let body = triangle();

@@ -1,8 +1,10 @@
-//! What must hold for any bytes given to the STL reader. Shared by the fuzz target and the bounded run of the ordinary tests.
+//! What must hold for any bytes given to the STL reader. Shared by the fuzz target and the bounded
+//! run of the ordinary tests.
 
 use dem_io::surface::{ReadSettings, surface_from_stl};
 
-/// Reads `bytes` as an STL, with and without the filling of holes: either a message, or a surface that is closed and finite.
+/// Reads `bytes` as an STL, with and without the filling of holes: either a message, or a surface
+/// that is closed and finite.
 pub(crate) fn read_stl(bytes: &[u8]) {
     for fill_holes in [false, true] {
         match surface_from_stl(
@@ -28,7 +30,8 @@ pub(crate) fn read_stl(bytes: &[u8]) {
     }
 }
 
-/// Every number finite, coordinates as documented, every edge run along as often forwards as backwards, shells one after another.
+/// Every number finite, coordinates as documented, every edge run along as often forwards as
+/// backwards, shells one after another.
 pub(crate) fn assert_solid(surface: &dem_io::Surface) {
     let extent = surface.extent();
     assert!(

@@ -707,7 +707,8 @@ fn values_in_words() {
     }
 }
 
-/// Where things can touch, all that says how is said, with its defaults; where nothing can, only what is asked.
+/// Where things can touch, all that says how is said, with its defaults; where nothing can, only
+/// what is asked.
 #[test]
 fn words_on_contacts() {
     let said = |scene: &Scene| -> Vec<String> {

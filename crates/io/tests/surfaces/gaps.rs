@@ -3,7 +3,8 @@
 use super::solids::{self, Facet, ascii, binary, block};
 use super::{FILL, METRES, assert_same_solid, assert_volume, read, refusal};
 
-/// A box whose upper face has one more vertex, in the middle of an edge that the side face does not split.
+/// A box whose upper face has one more vertex, in the middle of an edge that the side face does not
+/// split.
 pub(crate) fn block_with_t_junction() -> Vec<Facet> {
     let mut facets = block([0.0; 3], [20.0, 12.0, 10.0]);
     let on_top = |p: &[f64; 3]| p[2] == 10.0;
@@ -42,7 +43,8 @@ fn t_junctions_are_closed_and_reported() {
 
 #[test]
 fn faces_split_differently_on_both_sides_of_every_edge_close() {
-    // Each face of the box is a grid of its own fineness, so that hardly any vertex on an edge has a partner.
+    // Each face of the box is a grid of its own fineness, so that hardly any vertex on an edge has
+    // a partner.
     let facets = solids::block_of_grids([20.0, 12.0, 10.0], [2, 3, 5, 7, 4, 1]);
     let surface = read(&binary(&facets), METRES);
     assert!((surface.volume_m3() / 2400.0 - 1.0).abs() < 1e-5);

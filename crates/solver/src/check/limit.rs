@@ -84,7 +84,7 @@ pub struct Bound {
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
 /// same. Contacts count at the overlap that they have, stuck. The wrenches of particles that move
-/// by themselves are overwritten; spheres of clumps have none afterwards.
+/// by themselves are overwritten; spheres of clumps and the damping of bonds have none afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
@@ -111,7 +111,7 @@ pub fn limit(state: &mut State) -> Limit {
         step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
         ..of_particles
     };
-    forget_wrenches_of_clumps(state);
+    clear_trial_wrenches(state);
     limit
 }
 
@@ -128,7 +128,7 @@ pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
         is_damped,
     };
     let step_s = of_particles.with_more(clump_rates(state, contacts));
-    forget_wrenches_of_clumps(state);
+    clear_trial_wrenches(state);
     Bound { step_s, is_damped }
 }
 
@@ -145,11 +145,12 @@ fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
     !state.scratch.bond_resistance.is_empty() || !contacts.is_empty()
 }
 
-/// Those of other particles begin anew in each step; what acts on spheres of clumps is added to
-/// what is there.
-fn forget_wrenches_of_clumps(state: &mut State) {
+/// Clears what the search left in wrenches that are read or added to before a step begins them
+/// anew: those of the spheres of clumps and those of the damping of bonds.
+fn clear_trial_wrenches(state: &mut State) {
     let free = state.particles.free;
     state.particles.wrenches[free..].fill(Wrench::default());
+    state.scratch.bond_resistance.fill(Wrench::default());
 }
 
 /// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
@@ -162,8 +163,8 @@ fn not_too_long(step_s: f64, value: f64) -> f64 {
     }
 }
 
-/// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2 +
-/// 4 k))/k, written so that nothing cancels. It is the limit where both belong to the same mode.
+/// A step that is never too long, from the largest eigenvalues of M^-1 K and M^-1 C: (-c + sqrt(c^2
+/// + 4 k))/k, written so that nothing cancels. It is the limit where both belong to the same mode.
 pub fn safe_step(k: f64, c: f64) -> f64 {
     4.0 / (c + (c * c + 4.0 * k).sqrt())
 }

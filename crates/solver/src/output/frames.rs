@@ -39,7 +39,7 @@ impl FrameOrder {
             bonds: Vec::new(),
             start: Vec::new(),
             place_of: vec![0_u32; state.particles.len()],
-            changes: !(state.clumps.templates.is_empty() && state.model.rules.are_none()),
+            changes: state.bodies_change(),
         };
         let templates = state.clumps.templates.iter().map(|t| &t.body);
         let names: BTreeSet<&String> = bodies.iter().map(|b| &b.name).chain(templates).collect();

@@ -236,7 +236,7 @@ impl PopulationSummary {
     pub fn of(state: &State) -> Option<Self> {
         let (rules, clumps) = (&state.model.rules, &state.clumps);
         let population = &state.population;
-        if clumps.templates.is_empty() && rules.are_none() {
+        if !state.bodies_change() {
             return None;
         }
         let is_single = |clump: &&Clump| clumps.template(clump).spheres.len() == 1;

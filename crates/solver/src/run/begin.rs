@@ -46,8 +46,6 @@ pub(super) struct Run<'a> {
     pub(super) is_checkpoint_due: bool,
     /// When the last checkpoint was written.
     pub(super) saved: Instant,
-    /// Of what the plan fixed.
-    pub(super) fingerprint: u64,
     /// What the plan says that the summary repeats.
     pub(super) planned: Planned,
     pub(super) first_step: u64,
@@ -87,7 +85,6 @@ impl<'a> Run<'a> {
             ..
         } = plan;
         place_watches(&probes, &mut state);
-        let fingerprint = fingerprint(&state)?;
         // Of the bonds at the start, be they broken since or not.
         let mut order = FrameOrder::new(&bodies, &state);
         let of_pictures = settings.folder.and(Order::of(scene, &state));
@@ -96,33 +93,41 @@ impl<'a> Run<'a> {
         let mut progress = Progress::new(schedule, &choice);
         let limits = Limits::of(scene, &state, &choice);
         let mut changed_step = None;
-        let resumed = settings.resume.take();
+        let fingerprint = (settings.folder.map(|_| fingerprint(&state))).transpose()?;
+        let resumed = settings.resume.take().zip(fingerprint);
         let is_continued = resumed.is_some();
-        if let Some(snapshot) = resumed {
+        if let Some((snapshot, fingerprint)) = resumed {
             let place = settings
                 .folder
                 .map(|f| f.checkpoint().display().to_string());
             snapshot
                 .check_scene(&scene.describe())
-                .and_then(|()| snapshot.restore(&mut state, &mut bodies))
+                .and_then(|()| snapshot.restore(fingerprint, &mut state, &mut bodies))
                 .map_err(|error| error.within(&place.unwrap_or_default()))?;
             progress = snapshot.progress;
             progress.go_on(&state, schedule, scene)?;
             for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
                 probe.history = history;
             }
-            if !(state.clumps.templates.is_empty() && state.model.rules.are_none()) {
+            if state.bodies_change() {
                 renumber_probes(&mut probes, &[], &bodies, &mut state);
                 order = FrameOrder::new(&bodies, &state);
             }
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
         let mut files = None;
-        if let Some(folder) = settings.folder {
+        if let Some((folder, fingerprint)) = settings.folder.zip(fingerprint) {
             let columns = series::columns(scene.walls.keys(), &probes);
             let continued = is_continued.then_some(&progress);
             let has_fragments = state.clusters.is_some();
-            let mut open = Files::open(folder, order, &columns, has_fragments, continued)?;
+            let mut open = Files::open(
+                folder,
+                fingerprint,
+                order,
+                &columns,
+                has_fragments,
+                continued,
+            )?;
             if let Some(order) = of_pictures {
                 let continued = is_continued.then_some((&state, progress.pictures));
                 open.pictures = Some(Pictures::open(folder, order, continued)?);
@@ -146,7 +151,6 @@ impl<'a> Run<'a> {
             files,
             is_checkpoint_due: false,
             saved: began,
-            fingerprint,
             planned: Planned {
                 stages: plan.stages,
                 masses: plan.masses,

@@ -16,6 +16,8 @@ use crate::state::bodies::PlacedBody;
 /// Files that grow during a run.
 pub(super) struct Files<'a> {
     pub(super) folder: &'a ResultsFolder,
+    /// Of what the plan fixed: see [`super::snapshot::fingerprint`].
+    fingerprint: u64,
     pub(super) series: SeriesFile,
     pub(super) events: EventFile,
     pub(super) frames: FrameFiles,
@@ -30,6 +32,7 @@ impl<'a> Files<'a> {
     /// New files, or those of a run that is `continued` where it stood.
     pub(super) fn open(
         folder: &'a ResultsFolder,
+        fingerprint: u64,
         order: FrameOrder,
         columns: &[String],
         has_fragments: bool,
@@ -53,6 +56,7 @@ impl<'a> Files<'a> {
         };
         Ok(Self {
             folder,
+            fingerprint,
             series,
             events,
             frames,
@@ -68,7 +72,6 @@ pub(super) fn save(
     state: &State,
     bodies: &[PlacedBody],
     scene: &Scene,
-    fingerprint: u64,
     probes: &[Probe],
     progress: &mut Progress,
     files: &mut Files<'_>,
@@ -90,7 +93,7 @@ pub(super) fn save(
         state,
         bodies,
         scene.describe(),
-        fingerprint,
+        files.fingerprint,
         measures,
         progress.clone(),
     );

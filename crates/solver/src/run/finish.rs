@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::pictures::{Order, Pictures};
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
+use super::snapshot::fingerprint;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
 use crate::output::fragments::{write_fragment_plots, write_tree};
@@ -98,7 +99,8 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     );
     snapshot
         .check_scene(&scene.describe())
-        .and_then(|()| snapshot.restore(&mut state, &mut bodies))
+        .and_then(|()| fingerprint(&state))
+        .and_then(|fingerprint| snapshot.restore(fingerprint, &mut state, &mut bodies))
         .map_err(|error| error.within(&folder.checkpoint().display().to_string()))?;
     if progress.is_over(&state, rhythm, scene).is_none() {
         return Ok(None);

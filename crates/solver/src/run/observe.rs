@@ -296,15 +296,7 @@ impl Run<'_> {
             return Ok(());
         };
         let (state, bodies, probes) = (&self.state, &self.bodies, &self.probes);
-        save(
-            state,
-            bodies,
-            self.scene,
-            self.fingerprint,
-            probes,
-            &mut self.progress,
-            files,
-        )
+        save(state, bodies, self.scene, probes, &mut self.progress, files)
     }
 
     /// How a run ends that does not come to its end.

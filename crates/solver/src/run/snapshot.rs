@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use dem_io::body::files::body_files;
-use dem_io::hash::fnv1a;
+use dem_io::hash::Fnv1a;
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
@@ -139,12 +139,18 @@ impl<'a> Snapshot<'a> {
         ))
     }
 
-    /// Puts a state that has been planned from the same scene where the run stood.
+    /// Puts a state that has been planned from the same scene, and has this [`fingerprint`], where
+    /// the run stood.
     ///
     /// # Errors
     /// The scene's bodies or bonds are others than those of the run.
-    pub fn restore(&self, state: &mut State, bodies: &mut Vec<PlacedBody>) -> Result<()> {
-        let is_same = self.fingerprint == fingerprint(state)?;
+    pub fn restore(
+        &self,
+        fingerprint: u64,
+        state: &mut State,
+        bodies: &mut Vec<PlacedBody>,
+    ) -> Result<()> {
+        let is_same = self.fingerprint == fingerprint;
         let planned = std::mem::take(&mut state.model);
         let restored = self.state.clone().into_owned();
         let restored = restored.rebuilt(planned, state.scratch.threads);
@@ -168,8 +174,8 @@ fn other_bodies() -> Diagnostic {
 /// None in practice (exit code 1).
 pub fn fingerprint(planned: &State) -> Result<u64> {
     let parts = (&planned.model, &planned.particles, &planned.bonds);
-    let bytes = postcard::to_stdvec(&parts).map_err(|error| fault(&error))?;
-    Ok(fnv1a(&bytes))
+    let hash = postcard::to_io(&parts, Fnv1a::default()).map_err(|error| fault(&error))?;
+    Ok(hash.0)
 }
 
 fn fault(error: &postcard::Error) -> Diagnostic {

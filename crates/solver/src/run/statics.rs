@@ -151,7 +151,7 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
             ),
             "load it less; or see what it does then with run.integrator = \"leapfrog\"",
         ),
-        Cause::ContactHistory => Diagnostic::failed(
+        Cause::Memory => Diagnostic::failed(
             place,
             "the factors of the stiffness do not fit into memory",
             "use fewer particles, or run.integrator = \"leapfrog\"",

@@ -17,7 +17,6 @@ use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
-use crate::state::partitions::divide;
 use crate::state::walls::Wall;
 
 /// Makes the changes. The clumps that come get their numbers among the clusters.
@@ -332,10 +331,6 @@ fn count_anew(
     is_new: &[Option<u8>],
 ) {
     let count = state.particles.len();
-    // The next step computes them before it needs them.
-    if state.bonds.rules.iter().any(|rule| rule.damped) {
-        state.scratch.bond_resistance = vec![Wrench::default(); state.particles.free];
-    }
     renumber(&mut state.unsearched, bonds);
     for support in &mut state.supports {
         support.held.retain_mut(|held| {
@@ -346,7 +341,8 @@ fn count_anew(
     for load in &mut state.loads {
         renumber(&mut load.particles, particles);
     }
-    state.scratch.partitions = divide(&state.bonds, state.particles.free, state.scratch.threads);
+    // The next step computes damping forces before it needs them.
+    state.divide();
     for wall in &mut state.walls {
         wall.near.clear();
         wall.touching.retain_mut(|touch| {

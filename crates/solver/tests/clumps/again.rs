@@ -190,7 +190,9 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
             ..
         } = plan.clone();
         let snapshot = Snapshot::from_bytes(bytes).unwrap();
-        snapshot.restore(&mut again, &mut again_bodies).unwrap();
+        snapshot
+            .restore(number, &mut again, &mut again_bodies)
+            .unwrap();
         assert_eq!(again.steps, *at);
         // Some to the end, and the others past what comes next.
         let last = if to_end.contains(why) {

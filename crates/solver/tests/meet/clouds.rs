@@ -202,7 +202,7 @@ fn a_cloud_taken_up_again_at_any_step_goes_on_to_the_same_bits() {
         let mut again = start.clone();
         Snapshot::from_bytes(&bytes)
             .unwrap()
-            .restore(&mut again, &mut Vec::new())
+            .restore(fingerprint, &mut again, &mut Vec::new())
             .unwrap();
         let mut on = state.clone();
         for _ in 0..20 {

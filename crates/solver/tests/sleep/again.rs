@@ -147,7 +147,7 @@ fn an_interruption_changes_nothing() {
             ..
         } = pile(2);
         let snapshot = Snapshot::from_bytes(bytes).unwrap();
-        snapshot.restore(&mut again, &mut bodies).unwrap();
+        snapshot.restore(print, &mut again, &mut bodies).unwrap();
         let from = again.steps;
         go_until(&mut again, END_S);
         assert!(same(&state, &again), "from step {from}");

@@ -96,3 +96,22 @@ fn a_start_of_zero_changes_nothing() {
     assert_eq!(with.particles.motions, without.particles.motions);
     assert_eq!(with.time_step_s, without.time_step_s);
 }
+
+/// The search for the longest stable step tries motions out; a balance before the first step knows
+/// nothing of them.
+#[test]
+fn a_plan_with_damped_bonds_has_the_energy_that_it_was_given() {
+    let speed_m_s = 0.3;
+    let text = PAIR.replace(
+        "radius_factor = 1",
+        "radius_factor = 1, damping = { damping_ratio = 0.2, per_mode = true }",
+    );
+    let text = format!(
+        "{text}run.end_time = 1e-3\n\
+         initial.one = {{ group = \"first\", velocity = [{speed_m_s}, 0, 0] }}\n\
+         initial.other = {{ group = \"second\", velocity = [-{speed_m_s}, 0, 0] }}\n"
+    );
+    let mut state = planned(&text).state;
+    let moving_j = MASS_KG * speed_m_s * speed_m_s;
+    assert_near(balance(&mut state).kinetic_j, moving_j, 1e-12);
+}

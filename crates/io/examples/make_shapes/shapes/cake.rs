@@ -8,8 +8,9 @@ const SEED: u64 = 5;
 /// Cells along x, y and z.
 const CELLS: [usize; 3] = [44, 30, 11];
 
-/// A plate of about 120 x 80 x 30 mm: the top and bottom as the filter press left them, slightly uneven; the four sides
-/// broken, slanted and rough, with chipped edges. It is a box of cells with its sides moved.
+/// A plate of about 120 x 80 x 30 mm: the top and bottom as the filter press left them, slightly
+/// uneven; the four sides broken, slanted and rough, with chipped edges. It is a box of cells with
+/// its sides moved.
 pub(crate) fn filter_cake() -> Mesh {
     let mut mesh = Mesh::default();
     let mut known = BTreeMap::new();
@@ -75,8 +76,8 @@ fn place(at: [usize; 3]) -> [f64; 3] {
     [x, y, bottom + w * (top - bottom)]
 }
 
-/// How far a broken side lies behind its plan line, mm: rough, and chipped along its upper and lower edge. `along` goes
-/// from 0 to 1 over `length` mm, `w` from 0 at the bottom to 1 at the top.
+/// How far a broken side lies behind its plan line, mm: rough, and chipped along its upper and
+/// lower edge. `along` goes from 0 to 1 over `length` mm, `w` from 0 at the bottom to 1 at the top.
 fn broken_mm(side: u64, along: f64, length: f64, w: f64) -> f64 {
     let place = along * length;
     let rough = 2.4

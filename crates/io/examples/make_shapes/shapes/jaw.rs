@@ -2,7 +2,8 @@
 
 use super::mesh::Mesh;
 
-/// Ribs side by side, how wide and how deep each is, how thick the plate behind them is, and how high all is, mm.
+/// Ribs side by side, how wide and how deep each is, how thick the plate behind them is, and how
+/// high all is, mm.
 const RIBS: u32 = 8;
 const WIDE: f64 = 20.0;
 const DEEP: f64 = 8.0;

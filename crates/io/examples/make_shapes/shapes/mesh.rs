@@ -76,7 +76,8 @@ impl Mesh {
     }
 }
 
-/// To 0.1 um, which hides that sine and cosine differ in their last bit between platforms; never -0.
+/// To 0.1 um, which hides that sine and cosine differ in their last bit between platforms; never
+/// -0.
 fn rounded_mm(length: f64) -> f64 {
     (length * 1e4).round() / 1e4 + 0.0
 }

@@ -1,5 +1,5 @@
-//! Seeded random numbers and gradient noise after Perlin (doi.org/10.1145/566654.566636), from integers and plain
-//! arithmetic only.
+//! Seeded random numbers and gradient noise after Perlin (doi.org/10.1145/566654.566636), from
+//! integers and plain arithmetic only.
 
 /// The SplitMix64 generator.
 pub(crate) struct Random(pub(crate) u64);
@@ -33,7 +33,8 @@ fn scramble(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Smooth noise with features of size 1, about -1 to 1, zero on average and at points with whole coordinates.
+/// Smooth noise with features of size 1, about -1 to 1, zero on average and at points with whole
+/// coordinates.
 pub(crate) fn noise(seed: u64, point: [f64; 3]) -> f64 {
     let cell = point.map(f64::floor);
     let within: [f64; 3] = std::array::from_fn(|k| point[k] - cell[k]);
@@ -67,7 +68,8 @@ fn slope(hash: u64, offset: [f64; 3]) -> f64 {
     u + v
 }
 
-/// Sum of `octaves` layers of noise, each of half the size and `fade` times the height of the one before.
+/// Sum of `octaves` layers of noise, each of half the size and `fade` times the height of the one
+/// before.
 pub(crate) fn layered(seed: u64, point: [f64; 3], octaves: u32, fade: f64) -> f64 {
     let mut sum = 0.0;
     let (mut scale, mut height) = (1.0, 1.0);

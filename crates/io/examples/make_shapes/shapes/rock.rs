@@ -4,7 +4,8 @@ use super::mesh::{Mesh, cross, dot, unit};
 use super::noise::{Random, layered};
 use std::collections::BTreeMap;
 
-/// A sphere of triangles: the icosahedron with every triangle cut in four `times` times, corners on the sphere.
+/// A sphere of triangles: the icosahedron with every triangle cut in four `times` times, corners on
+/// the sphere.
 pub(crate) fn ball(centre: [f64; 3], radius: f64, times: u32) -> Mesh {
     let mut mesh = directions(times);
     for vertex in &mut mesh.vertices {
@@ -65,8 +66,8 @@ fn cut_in_four(coarse: &Mesh) -> Mesh {
     fine
 }
 
-/// A rock about 40 mm long: an ellipsoid with layers of noise, broken flat on some sides. Every corner stays on its
-/// ray from the centre, so the surface is star-shaped and cannot cross itself.
+/// A rock about 40 mm long: an ellipsoid with layers of noise, broken flat on some sides. Every
+/// corner stays on its ray from the centre, so the surface is star-shaped and cannot cross itself.
 pub(crate) fn rock() -> Mesh {
     const SEED: u64 = 11;
     let mut random = Random(SEED);

@@ -3,8 +3,8 @@
 use super::mesh::{Mesh, cross, sub, unit};
 use std::f64::consts::TAU;
 
-/// Joins rings of as many corners into a tube; with `closed` the last is joined to the first. The corners go round
-/// clockwise, seen along the tube from its end.
+/// Joins rings of as many corners into a tube; with `closed` the last is joined to the first. The
+/// corners go round clockwise, seen along the tube from its end.
 fn join_rings(mesh: &mut Mesh, rings: &[Vec<u32>], closed: bool) {
     let pairs = if closed { rings.len() } else { rings.len() - 1 };
     for i in 0..pairs {
@@ -35,7 +35,8 @@ pub(crate) fn torus() -> Mesh {
     mesh
 }
 
-/// A C: three quarters of a flat ring with the radii 14 and 26 mm, 12 mm high, whose box centre lies in the opening.
+/// A C: three quarters of a flat ring with the radii 14 and 26 mm, 12 mm high, whose box centre
+/// lies in the opening.
 pub(crate) fn c_shape() -> Mesh {
     const STEPS: u32 = 90;
     let mut mesh = Mesh::default();
@@ -55,8 +56,8 @@ pub(crate) fn c_shape() -> Mesh {
     mesh
 }
 
-/// An infinity knot: a round tube 14 mm thick along (45 sin t, 20 sin 2t, 8 cos t) mm, which passes over itself with
-/// 2 mm of air between.
+/// An infinity knot: a round tube 14 mm thick along (45 sin t, 20 sin 2t, 8 cos t) mm, which passes
+/// over itself with 2 mm of air between.
 pub(crate) fn infinity_knot() -> Mesh {
     const STEPS: u32 = 240;
     const CORNERS: u32 = 30;
@@ -82,7 +83,8 @@ pub(crate) fn infinity_knot() -> Mesh {
     mesh
 }
 
-/// The disc of the Brazilian test: 50 mm across and 25 mm thick, with its axis along y and 96 sides, around the origin.
+/// The disc of the Brazilian test: 50 mm across and 25 mm thick, with its axis along y and 96
+/// sides, around the origin.
 pub(crate) fn disc() -> Mesh {
     const SIDES: u32 = 96;
     let mut mesh = Mesh::default();
@@ -105,8 +107,8 @@ pub(crate) fn disc() -> Mesh {
     mesh
 }
 
-/// A round biconvex tablet: 10 mm across, a band 2.4 mm high and on each side a dome of 1 mm, which is part of a sphere
-/// of 13 mm radius.
+/// A round biconvex tablet: 10 mm across, a band 2.4 mm high and on each side a dome of 1 mm, which
+/// is part of a sphere of 13 mm radius.
 pub(crate) fn tablet() -> Mesh {
     const RINGS: u32 = 16;
     let mut mesh = Mesh::default();
@@ -129,7 +131,8 @@ fn circle(mesh: &mut Mesh, corners: u32, radius: f64, z: f64) -> Vec<u32> {
         .collect()
 }
 
-/// Adds the upper (`side` = 1) or lower (-1) dome of the tablet, rings with 6, 12, 18 ... corners; returns its rim.
+/// Adds the upper (`side` = 1) or lower (-1) dome of the tablet, rings with 6, 12, 18 ... corners;
+/// returns its rim.
 fn dome(mesh: &mut Mesh, rings: u32, side: f64) -> Vec<u32> {
     let height = |radius: f64| side * (1.2 + (169.0 - radius * radius).sqrt() - 12.0);
     let first_triangle = mesh.triangles.len();

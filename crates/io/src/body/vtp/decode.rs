@@ -222,7 +222,8 @@ pub(super) fn skip(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
     }
 }
 
-/// The bytes of one array in base64: its size in bytes, then its values. Text after its end is not looked at.
+/// The bytes of one array in base64: its size in bytes, then its values. Text after its end is not
+/// looked at.
 pub(super) fn base64_array(text: &[u8], header_bytes: usize) -> Result<Vec<u8>> {
     let header = base64(text, header_bytes)?;
     let bytes = array_bytes(&mut header.as_slice(), header_bytes)?;

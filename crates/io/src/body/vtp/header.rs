@@ -27,7 +27,8 @@ pub(super) enum Role {
     Offsets,
     BondRadii,
     BondLengths,
-    /// Of the frames of a run: the fragment of each particle, its density, and which bonds are broken.
+    /// Of the frames of a run: the fragment of each particle, its density, and which bonds are
+    /// broken.
     Clusters,
     Densities,
     Broken,

@@ -17,9 +17,10 @@ use crate::diagnostic::{Diagnostic, Result};
 
 /// Reads a body from a .vtp file, which ends with the input.
 ///
-/// Files of other programs are read too, in any encoding without compression, if each line has two points and there is
-/// point data `radius`. Without cell data `bond_radius` a bond is as thick as the smaller of its particles;
-/// without `bond_initial_length` it is as long as its particles are apart. Further arrays are left out.
+/// Files of other programs are read too, in any encoding without compression, if each line has two
+/// points and there is point data `radius`. Without cell data `bond_radius` a bond is as thick as
+/// the smaller of its particles; without `bond_initial_length` it is as long as its particles are
+/// apart. Further arrays are left out.
 ///
 /// # Errors
 /// Damaged or cut off, a later version, compressed, wrong counts, or not a body by [`Body::check`].
@@ -304,7 +305,8 @@ fn to_appended_data(input: &mut dyn BufRead) -> Result<()> {
     }
 }
 
-/// The elements that are open at the appended data must be closed: a file that was cut off shows it here at the latest.
+/// The elements that are open at the appended data must be closed: a file that was cut off shows it
+/// here at the latest.
 fn check_end(end: &[u8]) -> Result<()> {
     let closed = String::from_utf8_lossy(end)
         .split_ascii_whitespace()

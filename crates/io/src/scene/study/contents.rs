@@ -117,8 +117,8 @@ pub enum MeasureOf {
     Measure(String),
     /// `test_result`: a result of the scene's laboratory test.
     Figure(String),
-    /// `fragment_masses`: how many pieces there are, and how far the distribution of their masses is from
-    /// that of the finest run.
+    /// `fragment_masses`: how many pieces there are, and how far the distribution of their masses
+    /// is from that of the finest run.
     Masses(Pieces),
     /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is
     /// from that of the finest run.

@@ -28,14 +28,14 @@ pub enum WallMotion {
     Displacement {
         /// Of the pivot, m. Length 3.
         displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `angular_displacement = { axis, angle }` as a rotation vector, rad.
-        /// Length 3.
+        /// About the pivot, which moves along: `angular_displacement = { axis, angle }` as a
+        /// rotation vector, rad. Length 3.
         angular_displacement_rad: [f64; 3],
         /// On both, over time.
         factor: Factor,
     },
-    /// `servo = { force, direction, max_velocity }`, with `ramp` or `table`: moves along `direction`
-    /// such that it exerts a given force.
+    /// `servo = { force, direction, max_velocity }`, with `ramp` or `table`: moves along
+    /// `direction` such that it exerts a given force.
     Servo {
         /// `force`: force to exert along `direction`, N; below 0 against it.
         force_n: f64,

@@ -60,7 +60,8 @@ pub trait ContactWork<T: Number> {
 
 impl ContactKind {
     /// Does something with the law and the rolling friction of this kind. `all` makes numbers of
-    /// the formulas from plain ones: one for each of several contacts at once, or the number itself.
+    /// the formulas from plain ones: one for each of several contacts at once, or the number
+    /// itself.
     #[inline(always)]
     pub fn with<T: Number, W: ContactWork<T>>(
         &self,

@@ -32,7 +32,7 @@ pub enum NoFactor {
     /// that is not symmetric, singular.
     Pivot,
     /// They do not fit into memory.
-    ContactHistory,
+    Memory,
 }
 
 impl Factor {
@@ -43,12 +43,12 @@ impl Factor {
     pub fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
         let pattern = pattern(matrix);
         if !matrix.symmetric {
-            let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::ContactHistory)?;
+            let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::Memory)?;
             return Ok(Self::Gauss(symbolic, None));
         }
         let usual = (Default::default(), Default::default());
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, usual.0, usual.1);
-        let symbolic = symbolic.map_err(|_| NoFactor::ContactHistory)?;
+        let symbolic = symbolic.map_err(|_| NoFactor::Memory)?;
         Ok(Self::Cholesky(symbolic, Vec::new()))
     }
 
@@ -71,12 +71,12 @@ impl Factor {
                 if entries.is_empty() {
                     let needed = symbolic.len_val();
                     let got = entries.try_reserve_exact(needed);
-                    got.map_err(|_| NoFactor::ContactHistory)?;
+                    got.map_err(|_| NoFactor::Memory)?;
                     entries.resize(needed, 0.0);
                 }
                 let room =
                     symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-                let mut room = MemBuffer::try_new(room).map_err(|_| NoFactor::ContactHistory)?;
+                let mut room = MemBuffer::try_new(room).map_err(|_| NoFactor::Memory)?;
                 let done = symbolic.factorize_numeric_llt(
                     entries,
                     values,
@@ -97,7 +97,7 @@ impl Factor {
                 let new = Lu::try_new_with_symbolic(symbolic.clone(), values);
                 *factors = Some(new.map_err(|error| match error {
                     faer::sparse::linalg::LuError::SymbolicSingular { .. } => NoFactor::Pivot,
-                    faer::sparse::linalg::LuError::Generic(_) => NoFactor::ContactHistory,
+                    faer::sparse::linalg::LuError::Generic(_) => NoFactor::Memory,
                 })?);
                 Ok(())
             }

@@ -82,7 +82,7 @@ pub enum Cause {
     /// The steps do not come to an end.
     NoConvergence,
     /// The factors do not fit into memory.
-    ContactHistory,
+    Memory,
     /// It was told to stop.
     Interrupted,
 }
@@ -132,7 +132,7 @@ pub fn equilibrium(
     let symmetric = !freedoms.has_free_torques(state);
     let matrix = Matrix::pattern(state, &freedoms, symmetric);
     let out_of_memory = |_| Unsolved {
-        cause: Cause::ContactHistory,
+        cause: Cause::Memory,
         share: 0.0,
         residual: 1.0,
     };
@@ -161,7 +161,7 @@ pub fn equilibrium(
             Err(cause) => {
                 search.state.particles.poses = before;
                 by = 0.5 * (to - share);
-                let is_hopeless = matches!(cause, Cause::ContactHistory | Cause::Interrupted);
+                let is_hopeless = matches!(cause, Cause::Memory | Cause::Interrupted);
                 if is_hopeless || by < SMALLEST {
                     return Err(Unsolved {
                         cause,
@@ -269,7 +269,7 @@ impl Search<'_> {
             .assemble(bonds, &self.freedoms, &particles.poses);
         self.factor.compute(&self.matrix).map_err(|why| match why {
             NoFactor::Pivot => Cause::Pivot,
-            NoFactor::ContactHistory => Cause::ContactHistory,
+            NoFactor::Memory => Cause::Memory,
         })
     }
 
