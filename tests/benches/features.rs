@@ -160,7 +160,7 @@ angular_velocity = [1, 0, 0]
 {tables}"
         );
         let text = text.replace("RUN", run.trim_start_matches(", "));
-        let scene = dem_io::scene_from_text(&text, "bench.toml", &[]).expect("a good scene");
+        let scene = dem_scene::scene_from_text(&text, "bench.toml", &[]).expect("a good scene");
         let bodies = BTreeMap::from([("cake".to_owned(), body.clone())]);
         plan(&scene, bodies, 1, false).expect("plans").state
     }

@@ -78,7 +78,7 @@ fn packed(diameters: &str) -> Body {
 
 fn state(body: &Body, damping: &str, threads: usize) -> State {
     let text = SCENE.replace("DAMPING", damping);
-    let scene = dem_io::scene_from_text(&text, "bench.toml", &[]).expect("a good scene");
+    let scene = dem_scene::scene_from_text(&text, "bench.toml", &[]).expect("a good scene");
     let bodies = BTreeMap::from([("cake".to_owned(), body.clone())]);
     plan(&scene, bodies, threads, false).expect("plans").state
 }

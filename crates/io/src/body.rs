@@ -12,10 +12,11 @@ pub mod mass;
 mod parts;
 pub mod stored_frame;
 pub mod summary;
-pub(crate) mod table;
+mod table;
 pub mod txt;
 pub mod vtp;
 
-pub use files::{read_body, write_body};
+pub use files::{read_body, read_frame, write_body};
 pub use parts::{About, Body};
+pub use stored_frame::{StoredFragment, StoredFrame};
 pub use summary::{BodySummary, body_summary};

@@ -38,7 +38,7 @@ pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
 }
 
 /// Hash of the bytes of these parts, one after the other.
-pub(crate) fn fnv1a_of_parts(parts: &[&[u8]]) -> u64 {
+pub fn fnv1a_of_parts(parts: &[&[u8]]) -> u64 {
     let mut hash = Fnv1a::default();
     parts.iter().for_each(|part| hash.add(part));
     hash.0

@@ -20,7 +20,7 @@ use crate::text::{visible_json, visible_lines};
 const BUFFER_BYTES: usize = 1 << 16;
 
 /// How the names of temporary files begin.
-pub(crate) const UNFINISHED_PREFIX: &str = ".unfinished-";
+pub const UNFINISHED_PREFIX: &str = ".unfinished-";
 
 /// Letters and digits after it.
 const RANDOM: usize = 6;
@@ -432,7 +432,7 @@ fn remove_abandoned_files(folder: &Path) {
 ///
 /// # Errors
 /// Those of removing it. A file that cannot be opened or locked stays, without an error.
-pub(crate) fn remove_if_abandoned(path: &Path) -> io::Result<()> {
+pub fn remove_if_abandoned(path: &Path) -> io::Result<()> {
     if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
         return Ok(());
     }
@@ -455,7 +455,7 @@ fn usual_permissions() -> Option<Permissions> {
 }
 
 /// What went wrong when writing to `path`, for a person.
-pub(crate) fn explain(path: &Path, error: &io::Error) -> Diagnostic {
+pub fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
         ErrorKind::NotFound if !folder_of(path).exists() => no_folder_of(path),

@@ -34,7 +34,7 @@ pub struct Dimension {
 
 impl Dimension {
     /// "a length", "an angle".
-    pub(crate) fn named(&self) -> String {
+    pub fn named(&self) -> String {
         let vowel = self.name.starts_with(['a', 'e', 'i', 'o', 'u']);
         format!("{} {}", if vowel { "an" } else { "a" }, self.name)
     }

@@ -66,26 +66,28 @@ impl Values<'_> {
 }
 
 /// Points, lines of two points each, and the data of both.
-pub(crate) struct PolyData<'a> {
+pub struct PolyData<'a> {
     /// Number of points.
-    pub(crate) points: usize,
+    pub points: usize,
     /// Place of each point.
-    pub(crate) place: &'a dyn Fn(usize) -> [f64; 3],
+    pub place: &'a dyn Fn(usize) -> [f64; 3],
     /// Number of lines.
-    pub(crate) lines: usize,
+    pub lines: usize,
     /// The two points of each line.
-    pub(crate) ends: &'a dyn Fn(usize) -> [u32; 2],
-    pub(crate) point_data: &'a [NamedArray<'a>],
-    pub(crate) cell_data: &'a [NamedArray<'a>],
+    pub ends: &'a dyn Fn(usize) -> [u32; 2],
+    /// Arrays of the points.
+    pub point_data: &'a [NamedArray<'a>],
+    /// Arrays of the lines.
+    pub cell_data: &'a [NamedArray<'a>],
 }
 
 impl PolyData<'_> {
     /// Writes the file. `write_fields` writes the field data, with [`write_number`] and
-    /// [`write_text`].
+    /// `write_text`.
     ///
     /// # Errors
     /// Those of `out`.
-    pub(crate) fn write(
+    pub fn write(
         &self,
         out: &mut dyn Write,
         write_fields: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -192,12 +194,12 @@ impl<'a> Declaration<'a> {
 }
 
 /// The shortest text that reads back as the same number.
-pub(crate) fn exact(value: f64) -> String {
+pub fn exact(value: f64) -> String {
     format!("{value:e}")
 }
 
 /// A field of one number, unless it is not known.
-pub(crate) fn write_number(
+pub fn write_number(
     out: &mut dyn Write,
     kind: &str,
     name: &str,

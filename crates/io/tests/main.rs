@@ -3,7 +3,4 @@
 
 mod body_files;
 mod interrupted_write;
-mod results;
-mod scene;
-mod studies;
 mod surfaces;

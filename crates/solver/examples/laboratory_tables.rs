@@ -23,8 +23,8 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dem_io::study::read_study;
 use dem_io::units::significant;
+use dem_scene::study::read_study;
 use serde_json::Value;
 
 /// Packings over which a mean and its scatter are taken, unless a number is given: `--seed 1` to
@@ -678,7 +678,7 @@ fn thousands(value: &Value) -> String {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::panic)]
 
-    use dem_io::read_scene;
+    use dem_scene::read_scene;
 
     use super::*;
 

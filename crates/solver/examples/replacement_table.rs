@@ -17,7 +17,7 @@ use std::error::Error;
 use std::path::Path;
 use std::process::Command;
 
-use dem_io::study::Pieces;
+use dem_scene::study::Pieces;
 use dem_study::masses::{by_chance, distance, masses_kg};
 
 const WAYS: [(&str, &str); 3] = [

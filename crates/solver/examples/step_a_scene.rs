@@ -5,8 +5,8 @@
 //! ```
 #![allow(clippy::print_stdout, reason = "it prints what it measures")]
 
-use dem_io::{read_bodies, scene_from_text};
 use dem_run::{balance, plan, step};
+use dem_scene::{read_bodies, scene_from_text};
 
 const SCENE: &str = r#"
 version = 1

@@ -12,15 +12,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
-use dem_io::checkpoint::read_checkpoint;
 use dem_io::diagnostic::Kind;
 use dem_io::program::{Shell, print_completions, print_man_page};
-use dem_io::results::folder::refuse_inputs_among_results;
-use dem_io::results::{Existing, ResultsFolder, write_json};
 use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
-use dem_io::scene::{BodySource, Integrator, Scene, read_bodies};
 use dem_io::text::visible;
-use dem_io::{Body, Diagnostic, Result, read_scene};
+use dem_io::{Body, Diagnostic, Result};
+use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::refuse_inputs_among_results;
+use dem_results::{Existing, ResultsFolder, write_json};
+use dem_scene::read_scene;
+use dem_scene::{BodySource, Integrator, Scene, read_bodies};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;

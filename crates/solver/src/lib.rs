@@ -2,7 +2,7 @@
 //! -> results.
 //!
 //! ```
-//! use dem_io::{read_bodies, scene_from_text};
+//! use dem_scene::{read_bodies, scene_from_text};
 //! use dem_run::{plan, step};
 //!
 //! let text = r#"

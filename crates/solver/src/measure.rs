@@ -7,7 +7,7 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dem_io::scene::{Measure, Quantity, Statistic};
+use dem_scene::{Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
@@ -87,7 +87,7 @@ impl Measured {
 }
 
 /// The probes of a plan that has not been stepped.
-pub fn probes(scene: &dem_io::Scene, plan: &Plan) -> Vec<Probe> {
+pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
     let counts_from_start = |measure: &Measure| {
         matches!(
             measure.quantity,

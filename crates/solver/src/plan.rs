@@ -24,8 +24,8 @@ use std::sync::Arc;
 
 use dem_io::body::About;
 use dem_io::body::mass::BodyMass;
-use dem_io::scene::{Integrator, Quantity, Scene};
 use dem_io::{Body, Diagnostic, Result};
+use dem_scene::{Integrator, Quantity, Scene};
 
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;

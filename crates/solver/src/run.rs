@@ -18,7 +18,7 @@ pub mod snapshot;
 pub mod statics;
 
 use dem_io::Result;
-use dem_io::scene::{Integrator, Scene};
+use dem_scene::{Integrator, Scene};
 
 use crate::output::summary::Summary;
 use crate::plan::Plan;

@@ -17,7 +17,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     damped: false,
     criteria: None,
     strengthening_from_1_s: None,
-    rate_of: dem_io::scene::StrainRateMeasure::Elongation,
+    rate_of: dem_scene::StrainRateMeasure::Elongation,
 };
 
 /// All bond models, with the names of the reference values, which know no elastic solid bond.

@@ -30,7 +30,7 @@ use dem_run::step::step;
 use nalgebra::Vector3;
 
 use crate::helpers::scene;
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 /// The head of a scene: one material, which meets itself in this way, and bonds.
 pub(crate) const HEAD: &str = "version = 1

@@ -10,17 +10,18 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use dem_io::results::{Existing, ResultsFolder};
-use dem_io::scene::Scene;
-use dem_io::{Result, scene_from_text};
+use dem_io::Result;
+use dem_results::{Existing, ResultsFolder};
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
 use dem_run::state::clusters::{Clusters, Triggers};
+use dem_scene::Scene;
+use dem_scene::scene_from_text;
 use tempfile::TempDir;
 
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 /// Particles of the rod.
 pub(crate) const PARTICLES: usize = 60;

@@ -1,7 +1,7 @@
 //! What several subjects need: scenes of texts, their bodies, and random numbers.
 
-use dem_io::scene::Scene;
-use dem_io::scene_from_text;
+use dem_scene::Scene;
+use dem_scene::scene_from_text;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// The scene of a text that can be read.

@@ -5,11 +5,12 @@ mod scenes;
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{BodySource, Scene};
-use dem_io::{Body, Result, scene_from_text};
+use dem_io::{Body, Result};
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
 use dem_run::step::{number_of, stages, step};
+use dem_scene::scene_from_text;
+use dem_scene::{BodySource, Scene};
 
 /// A scene planned, its bodies read with `read`.
 fn planned_with(scene: &Scene, read: impl Fn(&str) -> Option<Body>) -> Result<Plan> {

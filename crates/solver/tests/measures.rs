@@ -8,7 +8,6 @@ mod whole;
 use std::collections::BTreeMap;
 
 use dem_io::Result;
-use dem_io::scene::Scene;
 use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::clumps::place_all;
@@ -17,9 +16,10 @@ use dem_run::state::State;
 use dem_run::state::bodies::PlacedBody;
 use dem_run::state::bodies::renumber;
 use dem_run::step::{drift, exchange, interact};
+use dem_scene::Scene;
 
 use crate::helpers::scene;
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 pub(crate) fn try_plan(scene: &Scene) -> Result<Plan> {
     plan(scene, read_bodies(scene).unwrap(), 1, true)

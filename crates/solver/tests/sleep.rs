@@ -15,7 +15,7 @@ use dem_run::step::step;
 use nalgebra::Vector3;
 
 use crate::helpers::scene;
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
 /// Of the scenes here.

@@ -10,7 +10,7 @@ mod rigid;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::Result;
-use dem_io::results::ResultsFolder;
+use dem_results::ResultsFolder;
 use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
@@ -19,7 +19,7 @@ use dem_run::state::State;
 use nalgebra::Vector3;
 
 use crate::helpers::scene;
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 /// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond is E A/L stiff with
 /// a radius of 1 mm.

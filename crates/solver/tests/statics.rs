@@ -10,13 +10,13 @@ mod small_loads;
 mod stability;
 mod supports;
 
-use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::run::statics::{Equilibrium, come_to_rest, equilibrium};
 use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
+use dem_scene::{Factor, Hold};
 use nalgebra::Vector3;
 
 use crate::bars::{ELASTIC, body, spheres, steel};

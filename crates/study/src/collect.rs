@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dem_io::scene::study::{MeasureOf, Reference, RunTime, Study};
+use dem_scene::study::{MeasureOf, Reference, RunTime, Study};
 use serde_json::Value;
 
 use super::curves::{curve, largest_n};

@@ -1,7 +1,7 @@
 //! From a study to its runs.
 
-use dem_io::scene::study::{Axis, Combine, Setting, Study};
 use dem_io::{Diagnostic, Result};
+use dem_scene::study::{Axis, Combine, Setting, Study};
 
 /// Most processes that are started without being asked twice.
 pub const MOST_UNASKED: u64 = 10_000;
@@ -138,7 +138,7 @@ pub fn group(study: &Study, run: &Run, along: usize) -> Vec<usize> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use dem_io::study::study_from_text;
+    use dem_scene::study::study_from_text;
 
     fn study(rest: &str) -> Study {
         let text = format!("version = 1\nscene = \"a.toml\"\n{rest}\n[measures.tip]\n");

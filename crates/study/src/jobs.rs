@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-use dem_io::results::folder::{is_locked, is_written_to};
-use dem_io::scene::study::{BODY, Study, override_text};
 use dem_io::{Diagnostic, Result};
+use dem_results::folder::{is_locked, is_written_to};
+use dem_scene::study::{BODY, Study, override_text};
 use serde_json::Value;
 
 use super::expand::Run;

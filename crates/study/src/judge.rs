@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::study::{MeasureOf, Reference, Study};
 use dem_io::units::significant;
+use dem_scene::study::{MeasureOf, Reference, Study};
 
 use super::curves;
 use super::expand::{Run, group};

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dem_io::scene::study::Pieces;
+use dem_scene::study::Pieces;
 
 /// What chance alone exceeds in one of twenty cases, times the root of 1/n + 1/m (Kolmogorov and
 /// Smirnov).

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::study::{Reference, Study};
+use dem_scene::study::{Reference, Study};
 
 use super::expand::{Run, group};
 use super::reference::{observed_order, richardson};

@@ -1,6 +1,6 @@
 //! What the table of a sweep holds.
 
-use dem_io::scene::study::Study;
+use dem_scene::study::Study;
 use serde::Serialize;
 
 /// Everything that came of a sweep. SI units.

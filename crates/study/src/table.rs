@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use dem_io::scene::study::{RunTime, Study};
+use dem_scene::study::{RunTime, Study};
 
 use super::expand::Run;
 use super::front::{Point, front};

@@ -1,6 +1,14 @@
-//! What the end-to-end tests of the programs share.
+//! What tests of several crates share.
 
-#![allow(clippy::unwrap_used, reason = "a test stops where it fails")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
+
+mod messages;
+
+pub use messages::{hold_messages, messages_of};
 
 use std::io::Write;
 use std::path::Path;

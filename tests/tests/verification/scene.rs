@@ -1,7 +1,7 @@
 //! Scenes of texts, and what is read from them as they run.
 
-use dem_io::{read_bodies, scene_from_text};
 use dem_run::{Plan, State, plan};
+use dem_scene::{read_bodies, scene_from_text};
 use nalgebra::Vector3;
 
 /// The plan of a scene, at any time step that it names.

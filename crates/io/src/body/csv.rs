@@ -10,8 +10,9 @@ use std::io::{self, BufRead, Write};
 
 use super::check::{check_different, check_particle, check_positive};
 use super::parts::{Body, Parts};
-use super::table::{Lines, float, in_table, on_line, particle, pick};
+use super::table::{in_table, particle, pick};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::lines::{Lines, float, on_line};
 
 const PARTICLE_COLUMNS: [&str; 4] = ["x_m", "y_m", "z_m", "radius_m"];
 const BOND_COLUMNS: [&str; 4] = [

@@ -6,6 +6,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use super::parts::Body;
+use super::stored_frame::StoredFrame;
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
@@ -159,6 +160,15 @@ pub fn read_body(path: &Path) -> Result<Body> {
         Storage::Csv(pair) => pair.read(csv::read),
         Storage::Txt(pair) => pair.read(txt::read),
     }
+}
+
+/// Reads a frame of a run.
+///
+/// # Errors
+/// No such file, damaged, or it tells of no fragments (all exit code 2).
+pub fn read_frame(path: &Path) -> Result<StoredFrame> {
+    let mut file = open(path)?;
+    vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
 /// Writes a body to `path`; `-` is a .vtp on standard output, whose reader may close it early.

@@ -12,8 +12,9 @@
 use std::io::{self, BufRead, Write};
 
 use super::parts::{Body, Parts};
-use super::table::{Lines, float, on_line, particle};
+use super::table::particle;
 use crate::diagnostic::{Diagnostic, Result};
+use crate::lines::{Lines, float, on_line};
 
 /// Density that is written if none is known, kg/m3. LAMMPS cannot do without.
 pub const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;

@@ -1,78 +1,7 @@
-//! Lines and words of text files, with messages that name the line.
-
-use std::io::{BufRead, Read};
+//! What the readers of tables of particles and bonds have in common.
 
 use crate::diagnostic::{Diagnostic, Result};
-
-/// Bytes of the longest line that is read; no table has one nearly as long.
-const LONGEST_LINE: u64 = 1 << 20;
-
-/// The lines of a text file, one at a time.
-pub(crate) struct Lines<'a> {
-    input: &'a mut dyn BufRead,
-    bytes: Vec<u8>,
-    number: u64,
-}
-
-impl<'a> Lines<'a> {
-    pub(crate) fn new(input: &'a mut dyn BufRead) -> Self {
-        Self {
-            input,
-            bytes: Vec::new(),
-            number: 0,
-        }
-    }
-
-    /// The next line without the white space around it, and its number, counted from 1.
-    ///
-    /// # Errors
-    /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line
-    /// break, too.
-    pub(crate) fn next(&mut self) -> Result<Option<(u64, &str)>> {
-        self.bytes.clear();
-        let mut some = Read::take(&mut *self.input, LONGEST_LINE);
-        let read = some.read_until(b'\n', &mut self.bytes);
-        if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
-            == 0
-        {
-            return Ok(None);
-        }
-        self.number += 1;
-        if self.bytes.len() as u64 == LONGEST_LINE {
-            let problem = format!("this line is longer than {LONGEST_LINE} bytes");
-            let error = Diagnostic::input("", problem, "write one particle or bond per line");
-            return Err(on_line(self.number, error));
-        }
-        if !self.bytes.ends_with(b"\n") {
-            return Err(on_line(
-                self.number,
-                Diagnostic::input(
-                    "",
-                    "the file ends within this line",
-                    "it may be cut off: make it again, or end its last line with a line break if nothing is missing",
-                ),
-            ));
-        }
-        // Spreadsheets put this mark at the beginning of a text.
-        let start = if self.number == 1 && self.bytes.starts_with(b"\xEF\xBB\xBF") {
-            3
-        } else {
-            0
-        };
-        match std::str::from_utf8(&self.bytes[start..]) {
-            Ok(text) => Ok(Some((self.number, text.trim()))),
-            Err(_) => Err(on_line(
-                self.number,
-                Diagnostic::input("", "this is not text", "save the file as plain text"),
-            )),
-        }
-    }
-}
-
-/// The same message, said of a line.
-pub(crate) fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
-    error.within(&format!("line {number}"))
-}
+use crate::lines::{missing, not_a_number};
 
 /// The same message about a particle or a bond of a body from two tables, said of its table.
 pub(super) fn in_table(error: Diagnostic) -> Diagnostic {
@@ -84,13 +13,6 @@ pub(super) fn in_table(error: Diagnostic) -> Diagnostic {
     } else {
         error
     }
-}
-
-/// The number that `word` is.
-pub(crate) fn float(word: Option<&str>, what: &str) -> Result<f64> {
-    let word = word.ok_or_else(|| missing(what))?;
-    word.parse()
-        .map_err(|_| not_a_number(word, what, "a number"))
 }
 
 /// The particle that `word` names, of so many, the first of which has the number `first`. Counted
@@ -116,15 +38,6 @@ pub(super) fn particle(
             );
             Diagnostic::input("", problem, "correct or remove this line")
         })
-}
-
-fn missing(what: &str) -> Diagnostic {
-    Diagnostic::input("", format!("{what} is missing"), "the line is incomplete")
-}
-
-fn not_a_number(word: &str, what: &str, wanted: &str) -> Diagnostic {
-    let problem = format!("{what} is '{}', not {wanted}", word.escape_debug());
-    Diagnostic::input("", problem, "numbers have a decimal point and no unit")
 }
 
 /// The words of `line` that stand in these columns.

@@ -10,8 +10,9 @@ use std::io::{self, BufRead, Write};
 
 use super::check::check_particle;
 use super::parts::{Body, Parts};
-use super::table::{Lines, float, in_table, on_line, particle};
+use super::table::{in_table, particle};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::lines::{Lines, float, on_line};
 
 /// Writes the file of the particles.
 ///

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 
-use dem_io::scene::{Scene, WallMotion};
+use dem_scene::{Scene, WallMotion};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::geometry::Shape;

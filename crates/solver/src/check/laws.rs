@@ -1,8 +1,8 @@
 //! Up to where the laws of bonds and contacts hold, and what says beforehand that a scene goes
 //! beyond.
 
-use dem_io::scene::Factor;
 use dem_io::units::{show_length, significant};
+use dem_scene::Factor;
 use nalgebra::Vector3;
 use std::ops::Range;
 

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use dem_io::Result;
 use dem_io::safe_write::{write_json_text, write_standard_output};
-use dem_io::scene::{Integrator, Scene};
 use dem_io::units::significant;
+use dem_scene::{Integrator, Scene};
 use serde_json::{Value, json};
 
 use crate::clock::StageClock;

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
-use dem_io::checkpoint::read_checkpoint;
-use dem_io::results::folder::{frame_in, frames_in, result_among};
-use dem_io::results::{StoredFragment, read_frame};
+use dem_io::body::{StoredFragment, read_frame};
 use dem_io::safe_write::{need_folder_of, refuse_input, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
-use dem_io::{Diagnostic, Result, read_scene};
+use dem_io::{Diagnostic, Result};
+use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::{frame_in, frames_in, result_among};
+use dem_scene::read_scene;
 use serde_json::Value;
 
 use crate::run::snapshot::Snapshot;

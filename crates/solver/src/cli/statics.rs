@@ -2,7 +2,7 @@
 
 use dem_io::Result;
 use dem_io::safe_write::{write_json_text, write_standard_output};
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 use serde_json::json;
 
 use super::check::size_text;

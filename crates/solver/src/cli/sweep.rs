@@ -5,15 +5,15 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::results::{write_json, write_plot_file};
 use dem_io::safe_write::{
     need_folder_of, refuse_input, write_file, write_standard_json, write_standard_output,
 };
-use dem_io::scene::text_of;
-use dem_io::study::{Combine, Study, read_study, reference_values, rewritten, scene_with};
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_results::{write_json, write_plot_file};
+use dem_scene::study::{Combine, Study, read_study, reference_values, rewritten, scene_with};
+use dem_scene::text_of;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Factor, Hold, Scene, Support, Test, TestKind, WallMotion};
 use dem_io::{Body, Diagnostic, Result};
+use dem_scene::{Factor, Hold, Scene, Support, Test, TestKind, WallMotion};
 
 use crate::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;

@@ -1,6 +1,6 @@
 //! From force and way to what a test is for: stiffness, modulus, strength, where the crack is.
 
-use dem_io::scene::{BondKind, Test};
+use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
 use super::record::{Record, Row};

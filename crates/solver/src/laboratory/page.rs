@@ -4,10 +4,10 @@
 use std::fmt::Write;
 
 use dem_io::Result;
-use dem_io::results::ResultsFolder;
-use dem_io::scene::Test;
 use dem_io::units::significant;
 use dem_plots::{Axis, Column, Line, Page, Plot, Svg, Table};
+use dem_results::ResultsFolder;
+use dem_scene::Test;
 
 use super::crack::{CrackPicture, crack_map};
 use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, play_m, rows_of, slope};

@@ -1,8 +1,8 @@
 //! A test during a run: what is known of its start, and what comes of it at its end.
 
 use dem_io::Result;
-use dem_io::results::ResultsFolder;
-use dem_io::scene::{Scene, Test};
+use dem_results::ResultsFolder;
+use dem_scene::{Scene, Test};
 
 use super::arrange::support_of;
 use super::crack::{CrackPicture, Sphere};

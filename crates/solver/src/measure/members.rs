@@ -1,6 +1,6 @@
 //! Which particles and clumps a name stands for while bodies come, go, and become others.
 
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 
 use crate::state::State;
 use crate::state::bodies::PlacedBody;

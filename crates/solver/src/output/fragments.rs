@@ -1,8 +1,8 @@
 //! What a run tells of the fragments of its bodies: tables, plots, and a line of the summary.
 
 use dem_io::Result;
-use dem_io::results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
 use dem_plots::{Axis, Line, Plot};
+use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
 use serde::Serialize;
 
 use crate::state::clusters::fragments::{mass_fraction_of_largest, size_distribution};

@@ -3,10 +3,8 @@
 use std::collections::BTreeSet;
 
 use dem_io::Result;
-use dem_io::results::stored_frame::{
-    BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS,
-};
-use dem_io::results::{Frame, FrameFiles, NamedArray, Values};
+use dem_io::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS};
+use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use crate::measure::{load, utilisation_under};
 use crate::physics::bond::BondLoad;

@@ -1,8 +1,8 @@
 //! Plots of the time series: energies together, errors together, every measure by itself.
 
 use dem_io::Result;
-use dem_io::results::{ResultsFolder, Series, read_series};
 use dem_plots::{Axis, Line, Plot};
+use dem_results::{ResultsFolder, Series, read_series};
 
 use super::fragments::{COUNT, SIZES};
 use super::series::ENERGIES;

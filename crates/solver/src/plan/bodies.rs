@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use dem_io::body::About;
 use dem_io::body::files::body_files;
 use dem_io::body::mass::volume_m3;
-use dem_io::scene::{
+use dem_io::{Body, Diagnostic, Result};
+use dem_scene::{
     BodyEntry, BodySource, BondKind, BondModel as SceneModel, ClumpMass, ClumpSettings,
     Formulation, Scene, StartAs, WholeMass,
 };
-use dem_io::{Body, Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::bond::damping::{DampingModel, reduced};

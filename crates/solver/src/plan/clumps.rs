@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use dem_io::scene::{BodyEntry, ClumpMass, Scene, StartAs, WallShape};
 use dem_io::{Body, Diagnostic, Result};
+use dem_scene::{BodyEntry, ClumpMass, Scene, StartAs, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::{place_body, stays_rigid};

@@ -3,10 +3,8 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::{
-    Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene,
-};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene};
 
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::law::ContactKind;

@@ -2,8 +2,8 @@
 //! what
 //! inlets will feed, and what of it speaks against running the scene as it stands.
 
-use dem_io::scene::{FeedRate, Scene};
 use dem_io::units::significant;
+use dem_scene::{FeedRate, Scene};
 use serde::Serialize;
 
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Initial, Scene};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Initial, Scene};
 use nalgebra::Vector3;
 
 use super::bodies::check_place;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dem_io::Body;
 use dem_io::hash::file_hash;
-use dem_io::scene::{BodySource, Scene, WallShape};
+use dem_scene::{BodySource, Scene, WallShape};
 use serde::{Serialize, Serializer};
 
 /// What was run.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use dem_io::body::About;
 use dem_io::body::inertia::MassProperties;
 use dem_io::body::mass::{BodyMass, percent_text};
-use dem_io::scene::{BodySource, Scene, WholeMass};
 use dem_io::units::significant;
+use dem_scene::{BodySource, Scene, WholeMass};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::rotation::numbers;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Measure, Quantity, Scene};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Measure, Quantity, Scene};
 
 use crate::state::State;
 

@@ -1,8 +1,8 @@
 //! How often a run writes: an interval with which it would fill the disk is refused.
 
-use dem_io::scene::Scene;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_scene::Scene;
 
 /// Most frames, and most pictures: each is a file.
 const MOST_FILES: f64 = 1e5;

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::walls::surface_of;

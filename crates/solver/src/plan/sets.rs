@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use dem_io::scene::{Pick, Scene};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Pick, Scene};
 
 use crate::state::bodies::PlacedBody;
 use crate::state::particles::Particles;

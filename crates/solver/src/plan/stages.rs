@@ -1,6 +1,6 @@
 //! What a step of a scene consists of, and what it leaves out and why.
 
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 
 use crate::stages::stage::{Need, Stage};
 use crate::stages::watching::OUTPUT;

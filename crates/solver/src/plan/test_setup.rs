@@ -1,9 +1,9 @@
 //! What stands where in a test: the dimensions that its formulas need, and the particles whose way
 //! is measured.
 
-use dem_io::scene::{Scene, Test, TestKind, Wall, WallShape};
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Scene, Test, TestKind, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::test_theory::Beam;

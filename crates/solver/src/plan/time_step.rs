@@ -1,8 +1,8 @@
 //! The time step of a run: the exact limit, what is chosen, and the estimates that others use
 //! beside it.
 
-use dem_io::scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
 use std::sync::Arc;
 
 use nalgebra::Vector3;

@@ -4,9 +4,9 @@ mod surface;
 
 use std::sync::Arc;
 
-use dem_io::scene::{InitialOverlap, Scene, Wall as SceneWall, WallShape};
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{InitialOverlap, Scene, Wall as SceneWall, WallShape};
 use nalgebra::Vector3;
 
 use super::contacts::{Kinds, ROUNDING};

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 
 use super::events::{change_step, new_step};
 use super::files::Files;

@@ -1,7 +1,7 @@
 //! The end of a run: its summary and its last files.
 
 use dem_io::Result;
-use dem_io::results::write_json;
+use dem_results::write_json;
 
 use super::begin::Run;
 use super::events::write_sleep;

@@ -1,7 +1,7 @@
 //! What is written to the table of events.
 
 use dem_io::Result;
-use dem_io::results::Event;
+use dem_results::Event;
 
 use super::files::Files;
 use crate::output::fragments::split_text;

@@ -1,9 +1,9 @@
 //! The files that grow during a run, and its checkpoints.
 
-use dem_io::checkpoint::write_checkpoint;
-use dem_io::results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
-use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
+use dem_results::checkpoint::write_checkpoint;
+use dem_results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
+use dem_scene::Scene;
 
 use super::pictures::Pictures;
 use super::progress::Progress;

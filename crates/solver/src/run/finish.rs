@@ -1,10 +1,10 @@
 //! What a run writes once it has ended, and how that is made up for where the run was killed in the
 //! midst of it.
 
-use dem_io::results::ResultsFolder;
 use dem_io::safe_write::write_file;
-use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
+use dem_results::ResultsFolder;
+use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::pictures::{Order, Pictures};

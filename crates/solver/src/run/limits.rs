@@ -1,8 +1,8 @@
 //! The limit of the time step while a run goes on: it falls as bonds stretch, as contacts are
 //! pressed, as particles become fast.
 
-use dem_io::scene::Scene;
 use dem_io::{Diagnostic, Result};
+use dem_scene::Scene;
 
 use super::events::{change, look_anew_for_near, new_step};
 use super::files::Files;

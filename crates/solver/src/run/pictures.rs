@@ -1,13 +1,13 @@
 //! When pictures are taken, and the film of them at the end.
 
 use dem_io::Result;
-use dem_io::results::{PictureFiles, ResultsFolder};
-use dem_io::scene::Scene;
 use dem_pictures::Image;
 use dem_pictures::film::{
     COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
 };
 use dem_pictures::png_file::{Compression, read_png, to_png};
+use dem_results::{PictureFiles, ResultsFolder};
+use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::schedule::{due, first_after, next};

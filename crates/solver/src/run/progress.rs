@@ -1,7 +1,7 @@
 //! Where a run stands besides its state: what is written next, and what has been seen.
 
-use dem_io::scene::{Factor, Scene, WallMotion};
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Factor, Scene, WallMotion};
 use serde::{Deserialize, Serialize};
 
 use super::pictures::Taken;

@@ -1,6 +1,6 @@
 //! When a run writes.
 
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::state::State;

@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use dem_io::scene::{Scene, StartAs};
 use dem_io::units::{show_length, significant};
+use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
 use crate::check::flight::{Flyer, Meeting, can_meet, flyers};

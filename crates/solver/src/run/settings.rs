@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use dem_io::results::ResultsFolder;
+use dem_results::ResultsFolder;
 
 use super::snapshot::Snapshot;
 use crate::laboratory::watch::TestSettings;

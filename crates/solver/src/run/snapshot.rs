@@ -18,7 +18,7 @@ use crate::state::bodies::PlacedBody;
 /// A run between two steps.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Snapshot<'a> {
-    /// The scene, as [`dem_io::Scene::describe`] tells it.
+    /// The scene, as [`dem_scene::Scene::describe`] tells it.
     scene: String,
     /// See [`fingerprint`].
     fingerprint: u64,

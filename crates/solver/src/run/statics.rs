@@ -23,9 +23,9 @@ pub use outlook::Outlook;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use dem_io::scene::Scene;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_scene::Scene;
 
 use crate::machine::processor_time_s;
 use crate::measure::{bond_utilisation, probes, read_probes};

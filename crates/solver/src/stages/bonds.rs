@@ -398,7 +398,7 @@ mod tests {
                 damped: false,
                 criteria: Some(criteria),
                 strengthening_from_1_s: None,
-                rate_of: dem_io::scene::StrainRateMeasure::Elongation,
+                rate_of: dem_scene::StrainRateMeasure::Elongation,
             }]),
             ..Bonds::default()
         };

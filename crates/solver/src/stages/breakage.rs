@@ -1,7 +1,7 @@
 //! Bonds that have reached their strength break: checked once more by themselves, with the rate of
 //! their elongation where it strengthens them.
 
-use dem_io::scene::StrainRateMeasure;
+use dem_scene::StrainRateMeasure;
 use nalgebra::Vector3;
 
 use super::bonds::bonds_to_come;

@@ -87,7 +87,7 @@ pub const ROLLING: Stage = Stage {
     within: Some(CONTACTS.name),
     need: |state, scene| {
         let mut contacts = scene.contacts.iter();
-        let rolls = contacts.any(|c| c.rolling != dem_io::scene::Rolling::None);
+        let rolls = contacts.any(|c| c.rolling != dem_scene::Rolling::None);
         Need::of(
             state.contacts.is_some() && rolls,
             || "materials have it".to_owned(),

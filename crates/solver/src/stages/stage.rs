@@ -1,7 +1,7 @@
 //! What a stage of the step says of itself. Each stands at the top of its own file; the order in
 //! which they are done stands in `step.rs`.
 
-use dem_io::scene::Scene;
+use dem_scene::Scene;
 
 use crate::state::State;
 

@@ -1,6 +1,6 @@
 //! Supports: degrees of freedom that are held or moved as prescribed, and what it takes to do so.
 
-use dem_io::scene::Hold;
+use dem_scene::Hold;
 
 use super::loads::on_particles;
 use super::stage::{NO_SAVING, Need, Stage};

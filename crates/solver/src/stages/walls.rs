@@ -1,6 +1,6 @@
 //! Walls: how they move, and their contacts with particles.
 
-use dem_io::scene::WallMotion;
+use dem_scene::WallMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 

@@ -11,7 +11,7 @@ use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::walls::{Wall, WallContact};
 use crate::state::watches::{Seen, Watch, Watched};
-use dem_io::scene::Quantity;
+use dem_scene::Quantity;
 
 /// Measures, files and pictures.
 pub const OUTPUT: Stage = Stage {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use dem_io::scene::StrainRateMeasure;
+use dem_scene::StrainRateMeasure;
 use nalgebra::Vector3;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Loads, and the course of loads and motions over time.
 
 use dem_io::interpolation::interpolated;
-use dem_io::scene::Factor;
+use dem_scene::Factor;
 use serde::{Deserialize, Serialize};
 
 /// A load on some particles, the same on each.

@@ -1,6 +1,6 @@
 //! Supports: degrees of freedom that are held or moved as prescribed.
 
-use dem_io::scene::{Factor, Hold};
+use dem_scene::{Factor, Hold};
 use serde::{Deserialize, Serialize};
 
 /// A support on some particles.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::WallMotion;
+use dem_scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactHistory;

@@ -1,6 +1,6 @@
 //! What measures follow in every step: forces, and the contacts between two.
 
-use dem_io::scene::Quantity;
+use dem_scene::Quantity;
 use serde::{Deserialize, Serialize};
 
 /// A measure that is read in every step.

@@ -5,8 +5,9 @@ use std::sync::atomic::AtomicBool;
 use dem_io::body::write_body;
 use dem_io::diagnostic::Kind;
 use dem_io::safe_write::write_file;
-use dem_io::scene::{Scene, read_bodies};
-use dem_io::{Body, Diagnostic, Result, scene_from_text};
+use dem_io::{Body, Diagnostic, Result};
+use dem_scene::scene_from_text;
+use dem_scene::{Scene, read_bodies};
 use tempfile::TempDir;
 
 use crate::output::summary::Summary;

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use std::f64::consts::PI;
 
-use dem_io::scene::{Factor, Hold};
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -15,6 +14,7 @@ use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::{Particles, Wrench};
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
+use dem_scene::{Factor, Hold};
 
 /// Radius of spheres and bonds, m.
 pub(crate) const RADIUS_M: f64 = 1e-3;
@@ -92,7 +92,7 @@ pub(crate) fn bonded(
             damped: false,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
-            rate_of: dem_io::scene::StrainRateMeasure::Elongation,
+            rate_of: dem_scene::StrainRateMeasure::Elongation,
         }]),
         ..Bonds::default()
     };

@@ -3,12 +3,12 @@
 
 use std::f64::consts::PI;
 
-use dem_io::scene::Factor;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::step::{advance, interact};
+use dem_scene::Factor;
 
 use super::bodies::{
     LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, area_m2, damp, hold, on_one_thread, rod,

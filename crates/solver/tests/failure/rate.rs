@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::StrainRateMeasure;
 use dem_run::physics::bond::failure::{Cause, Criteria};
 use dem_run::step::{advance, interact};
+use dem_scene::StrainRateMeasure;
 
 use super::bodies::{
     LENGTH_M, NORMAL, PRESSED, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use dem_io::Body;
 use dem_io::body::{read_body, write_body};
-use dem_io::{Body, scene_from_text};
 use dem_run::physics::bond::scatter::strength_factor;
 use dem_run::plan::{Plan, plan};
 use dem_run::state::State;
@@ -11,6 +11,7 @@ use dem_run::state::bodies::PlacedBody;
 use dem_run::state::loads::factor_at;
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, exchange, interact};
+use dem_scene::scene_from_text;
 
 use super::bodies::{
     LENGTH_M, LOAD_STEP, NORMAL, RADIUS_M, SOFT_STEPS, STRENGTH_PA, YOUNG_PA, area_m2, bonded,

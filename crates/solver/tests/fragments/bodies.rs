@@ -3,14 +3,15 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use dem_io::body::read_frame;
 use dem_io::body::{body_summary, read_body};
-use dem_io::results::{Existing, ResultsFolder, read_frame};
-use dem_io::scene::BodySource;
+use dem_results::{Existing, ResultsFolder};
 use dem_run::plan::plan;
 use dem_run::step::{interact, step};
+use dem_scene::BodySource;
 
 use super::{burst, bursting, planned, run_into};
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 fn fragment(folder: &Path, options: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_dem-run"))

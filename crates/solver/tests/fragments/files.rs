@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use dem_io::results::fragments::{COLUMNS, TREE_COLUMNS};
-use dem_io::results::read_series;
-use dem_io::results::{Existing, ResultsFolder};
+use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
+use dem_results::read_series;
+use dem_results::{Existing, ResultsFolder};
 use dem_run::output::fragments::split_text;
 use dem_run::state::clusters::{Cluster, Split};
 use nalgebra::Vector3;

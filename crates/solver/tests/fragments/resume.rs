@@ -3,8 +3,8 @@
 use std::fs;
 use std::io::Write;
 
-use dem_io::checkpoint::read_checkpoint;
-use dem_io::results::{Existing, ResultsFolder};
+use dem_results::checkpoint::read_checkpoint;
+use dem_results::{Existing, ResultsFolder};
 use dem_run::run::snapshot::Snapshot;
 
 use super::{burst, bursting, planned, run_into};

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use dem_io::scene::{BondKind, Test, TestKind};
 use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
 use dem_run::physics::bond::failure::Cause;
 use dem_run::plan::test_setup::{Setup, Specimen};
 use dem_run::plan::test_theory::{Beam, KAPPA};
+use dem_scene::{BondKind, Test, TestKind};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,
@@ -119,7 +119,7 @@ fn evaluated_at(
 }
 
 fn clay(scene: &str) -> BondKind {
-    let scene = dem_io::scene_from_text(scene, "scene.toml", &[]).unwrap();
+    let scene = dem_scene::scene_from_text(scene, "scene.toml", &[]).unwrap();
     scene.bonds["clay"].clone()
 }
 

@@ -56,15 +56,15 @@ fn what_is_said_to_be_left_out_does_nothing_and_takes_no_memory() {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/bodies/sample.vtp");
     let mut seen = 0;
     for path in [scenes_in("data/scenes"), scenes_in("tests/scenes/good")].concat() {
-        let scene = dem_io::read_scene(&path, &[]).unwrap();
+        let scene = dem_scene::read_scene(&path, &[]).unwrap();
         if scene.test.is_some() {
             // Their supports and loads come from the test, of a body that is made for it.
             continue;
         }
         let missing = |name: &str| {
             let is_there = match &scene.bodies[name].source {
-                dem_io::scene::BodySource::File(file) => file.exists(),
-                dem_io::scene::BodySource::Inline { .. } => true,
+                dem_scene::BodySource::File(file) => file.exists(),
+                dem_scene::BodySource::Inline { .. } => true,
             };
             (!is_there).then(|| dem_io::body::read_body(&sample).unwrap())
         };

@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 
 use super::clouds::scattered;
 use crate::helpers::scene;
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 const RADIUS_M: f64 = 1e-3;
 

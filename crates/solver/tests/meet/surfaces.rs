@@ -4,10 +4,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use dem_io::scene::{BodySource, scene_from_text};
 use dem_io::{Body, Diagnostic};
 use dem_run::plan::{Plan, plan};
 use dem_run::step::step;
+use dem_scene::{BodySource, scene_from_text};
 
 use super::apart::planned;
 use crate::closed_box::closed_box;

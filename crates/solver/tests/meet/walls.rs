@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use dem_io::scene::{Factor, WallMotion};
 use dem_run::check::limit::{Bound, limit};
 use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
@@ -10,6 +9,7 @@ use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::walls::{Wall, WallModel};
 use dem_run::step::{advance, interact};
+use dem_scene::{Factor, WallMotion};
 
 use super::clouds::{cloud, kinds};
 

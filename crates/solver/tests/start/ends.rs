@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use dem_io::checkpoint::read_checkpoint;
-use dem_io::results::{Existing, ResultsFolder};
+use dem_results::checkpoint::read_checkpoint;
+use dem_results::{Existing, ResultsFolder};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};

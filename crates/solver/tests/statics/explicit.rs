@@ -1,10 +1,10 @@
 //! What runs that step come to when they have come to rest.
 
-use dem_io::scene::Factor;
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::step::step;
+use dem_scene::Factor;
 use nalgebra::Vector3;
 
 use super::{assert_near, bar, fix, load, rest};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use dem_io::scene::{Factor, Hold};
 use dem_run::state::State;
+use dem_scene::{Factor, Hold};
 
 use super::{assert_near, bar, fix, hold, load, rest};
 use crate::bars::MODELS;

@@ -1,9 +1,10 @@
 //! Scenes that have no equilibrium to find, or none that is found.
 
-use dem_io::{Diagnostic, scene_from_text};
+use dem_io::Diagnostic;
 use dem_run::plan::plan;
+use dem_scene::scene_from_text;
 
-use dem_io::read_bodies;
+use dem_scene::read_bodies;
 
 /// A scene of a body of these particles and bonds, and what else it has.
 fn refusal(particles: &str, bonds: &str, more: &str) -> Diagnostic {

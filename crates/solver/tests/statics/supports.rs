@@ -1,9 +1,9 @@
 //! Supports that move, by displacements and by velocities, with factors over time; and freedoms
 //! that are held one by one.
 
-use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::physics::rigid::rotation_vector;
+use dem_scene::{Factor, Hold};
 
 use super::{END_S, assert_near, bar, fix, hold, load, moved, rest};
 

@@ -1,13 +1,13 @@
 //! Frequencies of small motion, measured on runs, against an independent eigenvalue solver.
 
 use crate::bars::{Bonding, ELASTIC, bar, body, steel, with_threads};
-use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles};
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
 use dem_run::step::step;
+use dem_scene::{Factor, Hold};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

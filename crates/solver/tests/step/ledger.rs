@@ -4,12 +4,12 @@ use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, Errors, bar, damp, damp_particles, orders, reopen, run,
     with_threads,
 };
-use dem_io::scene::{Factor, Hold};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
+use dem_scene::{Factor, Hold};
 
 /// Steps of the limit over this that a run lasts, and of which times are made that all steps meet.
 const LENGTH: f64 = 300.0 * BAR_LIMIT_S;

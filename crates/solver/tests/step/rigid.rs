@@ -3,12 +3,12 @@
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, body, damp, random_body, random_spheres, reopen, soft, turned,
 };
-use dem_io::scene::Factor;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::state::State;
 use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::Particles;
 use dem_run::step::step;
+use dem_scene::Factor;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 #[test]

@@ -4,7 +4,6 @@ use crate::bars::{
     BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
     with_threads,
 };
-use dem_io::scene::{Factor, Hold};
 use dem_run::check::limit::{Limit, limit};
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::BondModel;
@@ -16,6 +15,7 @@ use dem_run::state::loads::SetLoad;
 use dem_run::state::particles::{Motion, Pose};
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
+use dem_scene::{Factor, Hold};
 
 const BREAKING: BondRule = BondRule {
     incremental: false,
@@ -27,7 +27,7 @@ const BREAKING: BondRule = BondRule {
         von_mises_pa: 0.12e6,
     }),
     strengthening_from_1_s: Some(1.1),
-    rate_of: dem_io::scene::StrainRateMeasure::Elongation,
+    rate_of: dem_scene::StrainRateMeasure::Elongation,
 };
 
 /// Three random bodies side by side: incremental, total, incremental; all break.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use std::f64::consts::PI;
 
-use dem_io::scene::{Factor, Hold};
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::rigid::rotation_vector;
@@ -15,6 +14,7 @@ use dem_run::state::particles::{Particles, Wrench};
 use dem_run::state::supports::Held;
 use dem_run::state::supports::SetSupport;
 use dem_run::step::{advance, interact};
+use dem_scene::{Factor, Hold};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Young's modulus, Pa.
@@ -109,7 +109,7 @@ impl Bar {
                 damped: false,
                 criteria: None,
                 strengthening_from_1_s: None,
-                rate_of: dem_io::scene::StrainRateMeasure::Elongation,
+                rate_of: dem_scene::StrainRateMeasure::Elongation,
             }]),
             ..Bonds::default()
         };

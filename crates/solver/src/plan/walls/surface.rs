@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use dem_io::scene::{Wall as SceneWall, WallShape};
 use dem_io::surface::{OpenSurface, read_open_surface};
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
+use dem_scene::{Wall as SceneWall, WallShape};
 
 use crate::geometry::{Bounds, Mesh, Shape};
 use crate::state::State;

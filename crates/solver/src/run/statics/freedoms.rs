@@ -1,7 +1,7 @@
 //! Which freedoms of the particles are unknown, and where supports have those that are held at the
 //! end.
 
-use dem_io::scene::{Factor, Hold};
+use dem_scene::{Factor, Hold};
 
 use crate::state::State;
 use crate::state::loads::factor_at;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
-use dem_io::results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
-use dem_io::scene::Scene;
+use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_scene::Scene;
 
 use super::newton::Equilibrium;
 use crate::machine::machine;

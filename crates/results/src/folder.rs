@@ -1,0 +1,500 @@
+//! The folder of a run: what is called how, and what may be in it before.
+
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::plot_file::{is_plot_file, write_plot_file};
+use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::safe_write::{
+    PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
+};
+
+const FRAMES: &str = "frames";
+const PLOTS: &str = "plots";
+const PICTURES: &str = "pictures";
+const FILM_STRIP: &str = "film-strip.png";
+const FILM: &str = "film.png";
+const INDEX: &str = "frames.pvd";
+const SERIES: &str = "series.csv";
+const EVENTS: &str = "events.csv";
+const FRAGMENTS: &str = "fragments.csv";
+const FRAGMENT_TREE: &str = "fragment-tree.csv";
+const SUMMARY: &str = "summary.json";
+const TEST_PAGE: &str = "test.html";
+const TEST_CURVE: &str = "force-displacement.csv";
+const CHECKPOINT: &str = "checkpoint.dem";
+const ENDED: &str = ".ended.json";
+const LOCK: &str = ".lock";
+/// Files of which a run writes one each.
+const SINGLE_FILES: [&str; 12] = [
+    INDEX,
+    SERIES,
+    EVENTS,
+    FRAGMENTS,
+    FRAGMENT_TREE,
+    SUMMARY,
+    TEST_PAGE,
+    TEST_CURVE,
+    FILM_STRIP,
+    FILM,
+    CHECKPOINT,
+    ENDED,
+];
+
+/// What to do with a folder that holds something already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// Refuse it.
+    Refuse,
+    /// Remove the files that an earlier run wrote, and nothing else: `--force`.
+    Replace,
+    /// Leave all as it is, but for what killed writes have left, for a run that goes on:
+    /// `--resume`.
+    Continue,
+}
+
+/// The folder that a run writes to, and no other run as long as this or a clone of it lives.
+#[derive(Debug, Clone)]
+pub struct ResultsFolder {
+    path: PathBuf,
+    _lock: Arc<File>,
+}
+
+impl ResultsFolder {
+    /// Makes the folder `path` or takes the one that is there, and makes sure that it can be
+    /// written to.
+    ///
+    /// # Errors
+    /// It is not empty, by `existing`; there is none to continue; another run is writing into it
+    /// (all exit code 2). Its parent is missing, a file has its name, no permission to write in it
+    /// (all exit code 1).
+    pub fn create(path: &Path, existing: Existing) -> Result<Self> {
+        if existing != Existing::Continue {
+            make_folder(path)?;
+        } else if !path.is_dir() {
+            return Err(Diagnostic::input(
+                path.display().to_string(),
+                "there is no such folder, so no run to continue",
+                "check its name, or start the run without --resume",
+            ));
+        }
+        // A folder that is not that of a run gets no lock either.
+        if existing == Existing::Refuse && !path.join(LOCK).exists() {
+            refuse_unless_empty(path)?;
+        }
+        let folder = Self {
+            path: path.to_owned(),
+            _lock: Arc::new(lock(path)?),
+        };
+        match existing {
+            Existing::Refuse => refuse_unless_empty(path)?,
+            Existing::Replace => folder.remove_results()?,
+            Existing::Continue => {
+                // What a killed write has left.
+                for part in ["", FRAMES, PICTURES, PLOTS] {
+                    folder.remove_files(part, |_| false)?;
+                }
+            }
+        }
+        // Nothing comes of this file: it only shows that files can be written here.
+        PendingFile::write(&folder.summary(), |_| Ok(()))?;
+        Ok(folder)
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
+    pub fn frame(&self, number: usize) -> PathBuf {
+        frame_in(&self.path, number)
+    }
+
+    /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
+    pub fn frames_index(&self) -> PathBuf {
+        self.path.join(INDEX)
+    }
+
+    /// Picture `number`, counted from 0: `pictures/picture-00123.png`.
+    pub fn picture(&self, number: usize) -> PathBuf {
+        self.path
+            .join(PICTURES)
+            .join(format!("picture-{number:05}.png"))
+    }
+
+    /// Some pictures side by side: `film-strip.png`.
+    pub fn film_strip(&self) -> PathBuf {
+        self.path.join(FILM_STRIP)
+    }
+
+    /// The pictures one after the other: `film.png`.
+    pub fn film(&self) -> PathBuf {
+        self.path.join(FILM)
+    }
+
+    /// Time series: `series.csv`.
+    pub fn series(&self) -> PathBuf {
+        self.path.join(SERIES)
+    }
+
+    /// Events: `events.csv`.
+    pub fn events(&self) -> PathBuf {
+        self.path.join(EVENTS)
+    }
+
+    /// Fragments at chosen moments: `fragments.csv`.
+    pub fn fragments(&self) -> PathBuf {
+        self.path.join(FRAGMENTS)
+    }
+
+    /// Which fragment broke off which: `fragment-tree.csv`.
+    pub fn fragment_tree(&self) -> PathBuf {
+        self.path.join(FRAGMENT_TREE)
+    }
+
+    /// Summary: `summary.json`.
+    pub fn summary(&self) -> PathBuf {
+        self.path.join(SUMMARY)
+    }
+
+    /// What is written at the end of a run, kept until it all is: `.ended.json`.
+    pub fn ended(&self) -> PathBuf {
+        self.path.join(ENDED)
+    }
+
+    /// The latest state of the run: `checkpoint.dem`.
+    pub fn checkpoint(&self) -> PathBuf {
+        self.path.join(CHECKPOINT)
+    }
+
+    /// A plot: `plots/NAME.svg`. Letters that a file name may not hold become `_`.
+    pub fn plot(&self, name: &str) -> PathBuf {
+        let name: String = name
+            .chars()
+            .map(|letter| match letter {
+                '/' | '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|' => '_',
+                control if control.is_control() => '_',
+                other => other,
+            })
+            .collect();
+        self.path.join(PLOTS).join(format!("{name}.svg"))
+    }
+
+    /// Writes the page of a laboratory test to `test.html`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_test_page(&self, html: &str) -> Result<()> {
+        write_file(&self.test_page(), |out| out.write_all(html.as_bytes()))
+    }
+
+    /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_test_curve(&self, csv: &str) -> Result<()> {
+        write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
+    }
+
+    /// The page of a laboratory test: `test.html`.
+    pub fn test_page(&self) -> PathBuf {
+        self.path.join(TEST_PAGE)
+    }
+
+    /// The curve of a laboratory test: `force-displacement.csv`.
+    pub fn test_curve(&self) -> PathBuf {
+        self.path.join(TEST_CURVE)
+    }
+
+    /// Makes the folder of the frames, unless it is there.
+    ///
+    /// # Errors
+    /// No permission, a file has its name (exit code 1).
+    pub(super) fn make_frames_folder(&self) -> Result<()> {
+        make_folder(&self.path.join(FRAMES))
+    }
+
+    /// Makes the folder of the pictures, unless it is there.
+    ///
+    /// # Errors
+    /// No permission, a file has its name (exit code 1).
+    pub(super) fn make_pictures_folder(&self) -> Result<()> {
+        make_folder(&self.path.join(PICTURES))
+    }
+
+    /// Removes picture `number` and all after it.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_pictures_from(&self, number: usize) -> Result<()> {
+        self.remove_files(PICTURES, |name| {
+            picture_number(name).is_some_and(|found| found >= number)
+        })
+    }
+
+    /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.
+    ///
+    /// # Errors
+    /// No permission, full disk, a file or folder in the way (all exit code 1).
+    pub fn write_plot(&self, name: &str, svg: &str) -> Result<()> {
+        make_folder(&self.path.join(PLOTS))?;
+        write_plot_file(&self.plot(name), svg)
+    }
+
+    /// Removes frame `number` and all after it.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_frames_from(&self, number: usize) -> Result<()> {
+        self.remove_files(FRAMES, |name| {
+            frame_number(name).is_some_and(|found| found >= number)
+        })
+    }
+
+    /// Removes the list of all frames, if there is one.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub(super) fn remove_frames_index(&self) -> Result<()> {
+        self.remove_files("", |name| name == INDEX)
+    }
+
+    /// Removes the files that a run wrote, and the folder unless it holds something else.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub fn remove(self) -> Result<()> {
+        self.remove_results()?;
+        for part in [FRAMES, PICTURES, PLOTS] {
+            // One that holds something else stays, and so does the folder then.
+            let _ = fs::remove_dir(self.path.join(part));
+        }
+        let is_empty = refuse_unless_empty(&self.path).is_ok();
+        let lock = self.path.join(LOCK);
+        fs::remove_file(&lock).map_err(|error| explain(&lock, &error))?;
+        if is_empty {
+            fs::remove_dir(&self.path).map_err(|error| explain(&self.path, &error))?;
+        }
+        Ok(())
+    }
+
+    fn remove_results(&self) -> Result<()> {
+        // First, so that a folder of which only a part could be removed is not taken for a run to
+        // continue.
+        self.remove_files("", |name| name == CHECKPOINT)?;
+        self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
+        self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
+        self.remove_pictures_from(0)?;
+        let plots = self.path.join(PLOTS);
+        self.remove_files(PLOTS, |name| {
+            name.ends_with(".svg") && is_plot_file(&plots.join(name))
+        })
+    }
+
+    /// Removes the files of the folder `part` that are `ours` by their name. A file of a write that
+    /// was killed is ours, too.
+    fn remove_files(&self, part: &str, ours: impl Fn(&str) -> bool) -> Result<()> {
+        let folder = self.path.join(part);
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        for entry in entries(&folder)? {
+            let path = entry.map_err(|error| explain(&folder, &error))?;
+            let name = path.file_name().and_then(|name| name.to_str());
+            let name = name.unwrap_or_default();
+            let removed = if name.starts_with(UNFINISHED_PREFIX) {
+                remove_if_abandoned(&path)
+            } else if ours(name)
+                && fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file())
+            {
+                fs::remove_file(&path)
+            } else {
+                Ok(())
+            };
+            removed.map_err(|error| explain(&path, &error))?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a run is writing into the folder `path` at this moment. A folder that no run has written
+/// to is not there for it.
+pub fn is_written_to(path: &Path) -> bool {
+    is_locked(&path.join(LOCK))
+}
+
+/// Whether a file is there and another program holds its lock.
+pub fn is_locked(path: &Path) -> bool {
+    File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// The first of `files` that stands in the folder `path` under a name of results, also through a
+/// link: a run that writes
+/// there would remove or overwrite it. None: there is none of them, or no such folder.
+pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
+    let is_ours = |part: &str, name: &str| match part {
+        FRAMES => frame_number(name).is_some(),
+        PICTURES => picture_number(name).is_some(),
+        PLOTS => name.ends_with(".svg"),
+        _ => SINGLE_FILES.contains(&name),
+    };
+    for part in ["", FRAMES, PICTURES, PLOTS] {
+        let Ok(entries) = fs::read_dir(path.join(part)) else {
+            continue;
+        };
+        for entry in entries.flatten() {
+            let name = entry.file_name();
+            let is_result = (name.to_str())
+                .is_some_and(|name| is_ours(part, name) || name.starts_with(UNFINISHED_PREFIX));
+            if !is_result {
+                continue;
+            }
+            let found = files.iter().find(|file| is_same_file(file, &entry.path()));
+            if found.is_some() {
+                return found;
+            }
+        }
+    }
+    None
+}
+
+/// Refuses to write results into the folder `path` where they would take the place of a file that
+/// the run reads.
+///
+/// # Errors
+/// One of `inputs` stands there under a name of results (exit code 2).
+pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+    match result_among(path, inputs) {
+        None => Ok(()),
+        Some(input) => Err(Diagnostic::input(
+            input.display().to_string(),
+            format!(
+                "this is an input of the run, and results in '{}' would take its place",
+                path.display()
+            ),
+            "name another folder with --output, or copy the file elsewhere and name the copy",
+        )),
+    }
+}
+
+/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be
+/// writing there.
+///
+/// # Errors
+/// There is no such folder, or it cannot be read.
+pub fn frames_in(path: &Path) -> Result<Vec<usize>> {
+    if !path.is_dir() {
+        return Err(Diagnostic::input(
+            path.display().to_string(),
+            "there is no such folder",
+            "name the folder of results of a run",
+        ));
+    }
+    let frames = path.join(FRAMES);
+    if !frames.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut numbers = Vec::new();
+    for entry in entries(&frames)? {
+        let entry = entry.map_err(|error| explain(&frames, &error))?;
+        let name = entry.file_name().and_then(|name| name.to_str());
+        numbers.extend(name.and_then(frame_number));
+    }
+    numbers.sort_unstable();
+    Ok(numbers)
+}
+
+/// Frame `number` of the results folder `path`.
+pub fn frame_in(path: &Path, number: usize) -> PathBuf {
+    path.join(frame_name(number))
+}
+
+/// The name of a frame in the folder, with `/` on every system: ParaView wants it so.
+pub(super) fn frame_name(number: usize) -> String {
+    format!("{FRAMES}/frame_{number:06}.vtp")
+}
+
+/// 123 of `frame_000123.vtp`.
+fn frame_number(name: &str) -> Option<usize> {
+    number_of(name, "frame_", ".vtp", 6)
+}
+
+/// 123 of `picture-00123.png`.
+fn picture_number(name: &str) -> Option<usize> {
+    number_of(name, "picture-", ".png", 5)
+}
+
+/// The number of at least so many digits between the two.
+fn number_of(name: &str, before: &str, after: &str, least: usize) -> Option<usize> {
+    let digits = name.strip_prefix(before)?.strip_suffix(after)?;
+    let is_number = digits.len() >= least && digits.bytes().all(|byte| byte.is_ascii_digit());
+    is_number.then(|| digits.parse().ok()).flatten()
+}
+
+/// Makes a folder unless it is there. Its parent must be.
+fn make_folder(path: &Path) -> Result<()> {
+    match fs::create_dir(path) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            if path.is_dir() {
+                return Ok(());
+            }
+            Err(Diagnostic::failed(
+                path.display().to_string(),
+                "this is a file, where a folder is needed",
+                "remove it, or write elsewhere",
+            ))
+        }
+        Err(error) => Err(explain(path, &error)),
+    }
+}
+
+/// Takes the lock of a folder, which the system releases when the program ends, however it does.
+/// The file stays: another run may be about to lock it.
+fn lock(folder: &Path) -> Result<File> {
+    let path = folder.join(LOCK);
+    let file = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(&path)
+        .map_err(|error| explain(&path, &error))?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Diagnostic::input(
+            folder.display().to_string(),
+            "another run is writing into it",
+            "wait until that run has ended, or name another folder with --output",
+        )),
+        // Some network disks know no locks: that is no reason not to run.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+    }
+}
+
+fn refuse_unless_empty(folder: &Path) -> Result<()> {
+    for path in entries(folder)? {
+        let path = path.map_err(|error| explain(folder, &error))?;
+        if path.file_name().is_none_or(|name| name != LOCK) {
+            return Err(Diagnostic::input(
+                folder.display().to_string(),
+                "this folder is not empty",
+                "write to another one, replace its results with --force, or continue its run with --resume",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The paths of what is in a folder.
+fn entries(folder: &Path) -> Result<impl Iterator<Item = std::io::Result<PathBuf>>> {
+    let entries = fs::read_dir(folder).map_err(|error| {
+        Diagnostic::failed(
+            folder.display().to_string(),
+            format!("this folder cannot be read: {error}"),
+            "write elsewhere",
+        )
+    })?;
+    Ok(entries.map(|entry| entry.map(|entry| entry.path())))
+}

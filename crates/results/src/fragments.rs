@@ -1,0 +1,163 @@
+//! Fragments of bodies that break: how each moves at chosen moments, as one CSV table that grows,
+//! and which broke off which, as one that is written at the end.
+//!
+//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. What a fragment does not have is left empty.
+//! Every number reads back as the same bits, but for a zero, which has no sign.
+
+use std::fmt::{Display, Write};
+use std::path::Path;
+
+use super::growing::GrowingTable;
+use dem_io::diagnostic::Result;
+use dem_io::safe_write::write_file;
+use dem_io::vtk::exact;
+
+/// The first line of the table of moments.
+pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
+                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m";
+
+/// The first line of the fragment tree.
+pub const TREE_COLUMNS: &str = "fragment_id,parent_id,created_s,ended_s,particles";
+
+/// Rows that are handed to the system together.
+const AT_ONCE: usize = 1000;
+
+/// A fragment at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FragmentRow {
+    /// Its number, which no other one ever has.
+    pub id: u32,
+    /// The fragment that it broke off.
+    pub parent: Option<u32>,
+    /// Number of its particles.
+    pub particles: u32,
+    /// kg.
+    pub mass_kg: f64,
+    /// Centre of mass, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// Of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// rad/s. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// Sum of what acts on its particles, N. Length 3.
+    pub force_n: [f64; 3],
+    /// Diameter of the sphere with the volume of its particles, m.
+    pub size_m: f64,
+    /// Diagonal of the box around it, m.
+    pub extent_m: f64,
+}
+
+/// The file of the fragments at chosen moments.
+#[derive(Debug)]
+pub struct FragmentFile {
+    table: GrowingTable,
+}
+
+impl FragmentFile {
+    /// A new file without fragments. Replaces what stood there.
+    ///
+    /// # Errors
+    /// Missing folder, no permission, full disk (all exit code 1).
+    pub fn create(path: &Path) -> Result<Self> {
+        Ok(Self {
+            table: GrowingTable::create(path, COLUMNS)?,
+        })
+    }
+
+    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
+    /// checkpoint.
+    ///
+    /// # Errors
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
+    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
+        Ok(Self {
+            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
+        })
+    }
+
+    /// Appends the fragments of one moment. They are in the file when this returns.
+    ///
+    /// # Errors
+    /// Full disk (exit code 1): the moments before are kept, of this one perhaps some whole rows.
+    pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow]) -> Result<()> {
+        for some in fragments.chunks(AT_ONCE) {
+            let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
+            self.table.append(&rows)?;
+        }
+        Ok(())
+    }
+
+    /// Length of the file: what a checkpoint keeps for [`FragmentFile::continue_at`].
+    pub fn length_bytes(&self) -> u64 {
+        self.table.length_bytes()
+    }
+
+    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
+    /// a checkpoint is written that counts on them.
+    ///
+    /// # Errors
+    /// Full or broken disk (exit code 1).
+    pub fn sync(&self) -> Result<()> {
+        self.table.sync()
+    }
+}
+
+fn row(time_s: f64, fragment: &FragmentRow) -> String {
+    let mut row = format!(
+        "{},{},{},{}",
+        exact(time_s),
+        fragment.id,
+        known(fragment.parent),
+        fragment.particles
+    );
+    let [mass, size, extent] = [fragment.mass_kg, fragment.size_m, fragment.extent_m];
+    let vectors = [
+        fragment.centre_m,
+        fragment.velocity_m_s,
+        fragment.angular_velocity_rad_s,
+        fragment.force_n,
+    ];
+    let numbers = [mass].into_iter().chain(vectors.into_iter().flatten());
+    for number in numbers.chain([size, extent]) {
+        // Writing to a text cannot fail. Adding 0 takes the sign from a zero.
+        let _ = write!(row, ",{}", exact(number + 0.0));
+    }
+    row.push('\n');
+    row
+}
+
+/// A fragment that is or was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TreeRow {
+    /// Its number.
+    pub id: u32,
+    /// The fragment that it broke off; none: it was there whole.
+    pub parent: Option<u32>,
+    /// When it was found, s.
+    pub born_s: f64,
+    /// When it was found in pieces, s; none: it is whole.
+    pub ended_s: Option<f64>,
+    /// Number of its particles.
+    pub particles: u32,
+}
+
+/// Writes the fragment tree to the file `path`, whole or not at all.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_fragment_tree(path: &Path, rows: impl Iterator<Item = TreeRow>) -> Result<()> {
+    write_file(path, |out| {
+        writeln!(out, "{TREE_COLUMNS}")?;
+        for row in rows {
+            let (parent, ended) = (known(row.parent), known(row.ended_s.map(exact)));
+            let born = exact(row.born_s);
+            writeln!(out, "{},{parent},{born},{ended},{}", row.id, row.particles)?;
+        }
+        Ok(())
+    })
+}
+
+fn known(value: Option<impl Display>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}

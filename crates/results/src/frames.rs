@@ -1,0 +1,153 @@
+//! Frames of a run for ParaView: one .vtp file each, and one index of all with their times,
+//! `frames.pvd`.
+//!
+//! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data
+//! `TimeValue` (s). How it is encoded, [`dem_io::vtk`] says.
+
+use std::io::{self, Write};
+
+use super::folder::{ResultsFolder, frame_name};
+use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::safe_write::write_file;
+pub use dem_io::vtk::{NamedArray, Values};
+use dem_io::vtk::{PolyData, exact, write_number};
+
+/// What is to be seen at one time. Particles and bonds are known by their indices, from 0 on.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// Simulated time, s.
+    pub time_s: f64,
+    /// Number of particles.
+    pub particles: usize,
+    /// Centre of each particle, m.
+    pub position_m: &'a dyn Fn(usize) -> [f64; 3],
+    /// What is known of the particles.
+    pub particle_arrays: &'a [NamedArray<'a>],
+    /// Number of bonds.
+    pub bonds: usize,
+    /// The two particles of each bond.
+    pub ends: &'a dyn Fn(usize) -> [u32; 2],
+    /// What is known of the bonds.
+    pub bond_arrays: &'a [NamedArray<'a>],
+}
+
+impl Frame<'_> {
+    /// Whether every bond has its two particles: ParaView crashes without.
+    ///
+    /// # Errors
+    /// Says which bond (exit code 1: it is a fault of the program).
+    pub fn check(&self) -> Result<()> {
+        let missing = |end: u32| end as usize >= self.particles;
+        match (0..self.bonds).find(|&bond| (self.ends)(bond).into_iter().any(missing)) {
+            Some(bond) => Err(Diagnostic::failed(
+                "frame",
+                format!(
+                    "bond {bond} joins {:?} of {} particles",
+                    (self.ends)(bond),
+                    self.particles
+                ),
+                "this is a fault of the program",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Writes a frame, which must pass [`Frame::check`], as .vtp.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let data = PolyData {
+        points: frame.particles,
+        place: frame.position_m,
+        lines: frame.bonds,
+        ends: frame.ends,
+        point_data: frame.particle_arrays,
+        cell_data: frame.bond_arrays,
+    };
+    data.write(out, |out| {
+        write_number(out, "Float64", "TimeValue", Some(exact(frame.time_s)))
+    })
+}
+
+/// The frames of a run so far.
+#[derive(Debug)]
+pub struct FrameFiles {
+    folder: ResultsFolder,
+    times_s: Vec<f64>,
+}
+
+impl FrameFiles {
+    /// No frame yet. Nothing is written before the first.
+    pub fn create(folder: &ResultsFolder) -> Self {
+        Self {
+            folder: folder.clone(),
+            times_s: Vec::new(),
+        }
+    }
+
+    /// The frames of an interrupted run up to its checkpoint, which had these times, s. Later ones
+    /// are removed.
+    ///
+    /// # Errors
+    /// A frame is missing (exit code 2); the index cannot be written or a later frame not removed
+    /// (exit code 1).
+    pub fn continue_at(folder: &ResultsFolder, times_s: Vec<f64>) -> Result<Self> {
+        for number in 0..times_s.len() {
+            let path = folder.frame(number);
+            if !path.is_file() {
+                return Err(Diagnostic::input(
+                    path.display().to_string(),
+                    "this frame is missing, which was there when the checkpoint was written",
+                    "put it back, or start the run again without --resume",
+                ));
+            }
+        }
+        let frames = Self {
+            folder: folder.clone(),
+            times_s,
+        };
+        if frames.times_s.is_empty() {
+            // A run without frames has no index.
+            folder.remove_frames_index()?;
+        } else {
+            frames.write_index()?;
+        }
+        folder.remove_frames_from(frames.times_s.len())?;
+        Ok(frames)
+    }
+
+    /// Writes the next frame, then the index with it.
+    ///
+    /// # Errors
+    /// No permission, full disk (exit code 1): frames and index before are kept. The frame is wrong
+    /// by [`Frame::check`].
+    pub fn append(&mut self, frame: &Frame<'_>) -> Result<()> {
+        frame.check()?;
+        self.folder.make_frames_folder()?;
+        let path = self.folder.frame(self.times_s.len());
+        write_file(&path, |out| write_frame(frame, out))?;
+        self.times_s.push(frame.time_s);
+        self.write_index()
+    }
+
+    /// Times of the frames, s: what a checkpoint keeps for [`FrameFiles::continue_at`].
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    fn write_index(&self) -> Result<()> {
+        write_file(&self.folder.frames_index(), |out| {
+            writeln!(
+                out,
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>"
+            )?;
+            for (number, time_s) in self.times_s.iter().enumerate() {
+                let (time, file) = (exact(*time_s), frame_name(number));
+                writeln!(out, "    <DataSet timestep=\"{time}\" file=\"{file}\"/>")?;
+            }
+            writeln!(out, "  </Collection>\n</VTKFile>")
+        })
+    }
+}

@@ -1,0 +1,25 @@
+//! Results of a run: a folder of frames, time series, events, fragments, plots and a summary.
+//!
+//! A crash or a full disk never destroys what was there: files appear whole or not at all, and
+//! tables grow by whole rows. A run that was interrupted and continued leaves the same bytes as one
+//! that was not.
+
+pub mod checkpoint;
+pub mod events;
+pub mod folder;
+pub mod fragments;
+pub mod frames;
+mod growing;
+pub mod pictures;
+pub mod plot_file;
+pub mod series;
+pub mod summary;
+
+pub use events::{Event, EventFile};
+pub use folder::{Existing, ResultsFolder};
+pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
+pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
+pub use pictures::PictureFiles;
+pub use plot_file::{is_plot_file, write_plot_file};
+pub use series::{Series, SeriesFile, read_series};
+pub use summary::write_json;

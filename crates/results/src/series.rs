@@ -1,0 +1,155 @@
+//! Time series as one CSV table that grows while a run goes on.
+//!
+//! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number
+//! reads back as the same bits.
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind};
+use std::path::Path;
+
+use super::growing::{GrowingTable, field, fields};
+use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::lines::{Lines, float, on_line};
+
+/// The file of the time series.
+#[derive(Debug)]
+pub struct SeriesFile {
+    table: GrowingTable,
+    columns: usize,
+}
+
+impl SeriesFile {
+    /// A new file with these columns after the time, named with their units: `kinetic_energy_j`.
+    /// Replaces what stood there.
+    ///
+    /// # Errors
+    /// Missing folder, no permission, full disk (all exit code 1).
+    pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
+        Ok(Self {
+            table: GrowingTable::create(path, &header(columns))?,
+            columns: columns.len(),
+        })
+    }
+
+    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
+    /// checkpoint.
+    ///
+    /// # Errors
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
+    pub fn continue_at(path: &Path, columns: &[String], length_bytes: u64) -> Result<Self> {
+        Ok(Self {
+            table: GrowingTable::continue_at(path, &header(columns), length_bytes)?,
+            columns: columns.len(),
+        })
+    }
+
+    /// Appends a row: the time and one value for each column, in SI units. It is in the file when
+    /// this returns.
+    ///
+    /// # Errors
+    /// Full disk (exit code 1): the rows before are kept. Not as many values as columns.
+    pub fn append(&mut self, time_s: f64, values: &[f64]) -> Result<()> {
+        if values.len() != self.columns {
+            return Err(Diagnostic::failed(
+                "time series",
+                format!("{} values for {} columns", values.len(), self.columns),
+                "this is a fault of the program",
+            ));
+        }
+        let mut row = format!("{time_s:e}");
+        for value in values {
+            // Writing to a text cannot fail.
+            let _ = write!(row, ",{value:e}");
+        }
+        row.push('\n');
+        self.table.append(&row)
+    }
+
+    /// Length of the file: what a checkpoint keeps for [`SeriesFile::continue_at`].
+    pub fn length_bytes(&self) -> u64 {
+        self.table.length_bytes()
+    }
+
+    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
+    /// a checkpoint is written that counts on them.
+    ///
+    /// # Errors
+    /// Full or broken disk (exit code 1).
+    pub fn sync(&self) -> Result<()> {
+        self.table.sync()
+    }
+}
+
+/// Time series as a file tells them, such as for plots.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Series {
+    /// Names of the columns with their units, the time not among them.
+    pub columns: Vec<String>,
+    /// Times, s. One per row.
+    pub times_s: Vec<f64>,
+    /// Values of each column, in SI units. One list per column with one value per row.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// Reads the file of a [`SeriesFile`].
+///
+/// # Errors
+/// There is no such file, its first column is not the time, a row is not whole or no numbers (all
+/// exit code 2).
+pub fn read_series(path: &Path) -> Result<Series> {
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    let file = File::open(path).map_err(|error| {
+        within(match error.kind() {
+            ErrorKind::NotFound => {
+                Diagnostic::input("", "there is no such file", "check its name and folder")
+            }
+            _ => Diagnostic::input("", format!("cannot be opened: {error}"), ""),
+        })
+    })?;
+    read_lines(&mut BufReader::new(file)).map_err(within)
+}
+
+fn read_lines(input: &mut dyn BufRead) -> Result<Series> {
+    let mut lines = Lines::new(input);
+    let (_, first) = lines.next()?.unwrap_or((1, ""));
+    let mut columns = fields(first);
+    if columns.remove(0) != "time_s" {
+        return Err(Diagnostic::input(
+            "line 1",
+            "the first column is not 'time_s'",
+            "name a file series.csv that dem-run wrote",
+        ));
+    }
+    let mut series = Series {
+        values: vec![Vec::new(); columns.len()],
+        columns,
+        times_s: Vec::new(),
+    };
+    while let Some((number, line)) = lines.next()? {
+        let on_line = |error| on_line(number, error);
+        let mut words = line.split(',');
+        series
+            .times_s
+            .push(float(words.next(), "time_s").map_err(on_line)?);
+        for (name, values) in series.columns.iter().zip(&mut series.values) {
+            values.push(float(words.next(), name).map_err(on_line)?);
+        }
+        if words.next().is_some() {
+            let problem = format!("more than {} values", series.columns.len() + 1);
+            let remedy = "the first line names the columns";
+            return Err(on_line(Diagnostic::input("", problem, remedy)));
+        }
+    }
+    Ok(series)
+}
+
+fn header(columns: &[String]) -> String {
+    let mut header = "time_s".to_owned();
+    for column in columns {
+        header.push(',');
+        header.push_str(&field(column));
+    }
+    header
+}

@@ -1,0 +1,169 @@
+//! Tables of fragments: full precision, whole rows, and the same bytes after an interruption.
+
+use std::fs;
+use std::io::Write;
+
+use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
+use dem_results::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
+use proptest::prelude::*;
+use tempfile::tempdir;
+
+fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow {
+    let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
+    FragmentRow {
+        id,
+        parent: id.checked_sub(1),
+        particles: 10 * id,
+        mass_kg: numbers[0],
+        centre_m: three(1),
+        velocity_m_s: three(4),
+        angular_velocity_rad_s: three(7),
+        force_n: three(10),
+        size_m: numbers[13],
+        extent_m: numbers[14],
+    }
+}
+
+#[test]
+fn fragments_look_as_documented() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("fragments.csv");
+    let mut file = FragmentFile::create(&path).unwrap();
+    let whole = [
+        0.25, 1.0, -2.0, 3.0, 0.5, -0.0, 1e-9, 7.0, 8.0, 9.0, -1.0, 0.0, 1e3, 0.125, 0.75,
+    ];
+    file.append(0.0, &[fragment(0, whole)]).unwrap();
+    file.append(1.5e-3, &[]).unwrap();
+    file.append(2.5e-3, &[fragment(2, [1.0 / 3.0; 15])])
+        .unwrap();
+    let third = ",3.333333333333333e-1".repeat(15);
+    let text = format!(
+        "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m\n\
+         0e0,0,,0,2.5e-1,1e0,-2e0,3e0,5e-1,0e0,1e-9,7e0,8e0,9e0,-1e0,0e0,1e3,1.25e-1,7.5e-1\n\
+         2.5e-3,2,1,20{third}\n"
+    );
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    assert_eq!(file.length_bytes(), text.len() as u64);
+    file.sync().unwrap();
+}
+
+#[test]
+fn the_tree_looks_as_documented_and_is_replaced_whole() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("fragment-tree.csv");
+    let root = TreeRow {
+        id: 0,
+        parent: None,
+        born_s: 0.0,
+        ended_s: Some(2.5e-3),
+        particles: 7,
+    };
+    let child = TreeRow {
+        id: 1,
+        parent: Some(0),
+        born_s: 2.5e-3,
+        ended_s: None,
+        particles: 4,
+    };
+    write_fragment_tree(&path, [root, root, root].into_iter()).unwrap();
+    write_fragment_tree(&path, [root, child].into_iter()).unwrap();
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        "fragment_id,parent_id,created_s,ended_s,particles\n0,,0e0,2.5e-3,7\n1,0,2.5e-3,,4\n"
+    );
+    assert_eq!(TREE_COLUMNS.split(',').count(), 5);
+    let missing = folder.path().join("missing/tree.csv");
+    let error = write_fragment_tree(&missing, [root].into_iter()).unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+}
+
+#[test]
+fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("fragments.csv");
+    let mut file = FragmentFile::create(&path).unwrap();
+    file.append(0.0, &[fragment(0, [1.0; 15])]).unwrap();
+    let length = file.length_bytes();
+    let before = fs::read(&path).unwrap();
+    for (length, said) in [
+        (length + 1, "bytes, but had"),
+        (length - 1, "no row ends"),
+        (0, "no row ends"),
+    ] {
+        let error = FragmentFile::continue_at(&path, length).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.problem.contains(said), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), before);
+    }
+    let other = folder.path().join("other.csv");
+    fs::write(&other, format!("{TREE_COLUMNS}\n")).unwrap();
+    let at = TREE_COLUMNS.len() as u64 + 1;
+    let error = FragmentFile::continue_at(&other, at).unwrap_err();
+    assert!(error.problem.contains("first line"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn interrupted_fragments_end_as_those_that_were_not(
+        moments in prop::collection::vec(0..4_u32, 0..12),
+        numbers in prop::array::uniform15(prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL),
+        at in any::<prop::sample::Index>(),
+        half in "[0-9e,.-]{0,20}",
+    ) {
+        let folder = tempdir().unwrap();
+        let at = at.index(moments.len() + 1);
+        let rows = |count: u32| (0..count).map(|id| fragment(id, numbers)).collect::<Vec<_>>();
+        let write = |name: &str, interrupted: bool| {
+            let path = folder.path().join(name);
+            let mut file = FragmentFile::create(&path).unwrap();
+            for (number, count) in moments.iter().enumerate() {
+                if interrupted && number == at {
+                    let length = file.length_bytes();
+                    file.append(9.0, &rows(3)).unwrap();
+                    drop(file);
+                    // What a row may look like that was being written.
+                    fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
+                    file = FragmentFile::continue_at(&path, length).unwrap();
+                }
+                file.append(number as f64, &rows(*count)).unwrap();
+            }
+            fs::read_to_string(&path).unwrap()
+        };
+        let text = write("whole.csv", false);
+        prop_assert_eq!(&write("part.csv", true), &text);
+        // And the numbers come back.
+        let mut lines = text.lines();
+        prop_assert_eq!(lines.next(), Some(COLUMNS));
+        let wanted = moments.iter().enumerate().flat_map(|(number, count)| (0..*count).map(move |id| (number, id)));
+        let mut read = 0;
+        for (line, (number, id)) in lines.zip(wanted) {
+            let words: Vec<&str> = line.split(',').collect();
+            prop_assert_eq!(words[0].parse::<f64>().unwrap(), number as f64);
+            prop_assert_eq!(words[1].parse::<u32>().unwrap(), id);
+            let back: Vec<f64> = words[4..].iter().map(|word| word.parse().unwrap()).collect();
+            prop_assert_eq!(&back[..], &numbers[..]);
+            read += 1;
+        }
+        prop_assert_eq!(read, moments.iter().sum::<u32>());
+    }
+}
+
+/// Rows are handed over in groups: none is lost or doubled at their borders.
+#[test]
+fn thousands_of_fragments_of_one_moment_are_all_there() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("fragments.csv");
+    let mut file = FragmentFile::create(&path).unwrap();
+    let rows: Vec<FragmentRow> = (0..2500).map(|id| fragment(id, [1.0; 15])).collect();
+    file.append(1.0, &rows).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let ids: Vec<u32> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').nth(1).unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(ids, (0..2500).collect::<Vec<u32>>());
+    assert_eq!(file.length_bytes(), text.len() as u64);
+}

@@ -1,0 +1,244 @@
+//! A frame read again: its fragments, and each of them as a body that files can hold.
+
+use std::fs;
+use std::path::PathBuf;
+
+use dem_io::body::{StoredFrame, read_frame};
+use dem_io::body::{read_body, write_body};
+use dem_results::{Frame, NamedArray, Values, write_frame};
+use proptest::prelude::*;
+use tempfile::{TempDir, tempdir};
+
+/// Two pieces that were one, and a third body. Bond 1 is broken; bond 3 names its larger end first.
+fn stored() -> StoredFrame {
+    StoredFrame {
+        time_s: 0.25,
+        positions: (0..6).map(|i| [2e-3 * f64::from(i), 1e-5, 0.0]).collect(),
+        radii: vec![1e-3, 1.1e-3, 1e-3, 1.2e-3, 1e-3, 1e-3],
+        // As a program reckons them from masses.
+        densities_kg_m3: vec![
+            2050.0,
+            2050.0000000000002,
+            2049.9999999999998,
+            2050.0,
+            1000.0,
+            3000.0,
+        ],
+        clusters: vec![7, 7, 3, 3, 5, 5],
+        bonds: vec![[0, 1], [1, 2], [4, 5], [3, 2]],
+        bond_radii: vec![1e-4, 2e-4, 3e-4, 4e-4],
+        bond_lengths: vec![1.9e-3, 2e-3, 2e-3, 2.1e-3],
+        broken: vec![false, true, false, false],
+    }
+}
+
+/// Writes a frame as a run does, without one of the arrays if it is named.
+fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("frame.vtp");
+    let broken = |bond: usize| u32::from(frame.broken[bond]);
+    let array = |name, values| NamedArray { name, values };
+    let velocity = |i: usize| [i as f64; 3];
+    let radius = |i: usize| frame.radii[i];
+    let cluster = |i: usize| frame.clusters[i];
+    let density = |i: usize| frame.densities_kg_m3[i];
+    let bond_radius = |bond: usize| frame.bond_radii[bond];
+    let bond_length = |bond: usize| frame.bond_lengths[bond];
+    let mut of_particles = vec![
+        array("radius_m", Values::Scalars(&radius)),
+        array("velocity_m_s", Values::Vectors(&velocity)),
+        array("fragment_id", Values::Counts(&cluster)),
+        array("density_kg_m3", Values::Scalars(&density)),
+    ];
+    let mut of_bonds = vec![
+        array("bond_radius_m", Values::Scalars(&bond_radius)),
+        array("initial_length_m", Values::Scalars(&bond_length)),
+        array("broken", Values::Counts(&broken)),
+    ];
+    of_particles.retain(|array| array.name != without);
+    of_bonds.retain(|array| array.name != without);
+    let mut bytes = Vec::new();
+    write_frame(
+        &Frame {
+            time_s: frame.time_s,
+            particles: frame.positions.len(),
+            position_m: &|i| frame.positions[i],
+            particle_arrays: &of_particles,
+            bonds: frame.bonds.len(),
+            ends: &|bond| frame.bonds[bond],
+            bond_arrays: &of_bonds,
+        },
+        &mut bytes,
+    )
+    .unwrap();
+    fs::write(&path, bytes).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_frame_reads_back_bit_by_bit() {
+    let (_folder, path) = written(&stored(), "");
+    assert_eq!(read_frame(&path).unwrap(), stored());
+}
+
+#[test]
+fn fragments_come_the_heaviest_first() {
+    let fragments = stored().fragments();
+    let ids: Vec<u32> = fragments.iter().map(|fragment| fragment.id).collect();
+    // 3 has the largest sphere; 5 is 4000 kg/m3 times one sphere of 1 mm, which is the least.
+    assert_eq!(ids, [3, 7, 5]);
+    let volume = |r: f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
+    let mass = 2050.0 * (volume(1e-3) + volume(1.2e-3));
+    assert!((fragments[0].mass_kg / mass - 1.0).abs() < 1e-14);
+    assert!(fragments.iter().all(|fragment| fragment.particles == 2));
+    // Of two as heavy, that of the smaller number.
+    let mut equal = stored();
+    equal.radii = vec![1e-3; 6];
+    equal.densities_kg_m3 = vec![1000.0; 6];
+    let ids: Vec<u32> = equal.fragments().iter().map(|f| f.id).collect();
+    assert_eq!(ids, [3, 5, 7]);
+}
+
+#[test]
+fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
+    let body = stored().body(3).unwrap();
+    assert_eq!(body.positions, stored().positions[2..4]);
+    assert_eq!(body.radii, [1e-3, 1.2e-3]);
+    assert_eq!(body.bonds, [[0, 1]]);
+    assert_eq!(body.bond_radii, [4e-4]);
+    // Not the distance of its ends, 2 mm: it is pressed.
+    assert_eq!(body.bond_lengths, [2.1e-3]);
+    assert_eq!(body.about.particle_density_kg_m3, Some(2050.0));
+    // Of two materials there is no one density.
+    assert_eq!(stored().body(5).unwrap().about.particle_density_kg_m3, None);
+    let folder = tempdir().unwrap();
+    for name in ["body.vtp", "body.csv", "body.data", "body.txt"] {
+        let path = folder.path().join(name);
+        write_body(&body, &path).unwrap();
+        let read = read_body(&path).unwrap();
+        assert_eq!(read.positions, body.positions, "{name}");
+        assert_eq!(read.radii, body.radii, "{name}");
+        assert_eq!(read.bonds, body.bonds, "{name}");
+        if ["body.vtp", "body.csv"].contains(&name) {
+            assert_eq!(read.bond_lengths, body.bond_lengths, "{name}");
+            assert_eq!(read.bond_radii, body.bond_radii, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_bond_within_a_fragment_that_is_broken_stays_away() {
+    let mut frame = stored();
+    // Broken, and not yet searched for pieces.
+    frame.clusters = vec![0; 6];
+    let body = frame.body(0).unwrap();
+    assert_eq!(body.bonds, [[0, 1], [4, 5], [2, 3]]);
+    assert_eq!(body.bond_lengths, [1.9e-3, 2e-3, 2.1e-3]);
+}
+
+#[test]
+fn an_unknown_fragment_is_told_with_the_heaviest() {
+    let error = stored().body(4).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(
+        error.to_string(),
+        "there is no fragment 4 at 2.500000e-1 s among the 3 that there are; \
+         the heaviest are 3 (2 particles), 7 (2 particles), 5 (2 particles)"
+    );
+    let mut dust = stored();
+    dust.clusters = vec![10, 11, 12, 13, 14, 15];
+    let error = dust.body(4).unwrap_err();
+    assert_eq!(error.remedy.matches("(1 particle)").count(), 5, "{error}");
+}
+
+#[test]
+fn frames_without_fragments_and_other_files_are_refused() {
+    for name in [
+        "radius_m",
+        "fragment_id",
+        "density_kg_m3",
+        "bond_radius_m",
+        "initial_length_m",
+        "broken",
+    ] {
+        let (_folder, path) = written(&stored(), name);
+        let error = read_frame(&path).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = format!("this frame has no fragments: there is no array '{name}'");
+        assert_eq!(error.problem, said);
+        assert_eq!(error.place, path.display().to_string());
+    }
+    let mut frame = stored();
+    frame.bonds[1] = [1, 6];
+    let (_folder, path) = written(&frame, "");
+    let error = read_frame(&path).unwrap_err();
+    assert_eq!(error.problem, "a bond joins particle 6, but there are 6");
+    let error = read_frame(&path.with_file_name("none.vtp")).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(error.problem, "there is no such file");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Fragments share out the particles, the mass and the bonds that hold.
+    #[test]
+    fn bodies_of_all_fragments_make_up_the_frame(
+        clusters in prop::collection::vec(0_u32..6, 1..40),
+        pairs in prop::collection::btree_set((0_u32..40, 0_u32..40), 0..80),
+        whole in prop::collection::vec(any::<bool>(), 80),
+    ) {
+        let count = clusters.len() as u32;
+        let bonds: Vec<[u32; 2]> = pairs
+            .into_iter()
+            .filter(|(a, b)| a < b && *b < count)
+            .filter(|(a, b)| clusters[*a as usize] == clusters[*b as usize])
+            .map(|(a, b)| [a, b])
+            .collect();
+        let frame = StoredFrame {
+            time_s: 0.0,
+            positions: (0..count).map(|i| [f64::from(i), 0.5, -1.0]).collect(),
+            radii: (0..count).map(|i| 0.1 + 0.01 * f64::from(i)).collect(),
+            densities_kg_m3: vec![1000.0; clusters.len()],
+            bond_radii: (0..bonds.len()).map(|bond| 0.1 + 0.001 * bond as f64).collect(),
+            bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
+            broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
+            bonds,
+            clusters,
+        };
+        let fragments = frame.fragments();
+        let bodies: Vec<_> = fragments.iter().map(|f| frame.body(f.id).unwrap()).collect();
+        let mut places: Vec<[f64; 3]> = bodies.iter().flat_map(|b| b.positions.clone()).collect();
+        places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        prop_assert_eq!(&places, &frame.positions);
+        // Of each bond its ends' places, its radius and its length.
+        let mut found: Vec<[f64; 4]> = Vec::new();
+        for body in &bodies {
+            for (at, ends) in body.bonds.iter().enumerate() {
+                let [a, b] = ends.map(|end| body.positions[end as usize][0]);
+                found.push([a, b, body.bond_radii[at], body.bond_lengths[at]]);
+            }
+        }
+        let mut wanted: Vec<[f64; 4]> = (0..frame.bonds.len())
+            .filter(|&bond| !frame.broken[bond])
+            .map(|bond| {
+                let [a, b] = frame.bonds[bond].map(f64::from);
+                [a, b, frame.bond_radii[bond], frame.bond_lengths[bond]]
+            })
+            .collect();
+        for list in [&mut found, &mut wanted] {
+            list.sort_by(|a, b| a[3].total_cmp(&b[3]));
+        }
+        prop_assert_eq!(found, wanted);
+        let (_folder, path) = written(&frame, "");
+        prop_assert_eq!(read_frame(&path).unwrap(), frame);
+    }
+}
+
+#[test]
+fn a_frame_is_no_body() {
+    let (_folder, path) = written(&stored(), "");
+    let said = read_body(&path).unwrap_err().to_string();
+    assert!(said.contains("this is a frame of a run"), "{said}");
+    assert!(said.contains("dem-run fragment"), "{said}");
+}

@@ -1,0 +1,327 @@
+//! `[bodies.NAME]`
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use super::bond::BondKind;
+use super::clump;
+use super::clump::StartAs;
+use super::direction::ROTATION;
+use super::field::Field;
+use super::listing::Listing;
+use super::material::Material;
+use super::names::meaning;
+use super::paths::named_path;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
+
+/// Where a body comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodySource {
+    /// `file`, resolved against the folder of the scene; "-" is standard input.
+    File(PathBuf),
+    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its
+    /// particles, times `radius_factor`, and as long as they are apart.
+    Inline {
+        /// `particles = [[x, y, z, radius], ...]`, m.
+        particles: Vec<[f64; 4]>,
+        /// `bond_list = [[a, b], ...]`: indices of particles, from 0; the smaller comes first here,
+        /// in any order in the file.
+        bonds: Vec<[u32; 2]>,
+    },
+}
+
+/// A body and how it stands and moves at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// Where its particles and bonds come from.
+    pub source: BodySource,
+    /// `material`: a name of `[materials]`.
+    pub material: String,
+    /// `bonds`: a name of `[bonds]`. None only for bodies without bonds.
+    pub bond_kind: Option<String>,
+    /// `position`: moved by this, m. Length 3. After `rotation`.
+    pub position_m: [f64; 3],
+    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation
+    /// vector, rad. Length 3.
+    pub rotation_rad: [f64; 3],
+    /// `velocity` of the centre of mass, m/s. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// `angular_velocity` about the centre of mass, as a rigid body, rad/s. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// `start_as`, "bonded" unless given, and `clump`.
+    pub start_as: StartAs,
+    /// `body_density` or `mass`. None: its spheres have the density of the material.
+    pub whole_mass: Option<WholeMass>,
+}
+
+/// What a body weighs as a whole: the density of its spheres follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeMass {
+    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    Density(f64),
+    /// `mass`, kg.
+    Mass(f64),
+}
+
+const PARTICLE: Kind = Kind::Row(&[
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+    Kind::Quantity(&LENGTH),
+]);
+const INDEX: Kind = Kind::Whole {
+    least: 0,
+    most: None,
+    of: "",
+};
+
+pub(super) static BODY: Schema = Schema {
+    title: "[bodies.NAME]",
+    doc: "A body, its position and its velocity at the start. It has a `file` or `particles`.",
+    keys: &[
+        Key::text(
+            "file",
+            "a file",
+            "From the folder of the scene; `-` is standard input. `--body` counts from where you stand.",
+        ),
+        Key::new(
+            "particles",
+            Kind::List(&PARTICLE),
+            "Instead of a file: `[[x, y, z, radius], ...]`.",
+        ),
+        Key::new(
+            "bond_list",
+            Kind::List(&Kind::Row(&[INDEX, INDEX])),
+            "Bonds between `particles` by their numbers, from 0: `[[0, 1], ...]`.",
+        ),
+        Key::text("material", "a name in [materials]", "Its material.")
+            .required("\"NAME\", a name in [materials]"),
+        Key::quantity(
+            "body_density",
+            &DENSITY,
+            "Mass of the body over the volume of its shape, which its file names.",
+        )
+        .positive(),
+        Key::quantity(
+            "mass",
+            &MASS,
+            "Mass of the body. Without either its spheres have the density of the material, or else of the file.",
+        )
+        .positive()
+        .otherwise("that of its particles"),
+        Key::text("bonds", "a name in [bonds]", "The properties of its bonds; a body without bonds needs none.")
+            .sometimes_required("\"NAME\", a name in [bonds]"),
+        Key::vector("position", &LENGTH, "Translation of the body, after `rotation`."),
+        Key::table("rotation", &ROTATION, "Rotation about the origin of its file.").or(0.0),
+        Key::vector("velocity", &VELOCITY, "Of the centre of mass."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "About the centre of mass, as a rigid body.",
+        ),
+        clump::START_AS,
+        Key::table("clump", &clump::CLUMP, "Only with `start_as = \"clump\"`."),
+    ],
+};
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    materials: &BTreeMap<String, Material>,
+    bonds: &BTreeMap<String, BondKind>,
+    folder: &Path,
+) -> Result<BTreeMap<String, BodyEntry>> {
+    let tables = root.named("bodies")?;
+    if tables.is_empty() {
+        let remedy = "add [bodies.NAME] with file = \"body.vtp\"";
+        return Err(root.refuse("there is no body", remedy));
+    }
+    let mut bodies = BTreeMap::new();
+    let mut piped: Option<String> = None;
+    for (name, field) in tables {
+        if let Some(of) = meaning(&name) {
+            let problem = format!("{} is named like {of}", field.path);
+            return Err(field.refuse(problem, "give it another name"));
+        }
+        let body = read(&field, materials, bonds, folder)?;
+        if matches!(&body.source, BodySource::File(file) if file.as_os_str() == "-")
+            && let Some(first) = piped.replace(name.clone())
+        {
+            let problem = format!(
+                "{} reads standard input, as bodies.{first} does",
+                field.path
+            );
+            let remedy = "it can be read once: give one of them another file";
+            return Err(field.refuse(problem, remedy));
+        }
+        bodies.insert(name, body);
+    }
+    Ok(bodies)
+}
+
+fn read(
+    field: &Field<'_>,
+    materials: &BTreeMap<String, Material>,
+    bonds: &BTreeMap<String, BondKind>,
+    folder: &Path,
+) -> Result<BodyEntry> {
+    let table = Table::of(field, &BODY)?;
+    let source = source(&table, folder)?;
+    let material_field = table.need("material")?;
+    let material = material_field.reference(materials.keys(), "materials")?;
+    if materials.get(&material).is_some_and(|found| found.rigid) {
+        let problem = format!(
+            "{} is \"{material}\", which is rigid, and only walls can be",
+            material_field.path
+        );
+        let remedy = "name another material, or give this one a density and a young_modulus";
+        return Err(material_field.refuse(problem, remedy));
+    }
+    let bond_kind = table.read_by("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
+    let start_as = clump::read(&table)?;
+    let whole_mass = whole_mass(&table, &source)?;
+    if let BodySource::Inline { bonds, .. } = &source {
+        // Of a clump: who replaces it needs them.
+        if !bonds.is_empty() && bond_kind.is_none() && start_as == StartAs::Bonded {
+            table.need("bonds")?;
+        }
+        let density = materials
+            .get(&material)
+            .and_then(|found| found.density_kg_m3);
+        if density.is_none() && whole_mass.is_none() {
+            let problem = format!(
+                "{} is \"{material}\", which has no density, and no file names one for {}",
+                material_field.path, table.path
+            );
+            let remedy = format!("add density = \"2050 kg/m3\" to [materials.{material}]");
+            return Err(material_field.refuse(problem, remedy));
+        }
+    }
+    Ok(BodyEntry {
+        source,
+        material,
+        bond_kind,
+        position_m: table.read("position")?,
+        rotation_rad: table.read("rotation")?,
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
+        start_as,
+        whole_mass,
+    })
+}
+
+fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass>> {
+    let Some(field) = table.get("body_density") else {
+        let mass: Option<f64> = table.read("mass")?;
+        return Ok(mass.map(WholeMass::Mass));
+    };
+    if table.get("mass").is_some() {
+        let problem = format!("{} cannot be combined with mass", field.path);
+        return Err(field.refuse(
+            problem,
+            "either says what the body weighs: remove the other",
+        ));
+    }
+    if matches!(source, BodySource::Inline { .. }) {
+        let problem = format!(
+            "{} is that of a shape, and particles in the scene have none",
+            field.path
+        );
+        return Err(field.refuse(problem, "give the body a mass, such as mass = \"0.4 kg\""));
+    }
+    Ok(Some(WholeMass::Density(table.read("body_density")?)))
+}
+
+fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
+    let particles = table.get("particles");
+    let bonds = table.get("bond_list");
+    if let Some(file) = table.get("file") {
+        if let Some(field) = particles.or(bonds) {
+            let problem = format!("{} cannot be combined with file", field.path);
+            return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
+        }
+        return Ok(BodySource::File(named_path(&file, folder)?));
+    }
+    let Some(particles) = particles else {
+        let problem = format!("{} has no particles", table.path);
+        let remedy = "add file = \"body.vtp\", or particles = [[x, y, z, radius]]";
+        return Err(table.refuse(problem, remedy));
+    };
+    let particles = read_particles(&particles)?;
+    let bonds = match bonds {
+        Some(field) => read_bonds(&field, &particles)?,
+        None => Vec::new(),
+    };
+    Ok(BodySource::Inline { particles, bonds })
+}
+
+fn read_particles(field: &Field<'_>) -> Result<Vec<[f64; 4]>> {
+    let mut particles = Vec::new();
+    for item in field.items()? {
+        let [x, y, z, radius] = item.row("[x, y, z, radius]")?;
+        particles.push([
+            x.quantity(&LENGTH)?,
+            y.quantity(&LENGTH)?,
+            z.quantity(&LENGTH)?,
+            radius.positive(&LENGTH)?,
+        ]);
+    }
+    Ok(particles)
+}
+
+/// Bonds with the smaller index first.
+fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>> {
+    let mut bonds = Vec::new();
+    let mut known: HashMap<[u32; 2], usize> = HashMap::new();
+    let count = u32::try_from(particles.len()).unwrap_or(u32::MAX);
+    for (number, item) in field.items()?.into_iter().enumerate() {
+        let [a, b] = item.row("the numbers of two particles, such as [0, 1]")?;
+        let (a, b) = (a.particle(count)?, b.particle(count)?);
+        if a == b {
+            let problem = format!("{} joins particle {a} to itself", item.path);
+            return Err(item.refuse(problem, "correct or remove this bond"));
+        }
+        let pair = [a.min(b), a.max(b)];
+        if let Some(first) = known.insert(pair, number) {
+            let problem = format!(
+                "{} joins particles {} and {}, which {}[{first}] joins already",
+                item.path, pair[0], pair[1], field.path
+            );
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        let [from, to] = pair.map(|end| &particles[end as usize]);
+        if from[..3] == to[..3] {
+            let problem = format!(
+                "{} joins particles {} and {}, which are at the same place",
+                item.path, pair[0], pair[1]
+            );
+            return Err(item.refuse(problem, "a bond needs a length: move one of them"));
+        }
+        bonds.push(pair);
+    }
+    Ok(bonds)
+}
+
+pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
+    match &body.source {
+        BodySource::File(file) => listing.text("file", file.display().to_string()),
+        BodySource::Inline { particles, bonds } => {
+            listing.text("particles", format!("{} in the scene", particles.len()));
+            listing.text("bond_list", format!("{} in the scene", bonds.len()));
+        }
+    }
+    listing.text("material", &body.material);
+    match body.whole_mass {
+        Some(WholeMass::Density(density)) => listing.value("body_density", &density),
+        Some(WholeMass::Mass(mass)) => listing.value("mass", &mass),
+        None => listing.value("mass", &None::<f64>),
+    }
+    listing.text("bonds", body.bond_kind.as_deref().unwrap_or("none"));
+    listing.value("position", &body.position_m);
+    listing.value("rotation", &body.rotation_rad);
+    listing.value("velocity", &body.velocity_m_s);
+    listing.value("angular_velocity", &body.angular_velocity_rad_s);
+    clump::list_start(body.start_as, listing);
+}

@@ -1,0 +1,437 @@
+//! `[bonds.NAME]`
+
+use super::field::Field;
+use super::listing::{Listing, one_field_a_key};
+use super::material::poisson_ratio;
+use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::table::Table;
+use super::tree::Value;
+use dem_io::diagnostic::Result;
+use dem_io::units::{RATE, STRESS, VISCOUS_DAMPING};
+use serde::Serialize;
+
+/// Beam model of the bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BondModel {
+    /// "parallel": `stiffness_ratio` is normal over shear stiffness, 2 (1 + nu) unless given.
+    Parallel {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+    },
+    /// "euler-bernoulli"
+    EulerBernoulli,
+    /// "timoshenko"
+    Timoshenko,
+    /// "elastic-solid"
+    ElasticSolid,
+    /// "shear-coefficient": `shear_coefficient`, 0.9 unless given.
+    ShearCoefficient {
+        /// Shear coefficient of the section.
+        alpha: f64,
+    },
+}
+
+/// How forces follow from motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Formulation {
+    /// "total": the gradient of an energy of positions and orientations.
+    Total,
+    /// "incremental": summed step by step.
+    Incremental,
+}
+
+/// What bonds are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondKind {
+    /// `model`, "timoshenko" unless given.
+    pub model: BondModel,
+    /// `formulation`, "total" unless given.
+    pub formulation: Formulation,
+    /// `young_modulus`, Pa.
+    pub young_modulus_pa: f64,
+    /// `poisson_ratio`, in (-1, 0.5].
+    pub poisson_ratio: f64,
+    /// `radius_factor`: bond radius over the smaller of the two particle radii. None: the radii of
+    /// the body's file.
+    pub radius_factor: Option<f64>,
+    /// `damping = { ... }`
+    pub damping: BondDamping,
+    /// `failure = { ... }`
+    pub failure: BondFailure,
+}
+
+/// Viscous damping at the bond. Both may act together.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondDamping {
+    /// `damping_ratio`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
+    pub damping_ratio: f64,
+    /// `per_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
+    /// one.
+    pub per_mode: bool,
+    /// `damping_coefficient`: d of Platzer 2022, eq. 7, N s/m. 0: none.
+    pub damping_coefficient_n_s_m: f64,
+    /// `torque_factor`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
+    pub torque_factor: f64,
+}
+
+/// What the rate is of that strengthens bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub enum StrainRateMeasure {
+    /// "elongation": relative velocity along the bond over its initial length.
+    #[default]
+    Elongation,
+    /// "relative-velocity": the whole relative velocity over the initial length, as printed in
+    /// Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    RelativeVelocity,
+}
+
+/// What breaks a bond; whichever comes first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondFailure {
+    /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's
+    /// sigma_max with the sign of the force).
+    pub tensile_strength_pa: Option<f64>,
+    /// `compressive_strength`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None:
+    /// nothing breaks there.
+    pub compressive_strength_pa: Option<f64>,
+    /// `shear_strength`: largest shear stress, Pa (MUSEN's tau_max).
+    pub shear_strength_pa: Option<f64>,
+    /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
+    pub von_mises_strength_pa: Option<f64>,
+    /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
+    /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
+    pub rate_strengthening_from_1_s: Option<f64>,
+    /// `strain_rate_measure`: what that rate is of. The elongation unless given.
+    pub strain_rate_measure: StrainRateMeasure,
+    /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
+    /// is the strength given. None: all alike.
+    pub weibull_modulus: Option<f64>,
+}
+
+/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20,
+/// 21] begins to rise.
+const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
+
+pub(super) static BOND: Schema = Schema {
+    title: "[bonds.NAME]",
+    doc: "What bonds are made of.",
+    keys: &[
+        Key::new(
+            "model",
+            Kind::Word(|| words_of(&models(None, 0.0))),
+            "Beam model of the bond.",
+        )
+        .or_word("timoshenko"),
+        Key::number(
+            "stiffness_ratio",
+            "Of the model `parallel`: normal over shear stiffness.",
+        )
+        .positive()
+        .otherwise("2 (1 + nu)"),
+        Key::number(
+            "shear_coefficient",
+            "Of the model `shear-coefficient`: that of the section.",
+        )
+        .positive()
+        .or(0.9),
+        Key::word::<Formulation>(
+            "formulation",
+            "total",
+            "Forces are the gradient of an energy of positions and orientations; or `incremental`, for comparison: \
+             summed step by step.",
+        ),
+        Key::quantity("young_modulus", &STRESS, "Young's modulus of the beam.")
+            .positive()
+            .required("\"15 MPa\""),
+        poisson_ratio("Poisson's ratio of the beam.").required("0.3"),
+        Key::number(
+            "radius_factor",
+            "Radius of the bond over the smaller of the two particles'.",
+        )
+        .positive()
+        .otherwise("radii of the body"),
+        Key::table("damping", &DAMPING, "Viscous damping at the bond."),
+        Key::table(
+            "failure",
+            &FAILURE,
+            "What breaks a bond; nothing, unless given.",
+        ),
+    ],
+};
+
+pub(super) static DAMPING: Schema = Schema {
+    title: "Damping",
+    doc: "Viscous damping at the bond. Both kinds may act together.",
+    keys: &[
+        Key::number(
+            "damping_ratio",
+            "Fraction of critical damping: eta of Chen et al. 2022, eqs. 9 and 10; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+        Key::flag(
+            "per_mode",
+            false,
+            "`damping_ratio` refers to the stiffness of each mode instead of the normal and the torsional one.",
+        ),
+        Key::quantity(
+            "damping_coefficient",
+            &VISCOUS_DAMPING,
+            "d of Platzer 2022, eq. 7; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+        Key::number(
+            "torque_factor",
+            "Factor of the damping torque of Platzer 2022, eq. 9, which is 1 there; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+    ],
+};
+
+pub(super) static FAILURE: Schema = Schema {
+    title: "Failure",
+    doc: "What breaks a bond, whichever comes first. At least one strength is given.",
+    keys: &[
+        Key::quantity("tensile_strength", &STRESS, "Largest tensile stress at the edge of the bond.").not_negative(),
+        Key::quantity(
+            "compressive_strength",
+            &STRESS,
+            "Largest compressive stress at the edge of the bond; without it no bond breaks in compression.",
+        )
+        .not_negative(),
+        Key::quantity("shear_strength", &STRESS, "Largest shear stress.").not_negative(),
+        Key::quantity(
+            "von_mises_strength",
+            &STRESS,
+            "Largest equivalent stress (Platzer 2022, eqs. 11 to 13).",
+        )
+        .not_negative(),
+        Key::new(
+            "rate_strengthening",
+            Kind::Either(&[Kind::Boolean, Kind::Quantity(&RATE)]),
+            "Strain rate from which all strengths but that in compression rise with the rate (Platzer 2022, eqs. 20 \
+             and 21); `true` stands for 4.64e-6 1/s.",
+        )
+        .positive()
+        .remedy("write true, or a strain rate such as \"4.64e-6 1/s\""),
+        Key::number(
+            "weibull_modulus",
+            "Strengths scatter by a Weibull distribution of this modulus whose scale is the strength given.",
+        )
+        .positive(),
+        Key::word::<StrainRateMeasure>(
+            "strain_rate_measure",
+            "elongation",
+            "What strain rate `rate_strengthening` uses: the relative velocity along the bond over its length, or, as \
+             printed in Platzer 2022, eq. 21, the full relative velocity over it.",
+        ),
+    ],
+};
+
+impl Word for Formulation {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("total", Self::Total), ("incremental", Self::Incremental)];
+}
+
+impl Word for StrainRateMeasure {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("elongation", Self::Elongation),
+        ("relative-velocity", Self::RelativeVelocity),
+    ];
+}
+
+pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
+    let table = Table::of(field, &BOND)?;
+    Ok(BondKind {
+        model: model(&table)?,
+        formulation: table.read("formulation")?,
+        young_modulus_pa: table.read("young_modulus")?,
+        poisson_ratio: table.read("poisson_ratio")?,
+        radius_factor: table.read("radius_factor")?,
+        damping: damping(&table.table("damping", &DAMPING)?)?,
+        failure: table
+            .read_by("failure", |field| failure(&field))?
+            .unwrap_or_default(),
+    })
+}
+
+/// The models and their words.
+fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
+    [
+        ("parallel", BondModel::Parallel { stiffness_ratio }),
+        ("euler-bernoulli", BondModel::EulerBernoulli),
+        ("timoshenko", BondModel::Timoshenko),
+        ("elastic-solid", BondModel::ElasticSolid),
+        ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
+    ]
+}
+
+fn model(table: &Table<'_>) -> Result<BondModel> {
+    let known = models(
+        table.read("stiffness_ratio")?,
+        table.read("shear_coefficient")?,
+    );
+    let model = table
+        .read_by("model", |field| field.choice(&known))?
+        .unwrap_or(BondModel::Timoshenko);
+    for (key, of, belongs) in [
+        (
+            "stiffness_ratio",
+            "parallel",
+            matches!(model, BondModel::Parallel { .. }),
+        ),
+        (
+            "shear_coefficient",
+            "shear-coefficient",
+            matches!(model, BondModel::ShearCoefficient { .. }),
+        ),
+    ] {
+        if let (Some(field), false) = (table.get(key), belongs) {
+            let name = known.iter().find(|(_, other)| *other == model);
+            let problem = format!(
+                "{} does not apply to the model \"{}\"",
+                field.path,
+                name.map_or("", |(name, _)| *name)
+            );
+            return Err(field.refuse(problem, format!("remove it, or write model = \"{of}\"")));
+        }
+    }
+    Ok(model)
+}
+
+one_field_a_key! {
+    BondDamping {
+        damping_ratio: "damping_ratio",
+        per_mode: "per_mode",
+        damping_coefficient_n_s_m: "damping_coefficient",
+        torque_factor: "torque_factor",
+    }
+}
+
+fn damping(table: &Table<'_>) -> Result<BondDamping> {
+    let damping = fields(table)?;
+    if let (Some(field), None) = (table.get("per_mode"), table.get("damping_ratio")) {
+        let problem = format!("{} has no effect without damping_ratio", field.path);
+        return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
+    }
+    Ok(damping)
+}
+
+impl Default for BondFailure {
+    /// Nothing breaks.
+    fn default() -> Self {
+        Self {
+            tensile_strength_pa: None,
+            compressive_strength_pa: None,
+            shear_strength_pa: None,
+            von_mises_strength_pa: None,
+            rate_strengthening_from_1_s: None,
+            strain_rate_measure: StrainRateMeasure::default(),
+            weibull_modulus: None,
+        }
+    }
+}
+
+fn failure(field: &Field<'_>) -> Result<BondFailure> {
+    if let Some(old) = Table::any(field)?.get("compressive") {
+        let problem = format!(
+            "{} was removed: tensile_strength breaks bonds in tension only",
+            old.path
+        );
+        let remedy = "write compressive_strength = \"15 MPa\" for a strength in compression, or leave it out";
+        return Err(old.refuse(problem, remedy));
+    }
+    let table = Table::of(field, &FAILURE)?;
+    let failure = BondFailure {
+        tensile_strength_pa: table.read("tensile_strength")?,
+        compressive_strength_pa: table.read("compressive_strength")?,
+        shear_strength_pa: table.read("shear_strength")?,
+        von_mises_strength_pa: table.read("von_mises_strength")?,
+        rate_strengthening_from_1_s: rate_strengthening(&table)?,
+        strain_rate_measure: table.read("strain_rate_measure")?,
+        weibull_modulus: table.read("weibull_modulus")?,
+    };
+    let by_rate = [
+        failure.tensile_strength_pa,
+        failure.shear_strength_pa,
+        failure.von_mises_strength_pa,
+    ];
+    let has_none = by_rate.iter().all(Option::is_none);
+    if has_none && failure.compressive_strength_pa.is_none() {
+        let remedy = "add tensile_strength, compressive_strength, shear_strength or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
+        let field = table.get("rate_strengthening").unwrap_or(field.clone());
+        let problem = format!("{} has no strength to exceed", field.path);
+        return Err(field.refuse(problem, remedy));
+    }
+    if let (Some(field), None) = (
+        table.get("strain_rate_measure"),
+        table.get("rate_strengthening"),
+    ) {
+        let problem = format!("{} has no effect without rate_strengthening", field.path);
+        return Err(field.refuse(
+            problem,
+            "add rate_strengthening = true, or remove strain_rate_measure",
+        ));
+    }
+    let strengthens = table.get("rate_strengthening");
+    let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
+    if let (Some(field), true) = (strengthens, has_none) {
+        let problem = format!(
+            "{} has no effect without tensile_strength, shear_strength or von_mises_strength, which it raises; it does not raise compressive_strength",
+            field.path
+        );
+        return Err(field.refuse(
+            problem,
+            "add tensile_strength = \"1 MPa\", or remove rate_strengthening",
+        ));
+    }
+    Ok(failure)
+}
+
+/// The strain rate from which strengths rise, 1/s. None for `false`.
+fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
+    let Some(field) = table.get("rate_strengthening") else {
+        return Ok(None);
+    };
+    if let Value::Boolean(on) = field.node.value {
+        return Ok(on.then_some(RATE_STRENGTHENING_FROM));
+    }
+    if field.is_word() {
+        let remedy = "write true, or a strain rate such as \"4.64e-6 1/s\"";
+        return Err(field.wrong("true, false or a rate", remedy));
+    }
+    table.read("rate_strengthening")
+}
+
+pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
+    let known = models(None, 0.0);
+    let same =
+        |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
+    let name = known.iter().find(|(_, other)| same(other));
+    listing.text("model", name.map_or("", |(name, _)| *name));
+    match kind.model {
+        BondModel::Parallel { stiffness_ratio } => {
+            let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
+            listing.value("stiffness_ratio", &stiffness_ratio);
+        }
+        BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
+        BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
+    }
+    listing.value("formulation", &kind.formulation);
+    listing.value("young_modulus", &kind.young_modulus_pa);
+    listing.value("poisson_ratio", &kind.poisson_ratio);
+    listing.value("radius_factor", &kind.radius_factor);
+    listing.table("damping", &DAMPING, |listing| list(&kind.damping, listing));
+    let failure = &kind.failure;
+    listing.table("failure", &FAILURE, |listing| {
+        listing.value("tensile_strength", &failure.tensile_strength_pa);
+        listing.value("compressive_strength", &failure.compressive_strength_pa);
+        listing.value("shear_strength", &failure.shear_strength_pa);
+        listing.value("von_mises_strength", &failure.von_mises_strength_pa);
+        listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);
+        listing.value("weibull_modulus", &failure.weibull_modulus);
+        listing.value("strain_rate_measure", &failure.strain_rate_measure);
+    });
+}

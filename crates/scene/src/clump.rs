@@ -1,0 +1,117 @@
+//! `start_as` and `clump` of `[bodies.NAME]`
+
+use std::ops::Bound::Included;
+
+use super::listing::{Listing, one_field_a_key};
+use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// What a body is at first: when the run starts, or when an inlet feeds it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum StartAs {
+    /// "bonded": particles, and bonds between them.
+    #[default]
+    Bonded,
+    /// "clump": rigid, until `[replacement]` replaces it.
+    Clump(ClumpSettings),
+}
+
+/// `clump = { scale, mass }`: how a rigid clump is made of a body. Its spheres are the body's
+/// particles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClumpSettings {
+    /// `scale`: radii with which its spheres touch others, over those of the particles, about their
+    /// own centres. 1 unless given; in [1, 1.5].
+    pub scale: f64,
+    /// `mass`, "spheres" unless given.
+    pub mass: ClumpMass,
+}
+
+/// `scale` unless given.
+const SCALE: f64 = 1.0;
+
+impl Default for ClumpSettings {
+    fn default() -> Self {
+        Self {
+            scale: SCALE,
+            mass: ClumpMass::Spheres,
+        }
+    }
+}
+
+/// Of what mass, centre and inertia of a clump are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClumpMass {
+    /// "spheres": sums over the particles, overlaps twice, as of the bonded cluster.
+    Spheres,
+    /// "union": what the particles fill together, overlaps once.
+    Union,
+}
+
+/// What a body may start as: whether as a clump.
+const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
+
+/// The key `start_as`.
+pub(super) const START_AS: Key = Key::new(
+    "start_as",
+    Kind::Word(|| words_of(&STARTS)),
+    "Bonded particles, or a rigid clump until `[replacement]` replaces it.",
+)
+.or_word("bonded");
+
+pub(super) static CLUMP: Schema = Schema {
+    title: "Clump",
+    doc: "A rigid clump made of a body. Its spheres are the body's particles.",
+    keys: &[
+        Key::number(
+            "scale",
+            "Radii with which its spheres touch others, over those of the particles, about their own centres.",
+        )
+        .within(Included(1.0), Included(1.5))
+        .remedy("it is a factor on the radii: 1 leaves them as they are")
+        .or(SCALE),
+        Key::word::<ClumpMass>(
+            "mass",
+            "spheres",
+            "Mass, centre and inertia are sums over the particles, as of the bonded cluster; or `union`: of what they \
+             fill together, overlaps once.",
+        ),
+    ],
+};
+
+impl Word for ClumpMass {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("spheres", Self::Spheres), ("union", Self::Union)];
+}
+
+one_field_a_key! {
+    ClumpSettings {
+        scale: "scale",
+        mass: "mass",
+    }
+}
+
+pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
+    let is_clump = body
+        .read_by("start_as", |field| field.choice(&STARTS))?
+        .unwrap_or(false);
+    if is_clump {
+        return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
+    }
+    if let Some(field) = body.get("clump") {
+        let problem = format!("{} has no effect without start_as = \"clump\"", field.path);
+        return Err(field.refuse(problem, "add start_as = \"clump\", or remove it"));
+    }
+    Ok(StartAs::Bonded)
+}
+
+pub(super) fn list_start(start_as: StartAs, listing: &mut Listing) {
+    match start_as {
+        StartAs::Bonded => listing.text("start_as", "bonded"),
+        StartAs::Clump(clump) => {
+            listing.text("start_as", "clump");
+            listing.table("clump", &CLUMP, |listing| list(&clump, listing));
+        }
+    }
+}

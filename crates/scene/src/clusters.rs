@@ -1,0 +1,67 @@
+//! `[clusters]`
+
+use super::listing::one_field_a_key;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// When damaged bodies are searched for their pieces (Platzer 2022, 4.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Clusters {
+    /// `interval`: steps between two looks at what has broken. At least 1.
+    pub interval: u64,
+    /// `min_broken_bonds`: bonds that must have broken since the last search for another. At least
+    /// 1.
+    pub min_broken_bonds: u64,
+    /// `force_every`: so many intervals after the last search there is another in any case. 0:
+    /// never.
+    pub force_every: u64,
+}
+
+pub(super) static CLUSTERS: Schema = Schema {
+    title: "[clusters]",
+    doc: "How often broken bodies are searched for fragments.",
+    keys: &[
+        Key::new(
+            "interval",
+            Kind::Whole {
+                least: 1,
+                most: None,
+                of: "steps",
+            },
+            "Steps between two checks for broken bonds.",
+        )
+        .remedy("a usual value is 50")
+        .or(50.0),
+        Key::whole(
+            "min_broken_bonds",
+            1,
+            "Bonds that must have broken since the last search for another.",
+        )
+        .remedy("1 stands for any bond")
+        .or(1.0),
+        Key::new(
+            "force_every",
+            Kind::Whole {
+                least: 0,
+                most: Some(u64::MAX),
+                of: "intervals",
+            },
+            "After so many intervals there is a search in any case; 0: never.",
+        )
+        .remedy("write 0 for never")
+        .otherwise("never"),
+    ],
+};
+
+one_field_a_key! {
+    Clusters {
+        interval: "interval",
+        min_broken_bonds: "min_broken_bonds",
+        force_every: "force_every",
+    }
+}
+
+pub(super) fn read(root: &Table<'_>) -> Result<Clusters> {
+    fields(&root.table("clusters", &CLUSTERS)?)
+}

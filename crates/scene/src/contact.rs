@@ -1,0 +1,290 @@
+//! `[contacts]`: how two materials touch.
+
+mod pair;
+
+use std::collections::BTreeMap;
+use std::ops::Bound::{Excluded, Included};
+
+use self::pair::named_pair;
+use super::field::Field;
+use super::listing::Listing;
+use super::material::Material;
+use super::schema::{Key, Kind, Schema, words_of};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::STIFFNESS;
+
+/// Least coefficient of restitution: dampers that leave less need steps without end.
+const LEAST_RESTITUTION: f64 = 1e-3;
+
+/// Laws of contact: whether linear.
+const LAWS: [(&str, bool); 2] = [("hertz-mindlin", false), ("linear", true)];
+
+/// Laws of rolling: whether with a spring.
+const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
+
+pub(super) static CONTACT: Schema = Schema {
+    title: "[contacts.NAME-NAME]",
+    doc: "Contact law of two materials, in either order of their names, which may contain a -.",
+    keys: &[
+        Key::new(
+            "law",
+            Kind::Word(|| words_of(&LAWS)),
+            "Hertz-Mindlin, or a linear spring and dashpot.",
+        )
+        .or_word("hertz-mindlin"),
+        Key::quantity(
+            "normal_stiffness",
+            &STIFFNESS,
+            "Of the law `linear`, which needs it.",
+        )
+        .positive()
+        .sometimes_required("\"100 kN/m\""),
+        Key::number(
+            "tangential_stiffness_ratio",
+            "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
+        )
+        .within(Excluded(0.0), Included(1.0))
+        .remedy("leave it out for 2/7")
+        .or(2.0 / 7.0),
+        Key::number(
+            "restitution",
+            "Coefficient of restitution: speed after a head-on collision over that before it.",
+        )
+        .within(Included(LEAST_RESTITUTION), Included(1.0))
+        .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
+        .required("0.5"),
+        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal one.")
+            .not_negative()
+            .or(0.0),
+        Key::new(
+            "rolling",
+            Kind::Word(|| words_of(&ROLLINGS)),
+            "Model of rolling friction; `constant-torque` where only `rolling_friction` is given.",
+        ),
+        Key::number(
+            "rolling_friction",
+            "Coefficient of rolling friction. Needs a `friction` above 0.",
+        )
+        .positive()
+        .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
+        .sometimes_required("0.05"),
+        Key::number(
+            "rolling_damping_ratio",
+            "Of `spring-dashpot`: fraction of critical damping.",
+        )
+        .within(Included(0.0), Included(1.0))
+        .remedy("it is a fraction of critical damping: a usual value is 0.3")
+        .or(0.3),
+    ],
+};
+
+/// How two materials touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// Names of `[materials]`, sorted; twice the same for a material with itself.
+    pub materials: [String; 2],
+    /// `law`
+    pub law: ContactLaw,
+    /// `restitution`: speed after a head-on collision over that before it, in (0, 1].
+    pub restitution: f64,
+    /// `friction`: largest tangential force over the normal one; 0 unless given.
+    pub friction: f64,
+    /// `rolling`: none where `friction` is 0.
+    pub rolling: Rolling,
+}
+
+/// How forces follow from overlap and sliding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactLaw {
+    /// "hertz-mindlin", unless given: elastic spheres. Both materials have a `young_modulus`, or
+    /// one of them is rigid.
+    HertzMindlin,
+    /// "linear": a spring and a dashpot.
+    Linear {
+        /// `normal_stiffness`, N/m.
+        normal_n_m: f64,
+        /// `tangential_stiffness_ratio`: tangential over normal stiffness, 2/7 unless given; in (0,
+        /// 1].
+        tangential_stiffness_ratio: f64,
+    },
+}
+
+/// What resists rolling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rolling {
+    /// Nothing, without `rolling_friction`.
+    None,
+    /// "constant-torque", unless given.
+    ConstantTorque {
+        /// `rolling_friction`, a coefficient of more than 0.
+        friction: f64,
+    },
+    /// "spring-dashpot": elastic up to that torque, then plastic.
+    SpringDashpot {
+        /// `rolling_friction`, a coefficient of more than 0.
+        friction: f64,
+        /// `rolling_damping_ratio`: fraction of critical damping, 0.3 unless given; in [0, 1].
+        damping: f64,
+    },
+}
+
+/// The contacts of a scene, sorted by their materials.
+pub(super) fn read_all(
+    root: &Table<'_>,
+    materials: &BTreeMap<String, Material>,
+) -> Result<Vec<Contact>> {
+    let Some(field) = root.get("contacts") else {
+        return Ok(Vec::new());
+    };
+    let table = Table::any(&field)?;
+    let mut contacts = BTreeMap::new();
+    let mut paths: BTreeMap<[String; 2], String> = BTreeMap::new();
+    for (key, node) in table.entries {
+        let field = table.field(key, node);
+        let pair = named_pair(key, &field, materials)?;
+        if let Some(first) = paths.insert(pair.clone(), field.path.clone()) {
+            let problem = format!("{} is the same pair as {first}", field.path);
+            return Err(field.refuse(problem, "remove one of them"));
+        }
+        contacts.insert(pair.clone(), read(&field, pair, materials)?);
+    }
+    Ok(contacts.into_values().collect())
+}
+
+fn read(
+    field: &Field<'_>,
+    pair: [String; 2],
+    materials: &BTreeMap<String, Material>,
+) -> Result<Contact> {
+    let table = Table::of(field, &CONTACT)?;
+    let is_rigid = |name: &String| materials.get(name).is_some_and(|material| material.rigid);
+    if pair.iter().all(is_rigid) {
+        let problem = format!("{} is a pair of rigid materials", field.path);
+        return Err(field.refuse(
+            problem,
+            "remove it: only walls are rigid, and walls never meet each other",
+        ));
+    }
+    let law = law(&table)?;
+    if law == ContactLaw::HertzMindlin {
+        need_moduli(&table, &pair, materials)?;
+    }
+    let restitution = table.read("restitution")?;
+    let friction = table.read("friction")?;
+    Ok(Contact {
+        materials: pair,
+        law,
+        restitution,
+        friction,
+        rolling: rolling(&table, friction)?,
+    })
+}
+
+fn law(table: &Table<'_>) -> Result<ContactLaw> {
+    let is_linear = table.read_by("law", |field| field.choice(&LAWS))?;
+    if is_linear != Some(true) {
+        let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
+        if let Some((_, field)) = of_linear.next() {
+            let problem = format!(
+                "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
+                field.path
+            );
+            return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
+        }
+        return Ok(ContactLaw::HertzMindlin);
+    }
+    Ok(ContactLaw::Linear {
+        normal_n_m: table.read("normal_stiffness")?,
+        tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
+    })
+}
+
+/// Whether both materials say how stiff they are, as Hertz and Mindlin need it.
+fn need_moduli(
+    table: &Table<'_>,
+    pair: &[String; 2],
+    materials: &BTreeMap<String, Material>,
+) -> Result<()> {
+    let has_none = |name: &&String| {
+        let material = materials.get(*name);
+        material.is_none_or(|material| material.young_modulus_pa.is_none() && !material.rigid)
+    };
+    let Some(name) = pair.iter().find(has_none) else {
+        return Ok(());
+    };
+    let problem = format!(
+        "{} follows the law \"hertz-mindlin\", but [materials.{name}] has no young_modulus",
+        table.path
+    );
+    let remedy = format!(
+        "add young_modulus = \"15 MPa\" to [materials.{name}], or write law = \"linear\" here"
+    );
+    Err(table.refuse(problem, remedy))
+}
+
+fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
+    let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
+    let damping = table.read("rolling_damping_ratio")?;
+    if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
+        let problem = format!(
+            "{} has no effect without rolling = \"spring-dashpot\"",
+            field.path
+        );
+        return Err(field.refuse(problem, "remove it, or add rolling = \"spring-dashpot\""));
+    }
+    if is_sprung.is_none() && table.get("rolling_friction").is_none() {
+        return Ok(Rolling::None);
+    }
+    let friction = table.read("rolling_friction")?;
+    if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
+        let problem = format!(
+            "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
+            field.path,
+            field.shown(),
+            table.path,
+            if table.get("friction").is_some() {
+                "0"
+            } else {
+                "not given, which means 0"
+            }
+        );
+        return Err(field.refuse(
+            problem,
+            "give friction above 0, or remove rolling and rolling_friction",
+        ));
+    }
+    Ok(if is_sprung == Some(true) {
+        Rolling::SpringDashpot { friction, damping }
+    } else {
+        Rolling::ConstantTorque { friction }
+    })
+}
+
+pub(super) fn list(contact: &Contact, listing: &mut Listing) {
+    match contact.law {
+        ContactLaw::HertzMindlin => listing.text("law", "hertz-mindlin"),
+        ContactLaw::Linear {
+            normal_n_m,
+            tangential_stiffness_ratio,
+        } => {
+            listing.text("law", "linear");
+            listing.value("normal_stiffness", &normal_n_m);
+            listing.value("tangential_stiffness_ratio", &tangential_stiffness_ratio);
+        }
+    }
+    listing.value("restitution", &contact.restitution);
+    listing.value("friction", &contact.friction);
+    match contact.rolling {
+        Rolling::None => listing.text("rolling", "none"),
+        Rolling::ConstantTorque { friction } => {
+            listing.text("rolling", "constant-torque");
+            listing.value("rolling_friction", &friction);
+        }
+        Rolling::SpringDashpot { friction, damping } => {
+            listing.text("rolling", "spring-dashpot");
+            listing.value("rolling_friction", &friction);
+            listing.value("rolling_damping_ratio", &damping);
+        }
+    }
+}

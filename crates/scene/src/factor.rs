@@ -1,0 +1,143 @@
+//! Factors over time, which loads, supports and walls share: `ramp`, `table` and `end`.
+
+use super::field::Field;
+use super::listing::{LISTED, Listing};
+use super::numbers::{number, quantity};
+use super::schema::{Key, Kind};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{NUMBER, TIME};
+use serde::{Deserialize, Serialize};
+
+/// Factor on a load or a motion, over time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Factor {
+    /// 1 from the start.
+    One,
+    /// `ramp`: rises evenly from 0 to 1 until this time, s, and stays.
+    Ramp {
+        /// End of the rise, s.
+        until_s: f64,
+    },
+    /// `table = [[time, factor], ...]`: straight between the points, constant outside them. Times
+    /// rise.
+    Table(Vec<[f64; 2]>),
+}
+
+/// The key `ramp`.
+pub(super) const RAMP: Key = Key::quantity(
+    "ramp",
+    &TIME,
+    "The factor on it rises linearly from 0 to 1 until this time, and stays 1.",
+)
+.positive();
+
+/// The key `table`.
+pub(super) const TABLE: Key = Key::new(
+    "table",
+    Kind::List(&Kind::Row(&[
+        Kind::Quantity(&TIME),
+        Kind::Quantity(&NUMBER),
+    ])),
+    "Instead of `ramp`: `[[time, factor], ...]`, straight between the rows, constant outside them. Times rise.",
+);
+
+/// The key `end`.
+pub(super) const fn until(doc: &'static str) -> Key {
+    Key::quantity("end", &TIME, doc)
+        .positive()
+        .otherwise("never")
+}
+
+/// The key that says how a factor changes with time, if there is one.
+pub(super) fn over_time<'a>(table: &Table<'a>) -> Option<Field<'a>> {
+    table.get("ramp").or_else(|| table.get("table"))
+}
+
+/// `ramp` or `table`; 1 without either.
+pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
+    match (table.get("ramp"), table.get("table")) {
+        (None, None) => Ok(Factor::One),
+        (Some(_), None) => Ok(Factor::Ramp {
+            until_s: table.read("ramp")?,
+        }),
+        (None, Some(field)) => points(&field),
+        (Some(_), Some(field)) => {
+            let problem = format!("{} cannot be combined with ramp", field.path);
+            Err(field.refuse(problem, "the factor follows one of them: remove the other"))
+        }
+    }
+}
+
+/// `end`, s: not before the last change of the factor.
+pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
+    let Some(field) = table.get("end") else {
+        return Ok(None);
+    };
+    let end_s = table.read("end")?;
+    let (last_s, which) = match factor {
+        Factor::One => return Ok(Some(end_s)),
+        Factor::Ramp { until_s } => (*until_s, "the ramp"),
+        Factor::Table(points) => (points.last().map_or(0.0, |row| row[0]), "the table"),
+    };
+    if end_s < last_s {
+        let limit = format!("at least {last_s} s, the end of {which}");
+        return Err(field.wrong(&limit, format!("write a later end, or shorten {which}")));
+    }
+    Ok(Some(end_s))
+}
+
+/// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to
+/// begin at 0.
+pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
+    let factor = factor(table)?;
+    let first = match &factor {
+        Factor::Ramp { .. } => Some([0.0, 0.0]),
+        Factor::Table(points) => points.first().copied(),
+        Factor::One => None,
+    };
+    match (first, table.get("table")) {
+        (None, _) => {
+            let problem = format!("{} has no effect without ramp or table", moved.path);
+            Err(moved.refuse(problem, "add ramp = \"0.1 s\", the time that it takes"))
+        }
+        (Some([time_s, first]), Some(field)) if first != 0.0 || time_s < 0.0 => {
+            let problem = format!(
+                "{} begins with a factor of {first} at {time_s} s, so {} would be followed in part only",
+                field.path, moved.path
+            );
+            Err(field.refuse(problem, "begin it with a factor of 0, at 0 s or later"))
+        }
+        _ => Ok(factor),
+    }
+}
+
+fn points(field: &Field<'_>) -> Result<Factor> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for item in field.items()? {
+        let [time, factor] = item.row("[time, factor]")?;
+        let time_s = time.quantity(&TIME)?;
+        if let Some([before_s, _]) = points.last()
+            && time_s <= *before_s
+        {
+            let limit = format!("more than the time before it, {before_s} s");
+            return Err(time.wrong(&limit, "put the rows in the order of time"));
+        }
+        points.push([time_s, factor.quantity(&NUMBER)?]);
+    }
+    Ok(Factor::Table(points))
+}
+
+pub(super) fn list(factor: &Factor, listing: &mut Listing) {
+    match factor {
+        Factor::One => listing.text("factor", "1"),
+        Factor::Ramp { until_s } => listing.value("ramp", until_s),
+        Factor::Table(points) => {
+            let row = |[time_s, factor]: &[f64; 2]| {
+                format!("{}: {}", quantity(*time_s, "s"), number(*factor))
+            };
+            let shown: Vec<String> = points.iter().take(LISTED).map(row).collect();
+            listing.some("table", &shown, points.len());
+        }
+    }
+}

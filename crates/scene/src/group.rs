@@ -1,0 +1,189 @@
+//! `[groups.NAME]`
+
+use std::collections::{BTreeMap, HashSet};
+
+use super::body::{BodyEntry, BodySource};
+use super::field::Field;
+use super::listing::{LISTED, Listing};
+use super::names::{FRAGMENTS, meaning};
+use super::presence::Presence;
+use super::schema::{Key, Kind, Schema};
+use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// Which particles are meant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParticleGroup {
+    /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
+    pub body: Option<String>,
+    /// How they are picked, at the start of the run.
+    pub pick: Pick,
+}
+
+/// How particles are picked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pick {
+    /// `all = true`
+    All,
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there
+    /// is one body.
+    Particles(Vec<u32>),
+    /// `box = { min, max }`: centres in it, m.
+    Box {
+        /// Smallest corner, m.
+        min: [f64; 3],
+        /// Largest corner, m.
+        max: [f64; 3],
+    },
+    /// `sphere = { centre, radius }`: centres in it, m.
+    Sphere {
+        /// Centre, m.
+        centre: [f64; 3],
+        /// Radius, m.
+        radius: f64,
+    },
+}
+
+/// The ways to pick.
+const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
+
+pub(super) static GROUP: Schema = Schema {
+    title: "[groups.NAME]",
+    doc: "A group of particles, selected in one way at the start of the run. The name of a body and `all` are groups as well.",
+    keys: &[
+        Key::text("body", "a name in [bodies]", "Of this body only.").otherwise("all"),
+        Key::new("all", Kind::True, "All of them."),
+        Key::new(
+            "particles",
+            Kind::List(&Kind::Whole {
+                least: 0,
+                most: None,
+                of: "",
+            }),
+            "By their numbers in the body's file, from 0. Needs a `body`, or a scene with one body.",
+        ),
+        Key::table("box", &BOX, "Those whose centres are in it."),
+        Key::table("sphere", &SPHERE, "Those whose centres are in it."),
+    ],
+};
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    presence: &Presence<'_>,
+) -> Result<BTreeMap<String, ParticleGroup>> {
+    let bodies = presence.bodies;
+    let mut groups = BTreeMap::new();
+    for (name, field) in root.named("groups")? {
+        let body = format!("the body [bodies.{name}]");
+        let is_body = bodies.contains_key(&name);
+        if let Some(of) = meaning(&name).or(is_body.then_some(&body)) {
+            let problem = format!("{} is named like {of}", field.path);
+            let remedy = if name == FRAGMENTS {
+                "give it another name"
+            } else {
+                "give it another name, or remove it: the name stands for those particles without it"
+            };
+            return Err(field.refuse(problem, remedy));
+        }
+        let group = read(&field, bodies)?;
+        presence.refuse_group(&field, group.body.as_deref())?;
+        groups.insert(name, group);
+    }
+    Ok(groups)
+}
+
+fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleGroup> {
+    let table = Table::of(field, &GROUP)?;
+    let body = table.read_by("body", |field| field.reference(bodies.keys(), "bodies"))?;
+    let mut given = table.given(&PICKS);
+    let Some((key, first)) = given.next() else {
+        let problem = format!("{} selects nothing", table.path);
+        let remedy =
+            "add all = true, particles = [0], box = { min, max } or sphere = { centre, radius }";
+        return Err(table.refuse(problem, remedy));
+    };
+    if let Some((_, second)) = given.next() {
+        let problem = format!("{} cannot be combined with {key}", second.path);
+        return Err(second.refuse(
+            problem,
+            "a group selects in one way: remove one, or make two groups",
+        ));
+    }
+    match key {
+        "particles" => {
+            let only = bodies.keys().next().filter(|_| bodies.len() == 1);
+            let Some(body) = body.or(only.cloned()) else {
+                let problem = format!(
+                    "{} needs a body, and there are {}",
+                    first.path,
+                    bodies.len()
+                );
+                let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
+                let remedy = format!("add body = \"NAME\", one of {}", names.join(", "));
+                return Err(first.refuse(problem, remedy));
+            };
+            let pick = Pick::Particles(particles(&first, bodies.get(&body))?);
+            Ok(ParticleGroup {
+                body: Some(body),
+                pick,
+            })
+        }
+        "box" => Ok(ParticleGroup {
+            body,
+            pick: region(&first)?,
+        }),
+        "sphere" => {
+            let (centre, radius) = sphere(&first)?;
+            let pick = Pick::Sphere { centre, radius };
+            Ok(ParticleGroup { body, pick })
+        }
+        _ => {
+            if !first.boolean()? {
+                return Err(first.wrong("true", "write all = true, or pick in another way"));
+            }
+            Ok(ParticleGroup {
+                body,
+                pick: Pick::All,
+            })
+        }
+    }
+}
+
+fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
+    let count = match body.map(|body| &body.source) {
+        Some(BodySource::Inline { particles, .. }) => particles.len(),
+        // Whoever reads the file checks the indices.
+        _ => usize::MAX,
+    };
+    let count = u32::try_from(count).unwrap_or(u32::MAX);
+    let mut picked = Vec::new();
+    let mut known = HashSet::new();
+    for item in field.items()? {
+        let index = item.particle(count)?;
+        if !known.insert(index) {
+            let problem = format!("{} is {index}, which is in the list already", item.path);
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        picked.push(index);
+    }
+    Ok(picked)
+}
+
+fn region(field: &Field<'_>) -> Result<Pick> {
+    let [min, max] = corners(field, "at most", |low, high| low <= high)?;
+    Ok(Pick::Box { min, max })
+}
+
+pub(super) fn list(group: &ParticleGroup, listing: &mut Listing) {
+    listing.text("body", group.body.as_deref().unwrap_or("all"));
+    match &group.pick {
+        Pick::All => listing.text("all", "true"),
+        Pick::Particles(picked) => {
+            let shown: Vec<String> = picked.iter().take(LISTED).map(u32::to_string).collect();
+            listing.some("particles", &shown, picked.len());
+        }
+        Pick::Box { min, max } => list_box(*min, *max, listing),
+        Pick::Sphere { centre, radius } => list_sphere(*centre, *radius, listing),
+    }
+}

@@ -1,0 +1,68 @@
+//! `[initial.NAME]`
+
+use super::field::Field;
+use super::listing::Listing;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use super::targets::{GROUP_KEY, Targets};
+use dem_io::diagnostic::Result;
+use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
+
+/// How the particles of a group start, on top of how their bodies do. What several of these say of
+/// a particle adds up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Initial {
+    /// `group`: a group, a body or `all`.
+    pub group: String,
+    /// `velocity` of each particle, m/s; 0 unless given. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// `angular_velocity` of the group as one rigid body about its centre of mass, rad/s; 0 unless
+    /// given. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// `displacement` of each particle from where its bonds are at rest, m; 0 unless given.
+    /// Length 3.
+    pub displacement_m: [f64; 3],
+}
+
+pub(super) static INITIAL: Schema = Schema {
+    title: "[initial.NAME]",
+    doc: "Initial state of a group, added to that of its bodies.",
+    keys: &[
+        GROUP_KEY,
+        Key::vector("velocity", &VELOCITY, "Of each particle."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "Of the group as one rigid body, about its centre of mass.",
+        ),
+        Key::vector(
+            "displacement",
+            &LENGTH,
+            "Of each particle, from where its bonds are at rest.",
+        ),
+    ],
+};
+
+pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Initial> {
+    let table = Table::of(field, &INITIAL)?;
+    let group = targets.name(&table.need("group")?)?;
+    if table.entries.len() == 1 {
+        let problem = format!("{} does not say how its particles start", table.path);
+        let remedy = "add velocity, angular_velocity or displacement, such as \
+                      displacement = [0, 0, \"1 mm\"]";
+        return Err(table.refuse(problem, remedy));
+    }
+    Ok(Initial {
+        group,
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
+        displacement_m: table.read("displacement")?,
+    })
+}
+
+pub(super) fn list(initial: &Initial, listing: &mut Listing) {
+    listing.text("group", &initial.group);
+    listing.value("velocity", &initial.velocity_m_s);
+    listing.value("angular_velocity", &initial.angular_velocity_rad_s);
+    listing.value("displacement", &initial.displacement_m);
+}

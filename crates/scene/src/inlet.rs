@@ -1,0 +1,250 @@
+//! `[inlets.NAME]`
+
+use std::collections::BTreeMap;
+
+use super::body::BodyEntry;
+use super::field::Field;
+use super::listing::Listing;
+use super::numbers::number;
+use super::region::Region;
+use super::schema::{Key, Kind, Schema, words_of};
+use super::table::Table;
+use super::tree::Value;
+use dem_io::diagnostic::Result;
+use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
+
+/// How new bodies may be turned: whether at random.
+const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
+
+pub(super) static INLET: Schema = Schema {
+    title: "[inlets.NAME]",
+    doc: "Feeds bodies during the run, at a `rate` or a `mass_rate`. They are not in the scene at the start.",
+    keys: &[
+        Key::new(
+            "bodies",
+            Kind::Either(&[
+                Kind::List(&Kind::Text("a name in [bodies]")),
+                Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
+            ]),
+            "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions by number, of any sum.",
+        )
+        .required("[\"NAME\"], names in [bodies]"),
+        Key::text(
+            "region",
+            "a name in [regions]",
+            "Region in which centres of new bodies are placed at random.",
+        )
+        .required("\"NAME\", a name in [regions]"),
+        Key::quantity("rate", &RATE, "Bodies per second.")
+            .positive()
+            .remedy("write bodies per second, such as \"4 /s\""),
+        Key::quantity("mass_rate", &MASS_RATE, "Instead of `rate`: mass per second.").positive(),
+        Key::vector("velocity", &VELOCITY, "Of new bodies."),
+        Key::vector("angular_velocity", &ANGULAR_VELOCITY, "Of new bodies."),
+        Key::new(
+            "orientation",
+            Kind::Word(|| words_of(&ORIENTATIONS)),
+            "Orientation of new bodies: random, or that of their `rotation`.",
+        )
+        .or_word("as-is"),
+        Key::quantity("start", &TIME, "When it begins.")
+            .not_negative()
+            .or(0.0),
+        Key::quantity("end", &TIME, "When it ends, later than `start`; with the run unless given.")
+            .otherwise("never"),
+        Key::new(
+            "count",
+            Kind::Whole {
+                least: 1,
+                most: Some(u32::MAX as u64),
+                of: "",
+            },
+            "Maximum number of bodies.",
+        )
+        .remedy("leave it out for no limit")
+        .otherwise("no limit"),
+    ],
+};
+
+/// Feeds bodies during the run. Those that it names do not stand in the scene at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inlet {
+    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0, of
+    /// any sum. All 1 unless given. At least one.
+    pub bodies: Vec<(String, f64)>,
+    /// `region`: a name of `[regions]`, in which the centres of new bodies are put at random.
+    pub region: String,
+    /// `rate` or `mass_rate`
+    pub rate: FeedRate,
+    /// `velocity` of new bodies, m/s; 0 unless given. Length 3.
+    pub velocity_m_s: [f64; 3],
+    /// `angular_velocity` of new bodies, rad/s; 0 unless given. Length 3.
+    pub angular_velocity_rad_s: [f64; 3],
+    /// `orientation`: "random", or "as-is", as the body's own `rotation` says. False unless given.
+    pub random_orientation: bool,
+    /// `start`, s; 0 unless given. At least 0.
+    pub start_s: f64,
+    /// `end`, s: later than the start. Infinite, unless given: feeds as long as the run lasts.
+    pub end_s: f64,
+    /// `count`: at most so many bodies. None: no limit. At least 1.
+    pub count: Option<u32>,
+}
+
+/// How much an inlet feeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FeedRate {
+    /// `rate`: bodies per second, 1/s; more than 0.
+    Number(f64),
+    /// `mass_rate`: kg/s; more than 0.
+    Mass(f64),
+}
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+    regions: &BTreeMap<String, Region>,
+) -> Result<BTreeMap<String, Inlet>> {
+    let mut inlets = BTreeMap::new();
+    for (name, field) in root.named("inlets")? {
+        let inlet = read(&field, bodies, regions)?;
+        for (body, _) in &inlet.bodies {
+            refuse_own_start(root, &name, body, bodies)?;
+        }
+        inlets.insert(name, inlet);
+    }
+    Ok(inlets)
+}
+
+fn read(
+    field: &Field<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+    regions: &BTreeMap<String, Region>,
+) -> Result<Inlet> {
+    let table = Table::of(field, &INLET)?;
+    let named = table.need("bodies")?;
+    let (start_s, end_s) = (table.read("start")?, table.read("end")?);
+    if let (Some(field), true) = (table.get("end"), end_s <= start_s) {
+        let limit = format!("more than start, {start_s} s");
+        let remedy = "write a later time, or leave it out to feed until the run ends";
+        return Err(field.wrong(&limit, remedy));
+    }
+    Ok(Inlet {
+        bodies: shares(&named, bodies)?,
+        region: table.need("region")?.reference(regions.keys(), "regions")?,
+        rate: rate(&table)?,
+        velocity_m_s: table.read("velocity")?,
+        angular_velocity_rad_s: table.read("angular_velocity")?,
+        random_orientation: table
+            .read_by("orientation", |field| field.choice(&ORIENTATIONS))?
+            .unwrap_or(false),
+        start_s,
+        end_s,
+        count: table.read("count")?,
+    })
+}
+
+/// `["a", "b"]`, or `{ a = 0.7, b = 0.3 }`.
+fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec<(String, f64)>> {
+    let is_empty = match &field.node.value {
+        Value::List(items) => items.is_empty(),
+        Value::Table(entries) => entries.is_empty(),
+        _ => {
+            let remedy = "write [\"NAME\"], or { NAME = 0.7, OTHER = 0.3 }";
+            return Err(field.wrong("a list of bodies or a table of their proportions", remedy));
+        }
+    };
+    if is_empty {
+        let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
+        let problem = format!("{} names no body", field.path);
+        let remedy = format!("name at least one of {}", names.join(", "));
+        return Err(field.refuse(problem, remedy));
+    }
+    let mut shares: Vec<(String, f64)> = Vec::new();
+    if let Value::Table(_) = field.node.value {
+        let table = Table::any(field)?;
+        for (name, node) in table.entries {
+            let field = table.field(name, node);
+            field.key_reference(name, bodies.keys(), "bodies")?;
+            shares.push((name.clone(), field.positive(&NUMBER)?));
+        }
+        return Ok(shares);
+    }
+    for item in field.items()? {
+        let name = item.reference(bodies.keys(), "bodies")?;
+        if shares.iter().any(|(other, _)| *other == name) {
+            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
+            let remedy = "remove one of them, or give proportions, such as { NAME = 2, OTHER = 1 }";
+            return Err(item.refuse(problem, remedy));
+        }
+        shares.push((name, 1.0));
+    }
+    Ok(shares)
+}
+
+fn rate(table: &Table<'_>) -> Result<FeedRate> {
+    match (table.get("rate"), table.get("mass_rate")) {
+        (None, None) => {
+            let problem = format!("{} has no rate", table.path);
+            let remedy = "add rate = \"4 /s\", bodies per second, or mass_rate = \"10 kg/s\"";
+            Err(table.refuse(problem, remedy))
+        }
+        (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
+        (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
+        (Some(_), Some(field)) => {
+            let problem = format!("{} cannot be combined with rate", field.path);
+            Err(field.refuse(problem, "an inlet has one rate: remove one"))
+        }
+    }
+}
+
+/// Refuses where a body that is fed says itself where it stands or how it moves at the start.
+fn refuse_own_start(
+    root: &Table<'_>,
+    inlet: &str,
+    name: &str,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<()> {
+    let Some(body) = bodies.get(name) else {
+        return Ok(());
+    };
+    for (key, given, instead) in [
+        ("position", body.position_m, "region"),
+        ("velocity", body.velocity_m_s, "velocity"),
+        (
+            "angular_velocity",
+            body.angular_velocity_rad_s,
+            "angular_velocity",
+        ),
+    ] {
+        let field = root.find(&["bodies", name, key]);
+        if let (Some(field), true) = (field, given != [0.0; 3]) {
+            let problem = format!(
+                "{} is of the start, but [inlets.{inlet}] feeds the body: it is not there then",
+                field.path
+            );
+            let remedy = format!("remove it: inlets.{inlet}.{instead} stands for it");
+            return Err(field.refuse(problem, remedy));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn list(inlet: &Inlet, listing: &mut Listing) {
+    let share = |(body, share): &(String, f64)| format!("{body}: {}", number(*share));
+    let shares: Vec<String> = inlet.bodies.iter().map(share).collect();
+    listing.text("bodies", shares.join(", "));
+    listing.text("region", &inlet.region);
+    match inlet.rate {
+        FeedRate::Number(rate) => listing.value("rate", &rate),
+        FeedRate::Mass(rate) => listing.value("mass_rate", &rate),
+    }
+    listing.value("velocity", &inlet.velocity_m_s);
+    listing.value("angular_velocity", &inlet.angular_velocity_rad_s);
+    let orientation = ORIENTATIONS
+        .iter()
+        .find(|(_, random)| *random == inlet.random_orientation);
+    listing.text("orientation", orientation.map_or("", |(word, _)| *word));
+    listing.value("start", &inlet.start_s);
+    listing.value("end", &inlet.end_s);
+    listing.value("count", &inlet.count);
+}

@@ -1,0 +1,34 @@
+//! The files that a scene reads.
+
+use std::path::PathBuf;
+
+use super::body::BodySource;
+use super::region::Region;
+use super::root::Scene;
+use super::wall::WallShape;
+use dem_io::body::files::body_files;
+
+impl Scene {
+    /// The scene's own file and those of its bodies, walls and regions. Standard input is none of
+    /// them.
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        let mut files = vec![PathBuf::from(&self.source)];
+        for body in self.bodies.values() {
+            if let BodySource::File(path) = &body.source {
+                // A name that is that of no body has been refused, or will be when it is read.
+                files.extend(body_files(path).unwrap_or_default());
+            }
+        }
+        for wall in self.walls.values() {
+            if let WallShape::Stl { path, .. } = &wall.shape {
+                files.push(path.clone());
+            }
+        }
+        for region in self.regions.values() {
+            if let Region::Stl { file, .. } = region {
+                files.push(file.clone());
+            }
+        }
+        files
+    }
+}

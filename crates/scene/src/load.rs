@@ -1,0 +1,66 @@
+//! `[loads.NAME]`
+
+use super::factor::{self, Factor, RAMP, TABLE, end, factor, until};
+use super::field::Field;
+use super::listing::Listing;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use super::targets::{GROUP_KEY, Targets};
+use dem_io::diagnostic::Result;
+use dem_io::units::{FORCE, TORQUE};
+
+/// A load on a group of particles, shared equally among them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// `group`: a group, a body or `all`.
+    pub group: String,
+    /// `force` on the whole group, N. Length 3. Not zero together with the torque.
+    pub force_n: [f64; 3],
+    /// `torque` on the whole group, N m. Length 3.
+    pub torque_n_m: [f64; 3],
+    /// `ramp` or `table`.
+    pub factor: Factor,
+    /// `end`: from this time on it is zero, s. Not before the factor's last change. None: never.
+    pub end_s: Option<f64>,
+}
+
+pub(super) static LOAD: Schema = Schema {
+    title: "[loads.NAME]",
+    doc: "A force or a torque on a group, shared equally among its particles.",
+    keys: &[
+        GROUP_KEY,
+        Key::vector("force", &FORCE, "On the whole group."),
+        Key::vector("torque", &TORQUE, "On the whole group."),
+        RAMP,
+        TABLE,
+        until("Time from which on it is zero; not before the last change of `ramp` or `table`."),
+    ],
+};
+
+pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
+    let table = Table::of(field, &LOAD)?;
+    let group = targets.name(&table.need("group")?)?;
+    let factor = factor(&table)?;
+    let load = Load {
+        group,
+        force_n: table.read("force")?,
+        torque_n_m: table.read("torque")?,
+        end_s: end(&table, &factor)?,
+        factor,
+    };
+    if load.force_n == [0.0; 3] && load.torque_n_m == [0.0; 3] {
+        let problem = format!("{} is a load of zero", table.path);
+        let remedy =
+            "add force = [0, 0, \"100 N\"] or torque = [0, 0, \"1 N m\"], or remove the table";
+        return Err(table.refuse(problem, remedy));
+    }
+    Ok(load)
+}
+
+pub(super) fn list(load: &Load, listing: &mut Listing) {
+    listing.text("group", &load.group);
+    listing.value("force", &load.force_n);
+    listing.value("torque", &load.torque_n_m);
+    factor::list(&load.factor, listing);
+    listing.value("end", &load.end_s);
+}

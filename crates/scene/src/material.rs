@@ -1,0 +1,103 @@
+//! `[materials.NAME]`
+
+use std::ops::Bound::{Excluded, Included};
+
+use super::field::Field;
+use super::listing::Listing;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{DENSITY, STRESS};
+
+/// What particles and walls are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand
+    /// in the scene has none.
+    pub density_kg_m3: Option<f64>,
+    /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only
+    /// contacts and Rayleigh's estimate need it.
+    pub young_modulus_pa: Option<f64>,
+    /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
+    pub poisson_ratio: f64,
+    /// `rigid`: does not deform; of walls only, and without the values above. Not unless given.
+    pub rigid: bool,
+}
+
+/// What a material that deforms can have.
+const OF_ELASTIC: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poisson_ratio"];
+
+pub(super) static MATERIAL: Schema = Schema {
+    title: "[materials.NAME]",
+    doc: "What particles and walls are made of.",
+    keys: &[
+        Key::quantity("density", &DENSITY, "Density of the spheres.")
+            .positive()
+            .otherwise("from the body's file"),
+        Key::quantity(
+            "young_modulus",
+            &STRESS,
+            "Young's modulus; the law `hertz-mindlin` and Rayleigh's estimate of the step need it.",
+        )
+        .positive(),
+        Key::quantity(
+            "shear_modulus",
+            &STRESS,
+            "Shear modulus, instead of `young_modulus`.",
+        )
+        .positive(),
+        poisson_ratio("Poisson's ratio.").or(0.3),
+        Key::flag(
+            "rigid",
+            false,
+            "Does not deform; instead of all others, and of walls only.",
+        ),
+    ],
+};
+
+/// The key `poisson_ratio`.
+pub(super) const fn poisson_ratio(doc: &'static str) -> Key {
+    Key::number("poisson_ratio", doc)
+        .within(Excluded(-1.0), Included(0.5))
+        .remedy("a usual value is 0.3")
+}
+
+pub(super) fn read(field: &Field<'_>) -> Result<Material> {
+    let table = Table::of(field, &MATERIAL)?;
+    let rigid = table.read("rigid")?;
+    if let (true, Some((_, field))) = (rigid, table.given(&OF_ELASTIC).next()) {
+        let problem = format!("{} cannot be combined with rigid = true", field.path);
+        let remedy = "remove one of them: a rigid wall does not deform and has no mass";
+        return Err(field.refuse(problem, remedy));
+    }
+    let density_kg_m3 = table.read("density")?;
+    let young: Option<f64> = table.read("young_modulus")?;
+    let shear: Option<f64> = table.read("shear_modulus")?;
+    let poisson_ratio = table.read("poisson_ratio")?;
+    if let (Some(_), Some(_), Some(field)) = (young, shear, table.get("shear_modulus")) {
+        let problem = format!("{} cannot be combined with young_modulus", field.path);
+        return Err(field.refuse(problem, "one follows from the other: remove one"));
+    }
+    let young_modulus_pa = young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio)));
+    if let (Some(field), true) = (
+        table.get("shear_modulus"),
+        young_modulus_pa.is_some_and(f64::is_infinite),
+    ) {
+        return Err(field.wrong("less than 1e307 Pa", "write a smaller number"));
+    }
+    Ok(Material {
+        density_kg_m3,
+        young_modulus_pa,
+        poisson_ratio,
+        rigid,
+    })
+}
+
+pub(super) fn list(material: &Material, listing: &mut Listing) {
+    if material.rigid {
+        return listing.value("rigid", &material.rigid);
+    }
+    listing.value("density", &material.density_kg_m3);
+    listing.value("young_modulus", &material.young_modulus_pa);
+    listing.value("poisson_ratio", &material.poisson_ratio);
+}

@@ -1,0 +1,413 @@
+//! `[measures.NAME]`
+
+use super::field::Field;
+use super::listing::Listing;
+use super::names::ALL;
+use super::numbers::quantity as shown;
+use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::table::Table;
+use super::targets::{Subject, Targets};
+use dem_io::diagnostic::Result;
+use dem_io::units::{
+    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
+    TORQUE, VELOCITY,
+};
+use serde::{Deserialize, Serialize};
+
+/// What is measured. Of a group, positions and velocities are those of its centre of mass,
+/// energies, forces and counts are sums. Walls have positions, forces and torques, fragments a
+/// count and masses, groups all but torques, count and masses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Quantity {
+    /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
+    Position(u8),
+    /// "displacement_x", ... of the centre of mass since the start, m.
+    Displacement(u8),
+    /// "displacement": its magnitude, m.
+    DisplacementMagnitude,
+    /// "velocity_x", ... of the centre of mass, m/s.
+    Velocity(u8),
+    /// "velocity": its magnitude, m/s.
+    VelocityMagnitude,
+    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
+    Rotation(u8),
+    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
+    /// rad/s.
+    AngularVelocity(u8),
+    /// "reaction_x", ... force of supports on the group, N.
+    Reaction(u8),
+    /// "reaction_torque_x", ... torque of supports on the group, each about its particle's centre,
+    /// N m.
+    ReactionTorque(u8),
+    /// "kinetic_energy", J.
+    KineticEnergy,
+    /// "elastic_energy" of the bonds, each half to its ends, J.
+    ElasticEnergy,
+    /// "broken_bonds" since the start.
+    BrokenBonds,
+    /// "largest_utilisation": stress over strength of the bond nearest to failure.
+    LargestUtilisation,
+    /// "angle_of_repose": slope of the heap that the particles form, degrees.
+    AngleOfRepose,
+    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
+    /// on a group, N.
+    Force(u8),
+    /// "force": its magnitude, N.
+    ForceMagnitude,
+    /// "contact_force_x", ... force of contacts with what `with` names on the group, N.
+    ContactForce(u8),
+    /// "contact_force": its magnitude, N.
+    ContactForceMagnitude,
+    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    ContactOverlap,
+    /// "contact_duration": how long the two have touched since the start, s.
+    ContactDuration,
+    /// "torque_x", ... torque of particles on the wall about its pivot, N m.
+    Torque(u8),
+    /// "count" of fragments.
+    Count,
+    /// "mass_fraction_of_largest": mass of the heaviest fragment over that of all.
+    MassFractionOfLargest,
+    /// "mass_of_largest": mass of the heaviest fragment, kg.
+    MassOfLargest,
+}
+
+/// Which value of a measure's history is its result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Statistic {
+    /// "end"
+    End,
+    /// "largest"
+    Largest,
+    /// "smallest"
+    Smallest,
+    /// "mean" over time
+    Mean,
+}
+
+/// A named quantity, with what it should be where that is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// `of`: a group, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
+    pub of: String,
+    /// `quantity`
+    pub quantity: Quantity,
+    /// `with`: the body, group or wall that `of` touches. Only of contacts, which need it.
+    pub with: Option<String>,
+    /// `statistic`, "end" unless given.
+    pub statistic: Statistic,
+    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
+    /// `tolerance`.
+    pub reference: Option<f64>,
+    /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
+    pub tolerance: Option<f64>,
+    /// `absolute_tolerance`: largest difference from `reference`, which it needs, in the quantity's
+    /// unit.
+    pub absolute_tolerance: Option<f64>,
+}
+
+/// Every quantity and its name in a scene.
+pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
+    ("position_x", Quantity::Position(0)),
+    ("position_y", Quantity::Position(1)),
+    ("position_z", Quantity::Position(2)),
+    ("displacement_x", Quantity::Displacement(0)),
+    ("displacement_y", Quantity::Displacement(1)),
+    ("displacement_z", Quantity::Displacement(2)),
+    ("displacement", Quantity::DisplacementMagnitude),
+    ("velocity_x", Quantity::Velocity(0)),
+    ("velocity_y", Quantity::Velocity(1)),
+    ("velocity_z", Quantity::Velocity(2)),
+    ("velocity", Quantity::VelocityMagnitude),
+    ("rotation_x", Quantity::Rotation(0)),
+    ("rotation_y", Quantity::Rotation(1)),
+    ("rotation_z", Quantity::Rotation(2)),
+    ("angular_velocity_x", Quantity::AngularVelocity(0)),
+    ("angular_velocity_y", Quantity::AngularVelocity(1)),
+    ("angular_velocity_z", Quantity::AngularVelocity(2)),
+    ("reaction_x", Quantity::Reaction(0)),
+    ("reaction_y", Quantity::Reaction(1)),
+    ("reaction_z", Quantity::Reaction(2)),
+    ("reaction_torque_x", Quantity::ReactionTorque(0)),
+    ("reaction_torque_y", Quantity::ReactionTorque(1)),
+    ("reaction_torque_z", Quantity::ReactionTorque(2)),
+    ("kinetic_energy", Quantity::KineticEnergy),
+    ("elastic_energy", Quantity::ElasticEnergy),
+    ("broken_bonds", Quantity::BrokenBonds),
+    ("largest_utilisation", Quantity::LargestUtilisation),
+    ("angle_of_repose", Quantity::AngleOfRepose),
+    ("force_x", Quantity::Force(0)),
+    ("force_y", Quantity::Force(1)),
+    ("force_z", Quantity::Force(2)),
+    ("force", Quantity::ForceMagnitude),
+    ("contact_force_x", Quantity::ContactForce(0)),
+    ("contact_force_y", Quantity::ContactForce(1)),
+    ("contact_force_z", Quantity::ContactForce(2)),
+    ("contact_force", Quantity::ContactForceMagnitude),
+    ("contact_overlap", Quantity::ContactOverlap),
+    ("contact_duration", Quantity::ContactDuration),
+    ("torque_x", Quantity::Torque(0)),
+    ("torque_y", Quantity::Torque(1)),
+    ("torque_z", Quantity::Torque(2)),
+    ("count", Quantity::Count),
+    ("mass_fraction_of_largest", Quantity::MassFractionOfLargest),
+    ("mass_of_largest", Quantity::MassOfLargest),
+];
+
+impl Word for Statistic {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("end", Self::End),
+        ("largest", Self::Largest),
+        ("smallest", Self::Smallest),
+        ("mean", Self::Mean),
+    ];
+}
+
+impl Quantity {
+    /// Its name in a scene, such as "displacement_x".
+    pub fn name(self) -> &'static str {
+        let found = QUANTITIES.iter().find(|(_, quantity)| *quantity == self);
+        found.map_or("", |(name, _)| *name)
+    }
+
+    /// Its dimension, which knows the unit of its values.
+    pub fn dimension(self) -> &'static Dimension {
+        match self {
+            Self::Position(_)
+            | Self::Displacement(_)
+            | Self::DisplacementMagnitude
+            | Self::ContactOverlap => &LENGTH,
+            Self::Velocity(_) | Self::VelocityMagnitude => &VELOCITY,
+            Self::Rotation(_) => &ANGLE,
+            Self::AngleOfRepose => &ANGLE_DEG,
+            Self::AngularVelocity(_) => &ANGULAR_VELOCITY,
+            Self::Reaction(_)
+            | Self::Force(_)
+            | Self::ForceMagnitude
+            | Self::ContactForce(_)
+            | Self::ContactForceMagnitude => &FORCE,
+            Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
+            Self::ContactDuration => &TIME,
+            Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
+            Self::MassOfLargest => &MASS,
+            Self::BrokenBonds
+            | Self::LargestUtilisation
+            | Self::Count
+            | Self::MassFractionOfLargest => &NUMBER,
+        }
+    }
+
+    /// Whether it is of the contacts between two: `of` and `with`.
+    pub fn is_of_contact(self) -> bool {
+        matches!(
+            self,
+            Self::ContactForce(_)
+                | Self::ContactForceMagnitude
+                | Self::ContactOverlap
+                | Self::ContactDuration
+        )
+    }
+
+    /// Whether it is of such things.
+    fn is_of(self, subject: Subject) -> bool {
+        match self {
+            Self::Position(_) | Self::Force(_) | Self::ForceMagnitude => {
+                subject != Subject::Fragments
+            }
+            Self::Torque(_) => subject == Subject::Wall,
+            Self::Count | Self::MassFractionOfLargest | Self::MassOfLargest => {
+                subject == Subject::Fragments
+            }
+            _ => subject == Subject::Particles,
+        }
+    }
+}
+
+pub(super) static MEASURE: Schema = Schema {
+    title: "[measures.NAME]",
+    doc: "A measured quantity, with its reference value where one is known.",
+    keys: &[
+        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "What is measured.")
+            .or_word(ALL),
+        Key::new(
+            "quantity",
+            Kind::Word(|| words_of(&QUANTITIES)),
+            "Of a wall: `force`, `torque` about its pivot, `position` of its pivot; of `fragments`: `count`, \
+             `mass_of_largest`, `mass_fraction_of_largest`; of groups all others and `position`, `force`.",
+        )
+        .required("\"displacement_x\""),
+        Key::text(
+            "with",
+            "a group, a body or a wall",
+            "The other side of the contact, for contact quantities, which need it.",
+        ),
+        Key::word::<Statistic>(
+            "statistic",
+            "end",
+            "Value of its history that is reported; `mean` is over time.",
+        ),
+        Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
+        Key::number(
+            "tolerance",
+            "A larger relative error gives a warning. Needs a `reference` other than 0.",
+        )
+        .positive(),
+        Key::new(
+            "absolute_tolerance",
+            Kind::Measured,
+            "A larger difference from `reference`, which it needs, gives a warning.",
+        )
+        .positive(),
+    ],
+};
+
+pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> {
+    let table = Table::of(field, &MEASURE)?;
+    let (of, subject) = table
+        .read_by("of", |field| targets.measured(&field))?
+        .unwrap_or_else(|| (ALL.to_owned(), Subject::Particles));
+    let quantity = quantity(&table, &of, subject)?;
+    if let (Quantity::Displacement(_) | Quantity::DisplacementMagnitude, Some(field)) =
+        (quantity, table.get("quantity"))
+    {
+        targets.presence.refuse_without_start(&field, &of)?;
+    }
+    let with = counterpart(&table, &of, quantity, targets)?;
+    let dimension = quantity.dimension();
+    let reference = table.read_by("reference", |field| field.quantity(dimension))?;
+    let tolerance = table.read("tolerance")?;
+    let absolute_tolerance =
+        table.read_by("absolute_tolerance", |field| field.positive(dimension))?;
+    if let Some(field) = table.get("tolerance") {
+        let problem = match reference {
+            None => "needs a reference, to which it is relative",
+            Some(0.0) => "is relative to reference, which is 0",
+            Some(_) => "",
+        };
+        if !problem.is_empty() {
+            let problem = format!("{} {problem}", field.path);
+            return Err(field.refuse(
+                problem,
+                "give a reference other than 0, or remove tolerance",
+            ));
+        }
+    }
+    if let (Some(field), None) = (table.get("absolute_tolerance"), reference) {
+        let problem = format!("{} has no effect without reference", field.path);
+        return Err(field.refuse(problem, "give a reference, or remove absolute_tolerance"));
+    }
+    Ok(Measure {
+        of,
+        quantity,
+        with,
+        statistic: table.read("statistic")?,
+        reference,
+        tolerance,
+        absolute_tolerance,
+    })
+}
+
+/// What `of` touches: needed where a contact is measured, refused elsewhere.
+fn counterpart(
+    table: &Table<'_>,
+    of: &str,
+    quantity: Quantity,
+    targets: &Targets<'_>,
+) -> Result<Option<String>> {
+    let name = quantity.name();
+    if !quantity.is_of_contact() {
+        return match table.get("with") {
+            Some(field) => {
+                let problem = format!(
+                    "{} cannot be combined with the quantity \"{name}\", which is not of a contact",
+                    field.path
+                );
+                Err(field.refuse(problem, "remove it, or ask for \"contact_force\""))
+            }
+            None => Ok(None),
+        };
+    }
+    let Some(field) = table.get("with") else {
+        let problem = format!(
+            "{}.quantity is \"{name}\", of a contact, but nothing says with what",
+            table.path
+        );
+        return Err(table.refuse(problem, "add with = \"NAME\", of a body, a group or a wall"));
+    };
+    let (with, subject) = targets.measured(&field)?;
+    let problem = if with == of {
+        format!("{} is \"{with}\", as of is", field.path)
+    } else if with == ALL || subject == Subject::Fragments {
+        format!(
+            "{} is \"{with}\", which is no one of two that touch",
+            field.path
+        )
+    } else {
+        return Ok(Some(with));
+    };
+    Err(field.refuse(
+        problem,
+        "name another body, group or wall; quantity = \"force\" is of contacts with all else",
+    ))
+}
+
+/// The quantity that is asked, if `of`, which is a `subject`, has it.
+fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
+    let mut known = QUANTITIES.to_vec();
+    known.retain(|(_, quantity)| quantity.is_of(subject));
+    let example = match subject {
+        Subject::Particles => "\"displacement_x\"",
+        Subject::Wall => "\"force_x\"",
+        Subject::Fragments => "\"count\"",
+    };
+    let field = table.need_such("quantity", example)?;
+    let name = field.text()?;
+    let Some((_, elsewhere)) = QUANTITIES
+        .iter()
+        .find(|(other, quantity)| *other == name && !quantity.is_of(subject))
+    else {
+        return field.choice(&known);
+    };
+    let (owner, remedy) = if elsewhere.is_of(Subject::Particles) {
+        (
+            "particles",
+            "write of = \"NAME\", with the name of a group or a body",
+        )
+    } else if elsewhere.is_of(Subject::Wall) {
+        ("walls", "write of = \"NAME\", with the name of a wall")
+    } else {
+        ("fragments", "write of = \"fragments\"")
+    };
+    let is = match subject {
+        Subject::Particles => "names particles",
+        Subject::Wall => "is a wall",
+        Subject::Fragments => "are none",
+    };
+    let problem = format!(
+        "{} is \"{name}\", a quantity of {owner}, but \"{of}\" {is}",
+        field.path
+    );
+    let remedy = if subject == Subject::Particles {
+        remedy.to_owned()
+    } else {
+        let has: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        format!("{remedy}, or ask for {}", has.join(", "))
+    };
+    Err(field.refuse(problem, remedy))
+}
+
+pub(super) fn list(measure: &Measure, listing: &mut Listing) {
+    let in_unit = |value: Option<f64>| {
+        let unit = measure.quantity.dimension().si;
+        value.map_or_else(|| "none".to_owned(), |value| shown(value, unit))
+    };
+    listing.text("of", &measure.of);
+    listing.text("quantity", measure.quantity.name());
+    if let Some(with) = &measure.with {
+        listing.text("with", with);
+    }
+    listing.value("statistic", &measure.statistic);
+    listing.text("reference", in_unit(measure.reference));
+    listing.value("tolerance", &measure.tolerance);
+    listing.text("absolute_tolerance", in_unit(measure.absolute_tolerance));
+}

@@ -1,0 +1,74 @@
+//! `[outlets.NAME]`
+
+use std::collections::BTreeMap;
+
+use super::field::Field;
+use super::inlet::Inlet;
+use super::listing::Listing;
+use super::region::Region;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+const SIDES: [&str; 2] = ["inside", "outside"];
+
+pub(super) static OUTLET: Schema = Schema {
+    title: "[outlets.NAME]",
+    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts their mass.",
+    keys: &[
+        Key::text(
+            "inside",
+            "a name in [regions]",
+            "What is in it; not the region of an inlet.",
+        ),
+        Key::text("outside", "a name in [regions]", "What is not in it."),
+    ],
+};
+
+/// Removes bodies and fragments whose centre is there, and counts them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlet {
+    /// `inside` or `outside`: a name of `[regions]`.
+    pub region: String,
+    /// `outside`: removes what is not in the region.
+    pub removes_outside: bool,
+}
+
+pub(super) fn read(
+    field: &Field<'_>,
+    regions: &BTreeMap<String, Region>,
+    inlets: &BTreeMap<String, Inlet>,
+) -> Result<Outlet> {
+    let table = Table::of(field, &OUTLET)?;
+    let mut given = table.given(&SIDES);
+    let Some((key, field)) = given.next() else {
+        let problem = format!("{} has no region", table.path);
+        let remedy = "add inside = \"NAME\" or outside = \"NAME\", a name in [regions]";
+        return Err(table.refuse(problem, remedy));
+    };
+    if let Some((_, second)) = given.next() {
+        let problem = format!("{} cannot be combined with {key}", second.path);
+        let remedy = "an outlet has one region: remove one, or make two outlets";
+        return Err(second.refuse(problem, remedy));
+    }
+    let region = field.reference(regions.keys(), "regions")?;
+    let removes_outside = key == "outside";
+    let into = inlets.iter().find(|(_, inlet)| inlet.region == region);
+    if let (Some((inlet, _)), false) = (into, removes_outside) {
+        let problem = format!(
+            "{} is \"{region}\", into which [inlets.{inlet}] puts bodies",
+            field.path
+        );
+        let remedy = "they would be removed immediately: name another region";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(Outlet {
+        region,
+        removes_outside,
+    })
+}
+
+pub(super) fn list(outlet: &Outlet, listing: &mut Listing) {
+    let side = SIDES[usize::from(outlet.removes_outside)];
+    listing.text(side, &outlet.region);
+}

@@ -1,0 +1,110 @@
+//! `[output]`
+
+use std::path::{Path, PathBuf};
+
+use super::field::Field;
+use super::listing::Listing;
+use super::paths::named_path;
+use super::schema::{Key, Kind, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::TIME;
+
+/// What is written, and how often. Times are simulated seconds.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Output {
+    /// `folder`: results go here, resolved against the folder of the scene. None: the scene's name
+    /// with `-out`.
+    pub folder: Option<PathBuf>,
+    /// `frames`: time between frames. None: first and last only.
+    pub frames_s: Option<f64>,
+    /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at
+    /// least in large scenes.
+    pub series_s: Option<f64>,
+    /// `pictures`: time between pictures. None: no pictures.
+    pub pictures_s: Option<f64>,
+    /// `view = { from }`: where pictures are taken from, as seen from the bodies; of length 1.
+    /// None: from the front, the right and above. Length 3.
+    pub view_from: Option<[f64; 3]>,
+    /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
+    pub checkpoint_s: Option<f64>,
+}
+
+pub(super) static OUTPUT: Schema = Schema {
+    title: "[output]",
+    doc: "Output files and their intervals in simulated time. Without this table and without `--output` no file is written.",
+    keys: &[
+        Key::text(
+            "folder",
+            "a folder",
+            "Results go here, from the folder of the scene; without it and `--output` into the scene's name with -out \
+             where you stand.",
+        )
+        .otherwise("the scene's name with -out"),
+        Key::quantity("frames", &TIME, "Time between frames.")
+            .positive()
+            .otherwise("first and last"),
+        Key::quantity(
+            "series",
+            &TIME,
+            "Time between rows of the time series; in scenes of more than 20,000 particles and bonds at least 200 \
+             steps unless given.",
+        )
+        .positive()
+        .otherwise("a thousandth of the run"),
+        Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
+        Key::table("view", &VIEW, "View of the pictures.")
+            .otherwise("front, right and above"),
+        Key::quantity(
+            "checkpoint",
+            &TIME,
+            "Time between checkpoints; every minute that the program runs, unless given.",
+        )
+        .positive()
+        .otherwise("at the end"),
+    ],
+};
+
+pub(super) static VIEW: Schema = Schema {
+    title: "View",
+    doc: "View of the pictures.",
+    keys: &[Key::new(
+        "from",
+        Kind::Direction("a direction"),
+        "As seen from the bodies; its length does not matter.",
+    )
+    .required("[1, -2, 1]")],
+};
+
+pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
+    let table = Table::of(field, &OUTPUT)?;
+    Ok(Output {
+        folder: table.read_by("folder", |field| {
+            let path = named_path(&field, folder)?;
+            if path.as_os_str() == "-" {
+                return Err(field.wrong("a folder", "write a name such as \"results\""));
+            }
+            Ok(path)
+        })?,
+        frames_s: table.read("frames")?,
+        series_s: table.read("series")?,
+        pictures_s: table.read("pictures")?,
+        view_from: table.read_by("view", |field| Table::of(&field, &VIEW)?.read("from"))?,
+        checkpoint_s: table.read("checkpoint")?,
+    })
+}
+
+pub(super) fn list(output: &Output, listing: &mut Listing) {
+    match &output.folder {
+        Some(folder) => listing.text("folder", folder.display().to_string()),
+        None => listing.text("folder", listing.usual("folder")),
+    }
+    listing.value("frames", &output.frames_s);
+    listing.value("series", &output.series_s);
+    listing.value("pictures", &output.pictures_s);
+    match &output.view_from {
+        Some(from) => listing.table("view", &VIEW, |listing| listing.value("from", from)),
+        None => listing.text("view.from", listing.usual("view")),
+    }
+    listing.value("checkpoint", &output.checkpoint_s);
+}

@@ -1,0 +1,131 @@
+//! Which bodies have particles of their own at the start of the run.
+
+use std::collections::BTreeMap;
+
+use super::body::BodyEntry;
+use super::clump::StartAs;
+use super::field::Field;
+use super::inlet::Inlet;
+use super::names::ALL;
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the
+/// particles of a rigid clump cannot be held or moved one by one.
+pub(super) struct Presence<'a> {
+    pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
+    pub(super) inlets: &'a BTreeMap<String, Inlet>,
+}
+
+/// Why a body has no particles of its own at the start.
+struct Absence {
+    /// "which ...", after its name.
+    why: String,
+    /// What makes it have them.
+    remedy: String,
+}
+
+impl Presence<'_> {
+    /// Refuses the body `name`, which `field` gives, where it has no particles of its own at the
+    /// start.
+    pub(super) fn refuse_body(&self, field: &Field<'_>, name: &str) -> Result<()> {
+        match self.absence(name) {
+            Some(Absence { why, remedy }) => {
+                let problem = format!("{} is \"{name}\", {why}", field.path);
+                Err(field.refuse(problem, format!("name another, or {remedy}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses `table`, which is about the only body, `name`, where that has no particles of its
+    /// own at the start.
+    pub(super) fn refuse_only(&self, table: &Table<'_>, name: &str) -> Result<()> {
+        match self.absence(name) {
+            Some(Absence { why, remedy }) => {
+                let problem = format!("{} is of the body \"{name}\", {why}", table.path);
+                Err(table.refuse(problem, format!("remove it, or {remedy}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses the name `all`, which `field` gives, where a body of all has no particles of its own
+    /// at the start.
+    pub(super) fn refuse_all(&self, field: &Field<'_>) -> Result<()> {
+        for name in self.bodies.keys() {
+            if let Some(Absence { why, .. }) = self.absence(name) {
+                let problem = format!(
+                    "{} is \"{ALL}\", with the body \"{name}\", {why}",
+                    field.path
+                );
+                return Err(field.refuse(problem, "name a group or another body"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses the group `field` of the body `body`, or of all bodies, where it could pick
+    /// particles of a clump, or where the body is fed.
+    pub(super) fn refuse_group(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
+        if let Some(name) = body {
+            let table = Table::any(field)?;
+            return match table.get("body") {
+                Some(field) => self.refuse_body(&field, name),
+                None => self.refuse_only(&table, name),
+            };
+        }
+        // What is fed does not stand where a group could pick it.
+        for name in self.bodies.keys().filter(|name| self.fed(name).is_none()) {
+            if let Some(Absence { why, .. }) = self.clump(name) {
+                let problem = format!(
+                    "{} picks from all bodies, with \"{name}\", {why}",
+                    field.path
+                );
+                return Err(field.refuse(problem, "add body = \"NAME\", another body"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses the quantity that `field` gives, which counts from the start, for `of` where an
+    /// inlet feeds it or a part of it.
+    pub(super) fn refuse_without_start(&self, field: &Field<'_>, of: &str) -> Result<()> {
+        let mut meant = self.bodies.keys().filter(|name| of == ALL || *name == of);
+        let Some((name, absence)) =
+            meant.find_map(|name| self.fed(name).map(|absence| (name, absence)))
+        else {
+            return Ok(());
+        };
+        let problem = format!(
+            "{} is {} of \"{of}\", with the body \"{name}\", {}",
+            field.path,
+            field.shown(),
+            absence.why
+        );
+        Err(field.refuse(problem, "ask for a position or a velocity, or of another"))
+    }
+
+    fn absence(&self, name: &str) -> Option<Absence> {
+        self.fed(name).or_else(|| self.clump(name))
+    }
+
+    fn fed(&self, name: &str) -> Option<Absence> {
+        let feeds = |(_, inlet): &(&String, &Inlet)| inlet.bodies.iter().any(|(of, _)| of == name);
+        let (inlet, _) = self.inlets.iter().find(feeds)?;
+        Some(Absence {
+            why: format!("which [inlets.{inlet}] feeds: it is not there at the start"),
+            remedy: format!("take it out of inlets.{inlet}.bodies"),
+        })
+    }
+
+    fn clump(&self, name: &str) -> Option<Absence> {
+        match self.bodies.get(name)?.start_as {
+            StartAs::Bonded => None,
+            StartAs::Clump(_) => Some(Absence {
+                why: "which starts as a clump: it has no particles of its own".to_owned(),
+                remedy: format!("write start_as = \"bonded\" in [bodies.{name}]"),
+            }),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! A scene from its text: the order in which the tables are read, and what holds between them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::paths::text_of;
+use super::presence::Presence;
+use super::root::SCENE;
+use super::root::{SCENE_VERSION, Scene};
+use super::run::Integrator;
+use super::table::Table;
+use super::targets::Targets;
+use super::tree::Document;
+use super::{
+    body, bond, clusters, contact, group, initial, inlet, load, material, measure, outlet, output,
+    region, relaxation, replacement, run, search, sleep, statics, support, test, wall,
+};
+use crate::field::Field;
+use dem_io::diagnostic::Result;
+
+/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in
+/// `run.end_time="0.5 s"`; a value that is no TOML is text. File names in the scene are resolved
+/// against its folder, those in `overrides` against the current one; "-" stays.
+///
+/// # Errors
+/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the
+/// option.
+pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
+    let text = text_of(path, "a scene")?;
+    scene_from_text(&text, &path.display().to_string(), overrides)
+}
+
+/// Reads a scene from the text of a file named `source`, as [`read_scene`] does.
+///
+/// # Errors
+/// Those of [`read_scene`], but for reading the file.
+pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
+    let mut document = Document::parse(source, text)?;
+    for text in overrides {
+        document.set(text)?;
+    }
+    let root = Table::root(&document, &SCENE)?;
+    check_version(&root)?;
+    root.refuse_unknown()?;
+    let folder = Path::new(source).parent().unwrap_or(Path::new(""));
+
+    let run = run::read(&root)?;
+    let materials = each(&root, "materials", material::read)?;
+    let bonds = each(&root, "bonds", bond::read)?;
+    let bodies = body::read_all(&root, &materials, &bonds, folder)?;
+    let contacts = contact::read_all(&root, &materials)?;
+    let regions = each(&root, "regions", |field| region::read(field, folder))?;
+    let replacement = replacement::read_all(&root, &bodies, &regions)?;
+    let inlets = inlet::read_all(&root, &bodies, &regions)?;
+    let outlets = each(&root, "outlets", |field| {
+        outlet::read(field, &regions, &inlets)
+    })?;
+    let presence = Presence {
+        bodies: &bodies,
+        inlets: &inlets,
+    };
+    let groups = group::read_all(&root, &presence)?;
+    let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;
+    let targets = Targets {
+        groups: &groups,
+        presence: &presence,
+        walls: &walls,
+    };
+    let supports = each(&root, "supports", |field| support::read(field, &targets))?;
+    let known = test::Known {
+        presence: &presence,
+        groups: &groups,
+        walls: &walls,
+        supports: &supports,
+    };
+    let test = root.read_by("test", |field| test::read(&field, &known))?;
+    if run.integrator == Integrator::Static {
+        statics::refuse_what_moves(&root)?;
+    }
+    Ok(Scene {
+        source: source.to_owned(),
+        run,
+        materials,
+        bonds,
+        supports,
+        initial: each(&root, "initial", |field| initial::read(field, &targets))?,
+        loads: each(&root, "loads", |field| load::read(field, &targets))?,
+        measures: each(&root, "measures", |field| measure::read(field, &targets))?,
+        clusters: clusters::read(&root)?,
+        relaxation: relaxation::read(&root)?,
+        search: search::read(&root)?,
+        sleep: root.read_by("sleep", |field| sleep::read(&field))?,
+        output: root.read_by("output", |field| output::read(&field, folder))?,
+        test,
+        contacts,
+        bodies,
+        walls,
+        groups,
+        regions,
+        replacement,
+        inlets,
+        outlets,
+    })
+}
+
+fn check_version(root: &Table<'_>) -> Result<()> {
+    let field = root.need_such("version", &SCENE_VERSION.to_string())?;
+    let remedy = format!("write version = {SCENE_VERSION}");
+    let version = field.whole(0, Some(u64::MAX), &remedy)?;
+    if version > SCENE_VERSION {
+        let problem = format!("version is {version}, but this program knows up to {SCENE_VERSION}");
+        return Err(field.refuse(problem, "use a newer program"));
+    }
+    if version == 0 {
+        return Err(field.wrong("at least 1", remedy));
+    }
+    Ok(())
+}
+
+/// Every `[key.NAME]`, by name.
+fn each<'a, T>(
+    root: &Table<'a>,
+    key: &str,
+    read: impl Fn(&Field<'a>) -> Result<T>,
+) -> Result<BTreeMap<String, T>> {
+    let tables = root.named(key)?.into_iter();
+    tables
+        .map(|(name, field)| Ok((name, read(&field)?)))
+        .collect()
+}

@@ -1,0 +1,49 @@
+//! `[relaxation]`
+
+use std::ops::Bound::{Excluded, Included};
+
+use super::listing::one_field_a_key;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// What becomes of overlaps between particles that cease to be of one piece (Platzer 2022, 4.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relaxation {
+    /// `enabled`: such an overlap becomes the origin of the pair's contact law.
+    pub enabled: bool,
+    /// `min_overlap`: smaller ones, as a fraction of the reduced radius, are not kept; in [0, 1).
+    /// The force that a pair then has at once gives it energy, which grows with this to the power
+    /// of 2.5: at 1e-3 a whole body can gain 1e-4 of its own.
+    pub min_overlap: f64,
+}
+
+pub(super) static RELAXATION: Schema = Schema {
+    title: "[relaxation]",
+    doc: "Overlaps between particles of fragments that separate.",
+    keys: &[
+        Key::flag(
+            "enabled",
+            true,
+            "Their overlap is the origin of their contact law.",
+        ),
+        Key::number(
+            "min_overlap",
+            "Down to this overlap, as a fraction of the reduced radius; smaller ones press at once.",
+        )
+        .within(Included(0.0), Excluded(1.0))
+        .remedy("it is a fraction of the reduced radius: a usual value is 1e-5")
+        .or(1e-5),
+    ],
+};
+
+one_field_a_key! {
+    Relaxation {
+        enabled: "enabled",
+        min_overlap: "min_overlap",
+    }
+}
+
+pub(super) fn read(root: &Table<'_>) -> Result<Relaxation> {
+    fields(&root.table("relaxation", &RELAXATION)?)
+}

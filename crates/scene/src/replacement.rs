@@ -1,0 +1,255 @@
+//! `[replacement.NAME]`: NAME is a body.
+
+use std::collections::BTreeMap;
+
+use super::body::{BodyEntry, BodySource};
+use super::clump::{ClumpMass, StartAs};
+use super::field::Field;
+use super::listing::Listing;
+use super::region::Region;
+use super::schema::{Key, Kind, Schema, words_of};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
+
+/// Whether all of `when` must hold, or any.
+const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
+
+pub(super) static REPLACEMENT: Schema = Schema {
+    title: "[replacement.NAME]",
+    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
+    keys: &[
+        Key::table("when", &WHEN, "Conditions; at least one of its keys.")
+            .required("{ enters = \"NAME\" }, a name in [regions]"),
+        Key::new(
+            "require",
+            Kind::Word(|| words_of(&REQUIRE)),
+            "Any of the conditions in `when`, or all of them.",
+        )
+        .or_word("any"),
+        Key::table(
+            "restore",
+            &RESTORE,
+            "When a fragment becomes rigid again; all of it must hold.",
+        )
+        .otherwise("never"),
+    ],
+};
+
+pub(super) static WHEN: Schema = Schema {
+    title: "When",
+    doc: "What turns a clump into its bonded cluster.",
+    keys: &[
+        Key::text(
+            "enters",
+            "a name in [regions]",
+            "Its centre of mass is in this region.",
+        )
+        .otherwise("not used"),
+        Key::quantity(
+            "force",
+            &FORCE,
+            "The resultant contact force on it reaches this.",
+        )
+        .positive()
+        .otherwise("not used"),
+        Key::quantity(
+            "impact_energy",
+            &ENERGY,
+            "Kinetic energy that contacts have taken from it reaches this.",
+        )
+        .positive()
+        .otherwise("not used"),
+        Key::quantity("time", &TIME, "This time is reached.")
+            .not_negative()
+            .otherwise("not used"),
+    ],
+};
+
+pub(super) static RESTORE: Schema = Schema {
+    title: "Restore",
+    doc: "What makes a fragment rigid again.",
+    keys: &[
+        Key::text("leaves", "a name in [regions]", "Its centre is outside this region.")
+            .required("\"NAME\", a name in [regions]"),
+        Key::new(
+            "min_particles",
+            Kind::Whole {
+                least: 1,
+                most: Some(u32::MAX as u64),
+                of: "",
+            },
+            "It has at least so many particles.",
+        )
+        .remedy("a usual value is 10")
+        .or(10.0),
+        Key::quantity(
+            "strain_energy",
+            &ENERGY_PER_MASS,
+            "Elastic energy of its bonds over its mass is at most this.",
+        )
+        .positive()
+        .or(0.01),
+        Key::quantity(
+            "fluctuation_velocity",
+            &VELOCITY,
+            "Root mean square velocity of its particles relative to its rigid-body motion is at most this.",
+        )
+        .positive()
+        .or(5e-3),
+    ],
+};
+
+/// When a rigid clump becomes the bonded cluster that it stands for, and when that becomes rigid
+/// again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Replacement {
+    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below:
+    /// not asked; at least one is.
+    pub enters: Option<String>,
+    /// `when.force` on it reaches this, N; more than 0.
+    pub force_n: Option<f64>,
+    /// `when.impact_energy`, that of a contact, reaches this, J; more than 0.
+    pub impact_energy_j: Option<f64>,
+    /// `when.time`: so late it is, s; at least 0.
+    pub time_s: Option<f64>,
+    /// `require`: all that `when` has must hold ("all"), not just any ("any"). False unless given.
+    pub requires_all: bool,
+    /// `restore`. None: what was replaced stays bonded.
+    pub restore: Option<Restore>,
+}
+
+/// `restore = { ... }`: when a fragment becomes rigid again. All of it must hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Restore {
+    /// `leaves`: its centre is outside this region, a name of `[regions]`.
+    pub leaves: String,
+    /// `min_particles`: it has at least so many, 10 unless given. At least 1.
+    pub min_particles: u32,
+    /// `strain_energy`: elastic energy of its bonds over its mass is at most this, 0.01 J/kg unless
+    /// given; more than 0.
+    pub strain_energy_j_kg: f64,
+    /// `fluctuation_velocity`: root mean square velocity of its particles relative to its
+    /// rigid-body motion is at most this, 5 mm/s unless given; more than 0.
+    pub fluctuation_velocity_m_s: f64,
+}
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+    regions: &BTreeMap<String, Region>,
+) -> Result<BTreeMap<String, Replacement>> {
+    let mut replacements = BTreeMap::new();
+    for (name, field) in root.named("replacement")? {
+        check_body(root, &name, &field, bodies)?;
+        replacements.insert(name, read(&field, regions)?);
+    }
+    Ok(replacements)
+}
+
+/// Refuses what is no clump, cannot break, or would change its mass.
+fn check_body(
+    root: &Table<'_>,
+    name: &str,
+    field: &Field<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<()> {
+    let Some(body) = bodies.get(name) else {
+        return field.key_reference(name, bodies.keys(), "bodies");
+    };
+    let StartAs::Clump(clump) = body.start_as else {
+        let problem = format!(
+            "{} replaces a clump, but the body '{name}' starts bonded",
+            field.path
+        );
+        let remedy =
+            format!("add start_as = \"clump\" to [bodies.{name}], or remove [replacement.{name}]");
+        return Err(field.refuse(problem, remedy));
+    };
+    let has_bonds = match &body.source {
+        BodySource::Inline { bonds, .. } if bonds.is_empty() => false,
+        // Whoever reads the file finds whether it has some.
+        _ => body.bond_kind.is_some(),
+    };
+    if !has_bonds {
+        let problem = format!(
+            "{}: body '{name}' has no bonds: it cannot break",
+            field.path
+        );
+        let missing = match body.source {
+            BodySource::Inline { ref bonds, .. } if bonds.is_empty() => "bond_list = [[0, 1]]",
+            _ => "bonds = \"NAME\"",
+        };
+        let remedy = format!("add {missing} to [bodies.{name}], or remove [replacement.{name}]");
+        return Err(field.refuse(problem, remedy));
+    }
+    if clump.mass == ClumpMass::Union {
+        let mass = root.find(&["bodies", name, "clump", "mass"]);
+        let place = mass.unwrap_or_else(|| field.clone());
+        let problem = format!(
+            "{} is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass",
+            place.path
+        );
+        return Err(place.refuse(problem, "write mass = \"spheres\""));
+    }
+    Ok(())
+}
+
+fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
+    let table = Table::of(field, &REPLACEMENT)?;
+    let when = Table::of(&table.need("when")?, &WHEN)?;
+    if when.entries.is_empty() {
+        let problem = format!("{} is an empty table", when.path);
+        let remedy = "add enters = \"NAME\", force = \"100 N\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
+        return Err(when.refuse(problem, remedy));
+    }
+    Ok(Replacement {
+        enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,
+        force_n: when.read("force")?,
+        impact_energy_j: when.read("impact_energy")?,
+        time_s: when.read("time")?,
+        requires_all: table
+            .read_by("require", |field| field.choice(&REQUIRE))?
+            .unwrap_or(false),
+        restore: table.read_by("restore", |field| restore(&field, regions))?,
+    })
+}
+
+fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Restore> {
+    let table = Table::of(field, &RESTORE)?;
+    Ok(Restore {
+        leaves: table.need("leaves")?.reference(regions.keys(), "regions")?,
+        min_particles: table.read("min_particles")?,
+        strain_energy_j_kg: table.read("strain_energy")?,
+        fluctuation_velocity_m_s: table.read("fluctuation_velocity")?,
+    })
+}
+
+pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
+    listing.table("when", &WHEN, |listing| {
+        listing.text(
+            "enters",
+            replacement.enters.as_deref().unwrap_or("not used"),
+        );
+        listing.value("force", &replacement.force_n);
+        listing.value("impact_energy", &replacement.impact_energy_j);
+        listing.value("time", &replacement.time_s);
+    });
+    listing.text(
+        "require",
+        if replacement.requires_all {
+            "all"
+        } else {
+            "any"
+        },
+    );
+    let Some(restore) = &replacement.restore else {
+        return listing.text("restore", "never");
+    };
+    listing.table("restore", &RESTORE, |listing| {
+        listing.text("leaves", &restore.leaves);
+        listing.value("min_particles", &restore.min_particles);
+        listing.value("strain_energy", &restore.strain_energy_j_kg);
+        listing.value("fluctuation_velocity", &restore.fluctuation_velocity_m_s);
+    });
+}

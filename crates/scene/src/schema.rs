@@ -1,0 +1,294 @@
+//! The schema of scenes and studies: a table lists its keys once, each with kind, unit, default,
+//! limits and one sentence. Reader, messages, listing, reference and JSON Schema are made from it.
+
+use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::ops::{Bound, RangeBounds};
+
+use super::numbers::{quantity, vector};
+use dem_io::units::{Dimension, NUMBER};
+
+/// A table and its keys.
+pub(super) struct Schema {
+    /// `[run]`, `[bodies.NAME]`; of a table within others, what it is.
+    pub(super) title: &'static str,
+    /// One sentence.
+    pub(super) doc: &'static str,
+    pub(super) keys: &'static [Key],
+}
+
+impl Schema {
+    pub(super) fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.keys.iter().map(|key| key.name)
+    }
+}
+
+/// A key of a table.
+pub(super) struct Key {
+    pub(super) name: &'static str,
+    pub(super) kind: Kind,
+    pub(super) unless_given: Unless,
+    /// Of numbers, in SI.
+    pub(super) limits: (Bound<f64>, Bound<f64>),
+    /// What to do about a number beyond the limits; empty: an example says it.
+    pub(super) remedy: &'static str,
+    /// One sentence or two.
+    pub(super) doc: &'static str,
+}
+
+/// What a value is.
+pub(super) enum Kind {
+    /// A number of this dimension, with or without a unit.
+    Quantity(&'static Dimension),
+    /// "auto", or a number of this dimension.
+    Auto(&'static Dimension),
+    /// A number in the dimension of what `[measures.NAME]` measures.
+    Measured,
+    /// Three numbers of this dimension, along x, y and z.
+    Vector(&'static Dimension),
+    /// Three numbers that point somewhere; how messages call them: "an axis".
+    Direction(&'static str),
+    /// A whole number from `least`, of such things ("steps"); `most` is None where no message needs
+    /// to name it.
+    Whole {
+        least: u64,
+        most: Option<u64>,
+        of: &'static str,
+    },
+    /// True or false.
+    Boolean,
+    /// Nothing but true.
+    True,
+    /// One of these words.
+    Word(fn() -> Vec<&'static str>),
+    /// Text; what it says: "a file", "a name in [materials]".
+    Text(&'static str),
+    /// A list of at least one.
+    List(&'static Kind),
+    /// A list of exactly these.
+    Row(&'static [Kind]),
+    /// A table with these keys.
+    Table(&'static Schema),
+    /// A table with a value of this kind for each of its names; what the names are: "NAME".
+    Named(&'static str, &'static Kind),
+    /// A table with these keys, and others with values of this kind.
+    Open(&'static Schema, &'static Kind),
+    /// One of these.
+    Either(&'static [Kind]),
+    /// What another file says.
+    Anything(&'static str),
+}
+
+/// What holds where a key is left out.
+#[derive(Clone, Copy)]
+pub(super) enum Unless {
+    /// The scene is refused; how the value may look.
+    Required(&'static str),
+    /// The same in some cases, of which the sentence tells; else there is no value.
+    SometimesRequired(&'static str),
+    /// This number, in SI, or three of it.
+    Number(f64),
+    Word(&'static str),
+    Boolean(bool),
+    /// There is no value; what that means: "never".
+    Absent(&'static str),
+}
+
+/// A value that stands for one of several words.
+pub(super) trait Word: Copy + PartialEq + 'static {
+    const WORDS: &'static [(&'static str, Self)];
+}
+
+/// The words of a list of words and what they mean.
+pub(super) fn words_of<T>(known: &[(&'static str, T)]) -> Vec<&'static str> {
+    known.iter().map(|(word, _)| *word).collect()
+}
+
+fn words<T: Word>() -> Vec<&'static str> {
+    words_of(T::WORDS)
+}
+
+impl Key {
+    pub(super) const fn new(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self {
+            name,
+            kind,
+            unless_given: Unless::Absent("none"),
+            limits: (Unbounded, Unbounded),
+            remedy: "",
+            doc,
+        }
+    }
+
+    pub(super) const fn number(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, Kind::Quantity(&NUMBER), doc)
+    }
+
+    pub(super) const fn quantity(
+        name: &'static str,
+        dimension: &'static Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, Kind::Quantity(dimension), doc)
+    }
+
+    /// Three numbers, zero unless given.
+    pub(super) const fn vector(
+        name: &'static str,
+        dimension: &'static Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, Kind::Vector(dimension), doc).or(0.0)
+    }
+
+    /// A whole number from `least`.
+    pub(super) const fn whole(name: &'static str, least: u64, doc: &'static str) -> Self {
+        let (most, of) = (None, "");
+        Self::new(name, Kind::Whole { least, most, of }, doc)
+    }
+
+    /// True or false.
+    pub(super) const fn flag(name: &'static str, usual: bool, doc: &'static str) -> Self {
+        let mut key = Self::new(name, Kind::Boolean, doc);
+        key.unless_given = Unless::Boolean(usual);
+        key
+    }
+
+    /// One of the words for `T`; `usual` unless given.
+    pub(super) const fn word<T: Word>(
+        name: &'static str,
+        usual: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, Kind::Word(words::<T>), doc).or_word(usual)
+    }
+
+    pub(super) const fn text(name: &'static str, what: &'static str, doc: &'static str) -> Self {
+        Self::new(name, Kind::Text(what), doc)
+    }
+
+    /// A table within the table.
+    pub(super) const fn table(
+        name: &'static str,
+        keys: &'static Schema,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, Kind::Table(keys), doc)
+    }
+
+    /// The scene is refused without it.
+    pub(super) const fn required(mut self, example: &'static str) -> Self {
+        self.unless_given = Unless::Required(example);
+        self
+    }
+
+    /// The scene is refused without it in some cases.
+    pub(super) const fn sometimes_required(mut self, example: &'static str) -> Self {
+        self.unless_given = Unless::SometimesRequired(example);
+        self
+    }
+
+    /// Unless given, it is this number, in SI.
+    pub(super) const fn or(mut self, number: f64) -> Self {
+        self.unless_given = Unless::Number(number);
+        self
+    }
+
+    pub(super) const fn or_word(mut self, word: &'static str) -> Self {
+        self.unless_given = Unless::Word(word);
+        self
+    }
+
+    /// Unless given there is none, which means `what`.
+    pub(super) const fn otherwise(mut self, what: &'static str) -> Self {
+        self.unless_given = Unless::Absent(what);
+        self
+    }
+
+    pub(super) const fn positive(self) -> Self {
+        self.within(Excluded(0.0), Unbounded)
+    }
+
+    pub(super) const fn not_negative(self) -> Self {
+        self.within(Included(0.0), Unbounded)
+    }
+
+    pub(super) const fn up_to(self, most: f64) -> Self {
+        self.within(Unbounded, Included(most))
+    }
+
+    pub(super) const fn within(mut self, low: Bound<f64>, high: Bound<f64>) -> Self {
+        self.limits = (low, high);
+        self
+    }
+
+    pub(super) const fn remedy(mut self, remedy: &'static str) -> Self {
+        self.remedy = remedy;
+        self
+    }
+
+    /// Whether it is a number within the limits.
+    pub(super) fn allows(&self, value: f64) -> bool {
+        self.limits.contains(&value)
+    }
+
+    /// "more than 0 m"; empty where nothing is limited.
+    pub(super) fn limits_in_words(&self) -> String {
+        let low = match self.limits.0 {
+            Excluded(low) => Some(format!("more than {low}")),
+            Included(low) => Some(format!("at least {low}")),
+            Unbounded => None,
+        };
+        let high = match self.limits.1 {
+            Excluded(high) => Some(format!("less than {high}")),
+            Included(high) => Some(format!("at most {high}")),
+            Unbounded => None,
+        };
+        let both: Vec<String> = low.into_iter().chain(high).collect();
+        let words = both.join(" and ");
+        if words.is_empty() {
+            return words;
+        }
+        format!("{words} {}", self.unit()).trim_end().to_owned()
+    }
+
+    /// The dimension of its numbers; that of plain numbers where it has none.
+    pub(super) fn dimension(&self) -> &'static Dimension {
+        let of = |kind: &Kind| match kind {
+            Kind::Quantity(dimension) | Kind::Auto(dimension) | Kind::Vector(dimension) => {
+                Some(*dimension)
+            }
+            _ => None,
+        };
+        let found = match &self.kind {
+            Kind::Either(kinds) => kinds.iter().find_map(of),
+            kind => of(kind),
+        };
+        found.unwrap_or(&NUMBER)
+    }
+
+    /// The SI unit of its numbers; empty for plain ones.
+    pub(super) fn unit(&self) -> &'static str {
+        self.dimension().si
+    }
+
+    /// What holds where it is left out, as the listing of a scene says it.
+    pub(super) fn usual(&self) -> String {
+        match self.unless_given {
+            Unless::Required(_) => "needed".to_owned(),
+            Unless::SometimesRequired(_) => "none".to_owned(),
+            Unless::Number(usual) => match self.kind {
+                Kind::Vector(_) => vector([usual; 3], self.unit()),
+                Kind::Table(_) => vector([usual; 3], "rad"),
+                Kind::Whole { of, .. } => quantity(usual, of),
+                _ => quantity(usual, self.unit()),
+            },
+            Unless::Word(word) => word.to_owned(),
+            Unless::Boolean(usual) => usual.to_string(),
+            Unless::Absent(what) => what.to_owned(),
+        }
+    }
+}

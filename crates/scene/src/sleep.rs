@@ -1,0 +1,45 @@
+//! `[sleep]`
+
+use super::field::Field;
+use super::listing::one_field_a_key;
+use super::schema::{Key, Schema};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{TIME, VELOCITY};
+
+/// When bodies at rest are no more stepped, until something comes near them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sleep {
+    /// `speed`: no point of a body that falls asleep is faster, m/s; more than 0.
+    pub speed_m_s: f64,
+    /// `after`: it has been as slow for so long, s; more than 0.
+    pub after_s: f64,
+}
+
+pub(super) static SLEEP: Schema = Schema {
+    title: "[sleep]",
+    doc: "Bodies at rest sleep: they are not stepped. Without this table none do.",
+    keys: &[
+        Key::quantity(
+            "speed",
+            &VELOCITY,
+            "A body falls asleep when no point of it is faster than this.",
+        )
+        .positive()
+        .or(1e-3),
+        Key::quantity("after", &TIME, "Time for which it has been that slow.")
+            .positive()
+            .or(0.05),
+    ],
+};
+
+one_field_a_key! {
+    Sleep {
+        speed_m_s: "speed",
+        after_s: "after",
+    }
+}
+
+pub(super) fn read(field: &Field<'_>) -> Result<Sleep> {
+    fields(&Table::of(field, &SLEEP)?)
+}

@@ -1,0 +1,19 @@
+//! A study: a scene, what varies in it, what is measured and what it is compared with. Plain data,
+//! as read from TOML.
+
+mod check;
+mod contents;
+pub(super) mod keys;
+mod measures;
+mod read;
+mod rewrite;
+mod values;
+
+pub use check::{override_text, reference_values, scene_with};
+pub use contents::{
+    Axis, AxisValue, BODY, Combine, MeasureOf, Pieces, Reference, RunTime, STUDY_VERSION, Setting,
+    Study, StudyMeasure,
+};
+pub(crate) use keys::STUDY;
+pub use read::{read_study, study_from_text};
+pub use rewrite::rewritten;

@@ -1,0 +1,181 @@
+//! What a study says, laid over its scene.
+
+use std::path::PathBuf;
+
+use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
+use super::values::in_si;
+use crate::body::BodySource;
+use crate::names::suggestion;
+use crate::read::scene_from_text;
+use crate::root::SCENE;
+use crate::root::Scene;
+use crate::schema::{Key, Kind};
+use crate::table::Table;
+use crate::tree::Document;
+use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::units::quantity;
+
+/// The scene of `study`, whose file holds `text`, with these values laid over it.
+///
+/// # Errors
+/// The scene refuses one of them, or it names something that the scene does not have; the place is
+/// that of the value in the study.
+pub fn scene_with<'a>(
+    study: &Study,
+    text: &str,
+    settings: impl Iterator<Item = &'a Setting>,
+) -> Result<Scene> {
+    let name = study.scene.display().to_string();
+    let document = Document::parse(&name, text)?;
+    let root = Table::root(&document, &SCENE)?;
+    let (mut overrides, mut places, mut files) = (Vec::new(), Vec::new(), Vec::new());
+    for setting in settings {
+        match setting.path.strip_prefix(BODY) {
+            Some(body) => files.push((body, setting)),
+            None => {
+                refuse_new_name(&root, setting)?;
+                overrides.push(override_text(setting));
+                places.push(&setting.place);
+            }
+        }
+    }
+    let read = |overrides: &[String]| scene_from_text(text, &name, overrides);
+    let mut scene = read(&overrides).map_err(|error| {
+        // Of several, the first without which there is no complaint, or another one.
+        let said = |count: usize| read(&overrides[..count]).err();
+        let guilty = (0..overrides.len()).find(|&at| {
+            said(at + 1).is_some_and(|now| now == error) && said(at).is_none_or(|was| was != error)
+        });
+        match guilty {
+            Some(at) if said(0) != Some(error.clone()) => error.within(places[at]),
+            _ => error.within(&study.source),
+        }
+    })?;
+    for (body, setting) in files {
+        let names: Vec<String> = scene.bodies.keys().cloned().collect();
+        let Some(entry) = scene.bodies.get_mut(body) else {
+            return Err(Diagnostic::input(
+                &setting.place,
+                format!("the scene {name} has no body '{body}'"),
+                suggestion(body, names.iter().map(String::as_str)),
+            ));
+        };
+        let path = PathBuf::from(&setting.value);
+        let parts = dem_io::body::files::body_files(&path);
+        let parts = parts.map_err(|error| error.within(&setting.place))?;
+        if let Some(missing) = parts.iter().find(|part| !part.exists()) {
+            return Err(Diagnostic::input(
+                &setting.place,
+                format!("there is no file {}", missing.display()),
+                "make it with dem-pack, or correct the name, which counts from the study's folder",
+            ));
+        }
+        entry.source = BodySource::File(path);
+    }
+    Ok(scene)
+}
+
+/// `PATH=VALUE`, as `--set` takes it.
+pub fn override_text(setting: &Setting) -> String {
+    format!("{}={}", setting.path, setting.value)
+}
+
+/// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it
+/// for a new one.
+fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
+    let keys: Vec<&str> = setting.path.split('.').collect();
+    let [kind, name, _, ..] = keys.as_slice() else {
+        return Ok(());
+    };
+    let is_named = |key: &Key| matches!(key.kind, Kind::Named(..));
+    if !SCENE.key(kind).is_some_and(is_named) {
+        return Ok(());
+    }
+    let known: Vec<String> = match root.get(kind) {
+        Some(field) => {
+            let table = Table::any(&field)?;
+            table.entries.iter().map(|(name, _)| name.clone()).collect()
+        }
+        None => Vec::new(),
+    };
+    if known.iter().any(|other| other == name) {
+        return Ok(());
+    }
+    let scene = &root.document.name;
+    Err(Diagnostic::input(
+        &setting.place,
+        format!("{}: the scene {scene} has no [{kind}.{name}]", setting.path),
+        suggestion(name, known.iter().map(String::as_str)),
+    ))
+}
+
+/// What each measure of a study is compared with in one of its scenes, in SI, where that is known
+/// without a run.
+///
+/// # Errors
+/// The scene has no such measure or no test, or a reference is missing or is none of that quantity.
+pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>> {
+    let mut values = Vec::new();
+    for measure in &study.measures {
+        let refuse = |problem: String, remedy: String| {
+            Err(Diagnostic::input(&measure.place, problem, remedy))
+        };
+        let name = &measure.name;
+        let of_scene = match &measure.of {
+            MeasureOf::Measure(of) => match scene.measures.get(of) {
+                Some(found) => Some(found),
+                None => {
+                    let known = scene.measures.keys().map(String::as_str);
+                    let problem = format!("the scene {} has no measure '{of}'", scene.source);
+                    return refuse(problem, suggestion(of, known));
+                }
+            },
+            MeasureOf::Masses(Pieces::Left) if scene.outlets.is_empty() => {
+                let problem = format!(
+                    "measures.{name}.fragment_masses is \"discharged\", but the scene {} has no [outlets]",
+                    scene.source
+                );
+                return refuse(problem, "write fragment_masses = \"remaining\"".to_owned());
+            }
+            MeasureOf::Curve if scene.test.is_none() => {
+                let problem = format!(
+                    "measures.{name}.curve is that of a test, but the scene {} has no [test]",
+                    scene.source
+                );
+                return refuse(problem, "name a measure of the scene".to_owned());
+            }
+            MeasureOf::Figure(of) if scene.test.is_none() => {
+                let problem = format!(
+                    "measures.{name}.test_result is '{of}', but the scene {} has no [test]",
+                    scene.source
+                );
+                return refuse(problem, "name a measure of the scene".to_owned());
+            }
+            _ => None,
+        };
+        values.push(match (&measure.reference, of_scene) {
+            (Reference::Value(text), _) => {
+                let value = match of_scene {
+                    Some(of) => quantity(text, of.quantity.dimension()),
+                    None => in_si(text).ok_or_else(|| {
+                        let problem = format!("'{text}' is no number with a unit");
+                        Diagnostic::input("", problem, "write it in SI, without one")
+                    }),
+                };
+                Some(value.map_err(|error| {
+                    error.within(&format!("{}: measures.{name}.reference", measure.place))
+                })?)
+            }
+            (Reference::ClosedForm, Some(of)) => {
+                if of.reference.is_none() {
+                    let problem = format!("measures.{name} has no reference: that of the scene says none");
+                    let remedy = "add reference = { value = ... }, \"finest\" or \"richardson\", or one in the scene";
+                    return refuse(problem, remedy.to_owned());
+                }
+                of.reference
+            }
+            _ => None,
+        });
+    }
+    Ok(values)
+}

@@ -1,0 +1,205 @@
+//! The keys of a study.
+
+use super::contents::{BALANCES, CURVES, Combine, Pieces, RunTime};
+use crate::schema::{Key, Kind, Schema, Word, words_of};
+
+/// Most repeats, threads.
+const MOST: f64 = 1024.0;
+
+/// Any value of a scene.
+const ANYTHING: Kind = Kind::Anything("a value");
+
+pub(crate) static STUDY: Schema = Schema {
+    title: "",
+    doc: "A study: a scene, what varies in it, what is measured and what it is compared with.",
+    keys: &[
+        Key::whole("version", 1, "Version of the format.")
+            .remedy("write version = 1")
+            .required("1"),
+        Key::text(
+            "scene",
+            "a file",
+            "The scene, from the folder of the study.",
+        )
+        .required("\"scene.toml\""),
+        Key::whole(
+            "repeats",
+            1,
+            "Number of repetitions of each run; its time is the median.",
+        )
+        .up_to(MOST)
+        .remedy("write repeats = 3")
+        .or(3.0),
+        Key::whole("threads", 1, "Of each run.")
+            .up_to(MOST)
+            .remedy("write threads = 1")
+            .or(1.0),
+        Key::flag(
+            "force_step",
+            false,
+            "Steps above the largest stable one are taken: `run.time_step`, or `run.safety_factor` of 1 and more.",
+        ),
+        Key::word::<RunTime>(
+            "time",
+            "wall",
+            "Time that is compared; `processor` depends less on other programs on the machine.",
+        ),
+        Key::word::<Combine>(
+            "combine",
+            "grid",
+            "Each value with each; or `paired`: the first with the first, the second with the second.",
+        ),
+        Key::new(
+            "set",
+            Kind::Named("\"TABLE.KEY\"", &ANYTHING),
+            "Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
+        ),
+        Key::new(
+            "vary",
+            Kind::Named(
+                "\"TABLE.KEY\"",
+                &Kind::Either(&[
+                    Kind::List(&ANYTHING),
+                    Kind::Table(&VALUES),
+                    Kind::Table(&RANGE),
+                ]),
+            ),
+            "What varies: paths as in `[set]`, each with its values.",
+        ),
+        Key::new(
+            "together",
+            Kind::Named("NAME", &Kind::Open(&TOGETHER, &Kind::List(&ANYTHING))),
+            "Paths that change together, with lists of as many values: one axis.",
+        ),
+        Key::new(
+            "measures",
+            Kind::Named("NAME", &Kind::Table(&MEASURE)),
+            MEASURE.doc,
+        )
+        .required("{ NAME = {} }"),
+        Key::table("page", &PAGE, PAGE.doc),
+    ],
+};
+
+/// How coarse the values are, and what they are called.
+const SIZE: Key = Key::new(
+    "size",
+    Kind::List(&ANYTHING),
+    "How coarse each value is, above 0; the value itself where it is a number. Needed for `finest`, `richardson` and \
+     orders.",
+);
+const NAMES: Key = Key::new(
+    "names",
+    Kind::List(&Kind::Text("a name")),
+    "What each value is called on the page.",
+);
+
+pub(super) static VALUES: Schema = Schema {
+    title: "Values",
+    doc: "The values of a path.",
+    keys: &[
+        Key::new("values", Kind::List(&ANYTHING), "The values.").required("[0.9, 0.5]"),
+        SIZE,
+        NAMES,
+    ],
+};
+
+pub(super) static RANGE: Schema = Schema {
+    title: "Range",
+    doc: "Values of a path from one end to another.",
+    keys: &[
+        Key::new(
+            "from",
+            ANYTHING,
+            "First value, a number with or without its unit.",
+        )
+        .required("0.1"),
+        Key::new("to", ANYTHING, "Last value, in the same unit.").required("0.9"),
+        Key::whole("count", 2, "How many there are, both ends among them.").required("5"),
+        Key::new(
+            "spacing",
+            Kind::Word(|| words_of(&SPACINGS)),
+            "How they are spread.",
+        )
+        .or_word("linear"),
+    ],
+};
+
+/// Whether a range is spread by logarithms.
+pub(super) const SPACINGS: [(&str, bool); 2] = [("linear", false), ("log", true)];
+
+pub(super) static TOGETHER: Schema = Schema {
+    title: "[together.NAME]",
+    doc: "Paths that change together: `\"TABLE.KEY\" = [...]`, as many values for each.",
+    keys: &[SIZE, NAMES],
+};
+
+pub(crate) static MEASURE: Schema = Schema {
+    title: "[measures.NAME]",
+    doc: "A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and `balance`.",
+    keys: &[
+        Key::text("measure", "a measure of the scene", "A measure of the scene.")
+            .otherwise("that of the same name"),
+        Key::text(
+            "test_result",
+            "a result of the scene's laboratory test",
+            "A result of the scene's laboratory test, such as `stiffness`.",
+        ),
+        Key::new(
+            "fragment_masses",
+            Kind::Word(|| words_of(Pieces::WORDS)),
+            "Masses of the fragments discharged through outlets, or remaining at the end.",
+        ),
+        Key::new(
+            "curve",
+            Kind::Word(|| words_of(&CURVES)),
+            "The curve of the scene's laboratory test.",
+        ),
+        Key::new(
+            "balance",
+            Kind::Word(|| words_of(&BALANCES)),
+            "The largest relative error of this balance in the run.",
+        ),
+        Key::new(
+            "reference",
+            Kind::Either(&[
+                Kind::Word(|| vec!["closed-form", "finest", "richardson"]),
+                Kind::Table(&REFERENCE),
+            ]),
+            "What it is compared with: the `reference` of the scene's measure or the theory of the test's result, a \
+             value, the run of the smallest size along an axis, or what the runs come to at size 0.",
+        )
+        .or_word("closed-form"),
+    ],
+};
+
+pub(super) static REFERENCE: Schema = Schema {
+    title: "Reference",
+    doc: "One of these.",
+    keys: &[
+        Key::new(
+            "value",
+            ANYTHING,
+            "This value, a number with or without its unit.",
+        ),
+        Key::text(
+            "finest",
+            "an axis",
+            "The run of the smallest size along this axis, all else equal.",
+        ),
+        Key::text(
+            "richardson",
+            "an axis",
+            "What the values tend to at size 0, through the three finest. Needs three sizes.",
+        ),
+    ],
+};
+
+pub(super) static PAGE: Schema = Schema {
+    title: "[page]",
+    doc: "How the page shows the runs.",
+    keys: &[
+        Key::text("series", "an axis", "The axis that is shown by colours.")
+            .otherwise("the first that is no number"),
+    ],
+};

@@ -1,0 +1,146 @@
+//! What is looked at in each run, and what it is compared with.
+
+use super::contents::{Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, StudyMeasure};
+use super::keys::{MEASURE, REFERENCE};
+use crate::field::Field;
+use crate::names::suggestion;
+use crate::schema::Word;
+use crate::table::Table;
+use crate::tree::Value;
+use dem_io::diagnostic::Result;
+
+pub(super) fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
+    let name = field.text()?;
+    axes.iter()
+        .position(|axis| axis.name == name)
+        .ok_or_else(|| {
+            let problem = format!("{} is {}, which does not vary", field.path, field.shown());
+            field.refuse(
+                problem,
+                suggestion(name, axes.iter().map(|axis| axis.name.as_str())),
+            )
+        })
+}
+
+pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<StudyMeasure> {
+    let table = Table::of(field, &MEASURE)?;
+    let kinds = [
+        "measure",
+        "test_result",
+        "fragment_masses",
+        "curve",
+        "balance",
+    ];
+    let given: Vec<_> = table.given(&kinds).collect();
+    if let [(one, _), (_, other), ..] = given.as_slice() {
+        let problem = format!("{} cannot be combined with {one}", other.path);
+        return Err(other.refuse(problem, "a measure is of one of them: remove the other"));
+    }
+    let of = match given.first() {
+        None => MeasureOf::Measure(name.to_owned()),
+        Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
+        Some(("test_result", field)) => MeasureOf::Figure(field.text()?.to_owned()),
+        Some(("fragment_masses", field)) => MeasureOf::Masses(field.choice(Pieces::WORDS)?),
+        Some(("curve", field)) => {
+            field.choice(&CURVES)?;
+            MeasureOf::Curve
+        }
+        Some((_, field)) => MeasureOf::Balance(field.choice(&BALANCES)?),
+    };
+    let reference = match table.get("reference") {
+        Some(field) if matches!(of, MeasureOf::Balance(_)) => {
+            let problem = format!(
+                "{} is given for a balance, whose error is compared with 0",
+                field.path
+            );
+            return Err(field.refuse(problem, "it is an error by itself: remove reference"));
+        }
+        Some(field) => reference(&field, axes)?,
+        None => Reference::ClosedForm,
+    };
+    if let (MeasureOf::Masses(_) | MeasureOf::Curve, false) =
+        (&of, matches!(reference, Reference::Finest(_)))
+    {
+        let problem = format!("{} has no run to be compared with", field.path);
+        return Err(field.refuse(problem, "add reference = { finest = \"AXIS\" }"));
+    }
+    Ok(StudyMeasure {
+        name: name.to_owned(),
+        of,
+        reference,
+        place: field.document.place(field.node.origin),
+    })
+}
+
+fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
+    if let Value::Text(word) = &field.node.value {
+        let with_size: Vec<usize> = (0..axes.len())
+            .filter(|at| axes[*at].sizes().is_some())
+            .collect();
+        return match (word.as_str(), with_size.as_slice()) {
+            ("closed-form", _) => Ok(Reference::ClosedForm),
+            ("finest", [only]) => Ok(Reference::Finest(*only)),
+            ("richardson", [only]) => richardson(field, *only, axes),
+            ("finest" | "richardson", _) => {
+                let problem = format!(
+                    "{} is \"{word}\", but {} axes have sizes",
+                    field.path,
+                    with_size.len()
+                );
+                let remedy = format!("say along which: {{ {word} = \"AXIS\" }}");
+                Err(field.refuse(problem, remedy))
+            }
+            _ => Err(field.wrong(
+                "\"closed-form\", \"finest\", \"richardson\" or a table",
+                "write a number as { value = \"2 mm\" }",
+            )),
+        };
+    }
+    let table = Table::of(field, &REFERENCE)?;
+    let given: Vec<_> = table.given(&["value", "finest", "richardson"]).collect();
+    let [(kind, named)] = given.as_slice() else {
+        let problem = format!("{} names {} references", field.path, given.len());
+        return Err(field.refuse(problem, "name one: value, finest or richardson"));
+    };
+    if *kind == "value" {
+        return match &named.node.value {
+            Value::Number(written, value) if value.is_finite() => {
+                Ok(Reference::Value(written.clone()))
+            }
+            Value::Text(text) => Ok(Reference::Value(text.clone())),
+            _ => Err(named.wrong("a number", "write it with its unit, such as \"2 mm\"")),
+        };
+    }
+    let at = axis_named(named, axes)?;
+    if axes[at].sizes().is_none() {
+        let problem = format!(
+            "{} is {}, whose values have no size above 0",
+            named.path,
+            named.shown()
+        );
+        let remedy = "add size = [...], how coarse each of its values is";
+        return Err(named.refuse(problem, remedy));
+    }
+    if *kind == "finest" {
+        Ok(Reference::Finest(at))
+    } else {
+        richardson(named, at, axes)
+    }
+}
+
+/// Three different sizes are needed to see an order.
+fn richardson(field: &Field<'_>, at: usize, axes: &[Axis]) -> Result<Reference> {
+    let mut sizes = axes[at].sizes().unwrap_or_default();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
+    if sizes.len() < 3 {
+        let problem = format!(
+            "{}: {} has {} sizes, but Richardson extrapolation needs 3",
+            field.path,
+            axes[at].name,
+            sizes.len()
+        );
+        return Err(field.refuse(problem, "let it vary further, or write \"finest\""));
+    }
+    Ok(Reference::Richardson(at))
+}

@@ -1,0 +1,124 @@
+//! A study from its text.
+
+use std::path::Path;
+
+use super::contents::{Axis, STUDY_VERSION, Study};
+use super::keys::{PAGE, STUDY};
+use super::measures::{axis_named, measure};
+use super::values::{self, MOST_VALUES, tidy};
+use crate::paths::{named_path, text_of};
+use crate::table::Table;
+use crate::tree::Document;
+use dem_io::diagnostic::{Diagnostic, Result};
+
+/// Most axes of a study.
+const MOST_AXES: usize = 100;
+
+/// Reads a study from a TOML file.
+///
+/// # Errors
+/// The file cannot be read, is no TOML, or no study. The place is file and line.
+pub fn read_study(path: &Path) -> Result<Study> {
+    study_from_text(&text_of(path, "a study")?, &path.display().to_string())
+}
+
+/// Reads a study from the text of a file named `source`.
+///
+/// # Errors
+/// Those of [`read_study`], but for reading the file.
+pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
+    let document = Document::parse(source, text)?;
+    let root = Table::root(&document, &STUDY)?;
+    if root.read::<u64>("version")? > STUDY_VERSION {
+        let version = root.need("version")?;
+        return Err(version.wrong(&format!("at most {STUDY_VERSION}"), "use a newer program"));
+    }
+    root.refuse_unknown()?;
+    let folder = Path::new(source).parent().unwrap_or(Path::new(""));
+    let mut axes = Vec::new();
+    if let Some(vary) = root.get("vary") {
+        let table = Table::any(&vary)?;
+        for (path, node) in table.entries {
+            let mut field = table.field(path, node);
+            field.path = format!("vary.\"{path}\"");
+            axes.push(values::axis(path, &field, folder)?);
+            refuse_many_values(&axes)?;
+        }
+    }
+    for (name, field) in root.named("together")? {
+        axes.push(values::together(&name, &field, folder)?);
+        refuse_many_values(&axes)?;
+    }
+    if axes.is_empty() {
+        let remedy = "add [vary] with \"run.safety_factor\" = [0.9, 0.5], say";
+        return Err(root.refuse("nothing varies", remedy));
+    }
+    for (at, axis) in axes.iter().enumerate() {
+        if let Some(other) = axes[..at].iter().find(|other| sets_same(axis, other)) {
+            return Err(Diagnostic::input(
+                &axis.place,
+                format!("{} is set by {} already", axis.name, other.name),
+                "let each path vary once",
+            ));
+        }
+    }
+    let fixed = match root.get("set") {
+        Some(field) => values::settings(&field, folder)?,
+        None => Vec::new(),
+    };
+    let mut measures = Vec::new();
+    for (name, field) in root.named("measures")? {
+        measures.push(measure(&name, &field, &axes)?);
+    }
+    if measures.is_empty() {
+        let remedy = "add [measures.NAME] with the name of a measure of the scene";
+        return Err(root.refuse("nothing is measured", remedy));
+    }
+    let page = root.table("page", &PAGE)?;
+    let series = page.read_by("series", |field| axis_named(&field, &axes))?;
+    Ok(Study {
+        source: source.to_owned(),
+        scene: tidy(named_path(&root.need("scene")?, folder)?),
+        repeats: root.read("repeats")?,
+        threads: root.read("threads")?,
+        force_step: root.read("force_step")?,
+        time: root.read("time")?,
+        combine: root.read("combine")?,
+        series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
+        fixed,
+        axes,
+        measures,
+    })
+}
+
+/// Refuses the last axis if all have more values than a study can have.
+fn refuse_many_values(axes: &[Axis]) -> Result<()> {
+    let count: usize = axes.iter().map(|axis| axis.values.len()).sum();
+    match axes.last() {
+        Some(last) if axes.len() > MOST_AXES => Err(Diagnostic::input(
+            &last.place,
+            format!("with {} there are more than {MOST_AXES} axes", last.name),
+            "join what changes together in [together.NAME]",
+        )),
+        Some(last) if count as u64 > MOST_VALUES => Err(Diagnostic::input(
+            &last.place,
+            format!(
+                "with {} the axes have {count} values, more than {MOST_VALUES}",
+                last.name
+            ),
+            "vary less, or in several studies",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Whether two axes set the same path.
+fn sets_same(one: &Axis, other: &Axis) -> bool {
+    let paths = |axis: &Axis| -> Vec<String> {
+        let first = axis.values.first().into_iter();
+        first
+            .flat_map(|value| value.settings.iter().map(|s| s.path.clone()))
+            .collect()
+    };
+    paths(one).iter().any(|path| paths(other).contains(path))
+}

@@ -1,0 +1,396 @@
+//! What varies, and through which values: lists, ranges, several paths together.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::contents::{Axis, AxisValue, BODY, Setting};
+use super::keys::{RANGE, SPACINGS, TOGETHER, VALUES};
+use crate::field::Field;
+use crate::names::well_formed;
+use crate::table::Table;
+use crate::tree::{Node, Value, shortened};
+use dem_io::diagnostic::Result;
+use dem_io::units::{DIMENSIONS, quantity};
+
+/// Most values of a range, and of all axes of a study.
+pub(super) const MOST_VALUES: u64 = 100_000;
+/// Longest label, in characters.
+const LONGEST_LABEL: usize = 40;
+
+/// The axis of one path: a list, `{ values, size, names }`, or `{ from, to, count, spacing }`.
+pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis> {
+    let place = field.document.place(field.node.origin);
+    let (nodes, size, names) = match &field.node.value {
+        Value::List(_) => (field.items()?, None, None),
+        Value::Table(entries) if entries.iter().any(|(key, _)| key == "from") => {
+            let values = range(path, field)?;
+            return Ok(Axis {
+                name: path.to_owned(),
+                values: values
+                    .into_iter()
+                    .map(|(text, label)| AxisValue {
+                        size: size_of_text(&label),
+                        label,
+                        settings: vec![Setting {
+                            path: path.to_owned(),
+                            value: text,
+                            place: place.clone(),
+                        }],
+                    })
+                    .collect(),
+                place,
+            });
+        }
+        Value::Table(entries) if entries.iter().any(|(key, _)| key == "values") => {
+            let table = Table::of(field, &VALUES)?;
+            let values = table.need("values")?.items()?;
+            (values, table.get("size"), table.get("names"))
+        }
+        Value::Table(_) => {
+            let remedy = "write its path in quotes, such as \"run.safety_factor\" = [0.9, 0.5]";
+            let problem = format!("{} is neither a list nor a range", field.path);
+            return Err(field.refuse(problem, remedy));
+        }
+        _ => {
+            let remedy = "write [0.9, 0.5] or { from = 0.1, to = 0.9, count = 5 }; what does not vary belongs into [set]";
+            return Err(field.wrong("a list or a range", remedy));
+        }
+    };
+    let mut values = Vec::new();
+    for item in &nodes {
+        values.push(AxisValue {
+            label: label(item.node),
+            settings: vec![setting(path, item, folder)?],
+            size: size_of(item.node),
+        });
+    }
+    with_sizes(&mut values, size.as_ref(), names.as_ref())?;
+    Ok(Axis {
+        name: path.to_owned(),
+        place,
+        values,
+    })
+}
+
+/// The axis of several paths that change together: lists of the same length, and perhaps `size` and
+/// `names`.
+pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<Axis> {
+    let table = Table::any(field)?;
+    let mut values: Vec<AxisValue> = Vec::new();
+    for (path, node) in table.entries {
+        if TOGETHER.key(path).is_some() {
+            continue;
+        }
+        let list = table.field(path, node);
+        let items = list.items()?;
+        if values.is_empty() {
+            values = items
+                .iter()
+                .map(|item| AxisValue {
+                    label: label(item.node),
+                    settings: Vec::new(),
+                    size: size_of(item.node),
+                })
+                .collect();
+        } else if items.len() != values.len() {
+            let limit = format!("a list of {}, as the one before it", values.len());
+            return Err(list.wrong(&limit, "give each path as many values"));
+        }
+        for (value, item) in values.iter_mut().zip(&items) {
+            value.settings.push(setting(path, item, folder)?);
+        }
+    }
+    if values.is_empty() {
+        let problem = format!("{} names no path", field.path);
+        return Err(field.refuse(problem, "add \"run.safety_factor\" = [0.9, 0.5], say"));
+    }
+    with_sizes(
+        &mut values,
+        table.get("size").as_ref(),
+        table.get("names").as_ref(),
+    )?;
+    Ok(Axis {
+        name: name.to_owned(),
+        place: field.document.place(field.node.origin),
+        values,
+    })
+}
+
+/// The settings of a table of paths.
+pub(super) fn settings(field: &Field<'_>, folder: &Path) -> Result<Vec<Setting>> {
+    let table = Table::any(field)?;
+    let settings = table.entries.iter();
+    settings
+        .map(|(path, node)| {
+            let field = table.field(path, node);
+            if matches!(node.value, Value::Table(_)) && !path.contains('.') {
+                let remedy = "write its path in quotes, such as \"run.safety_factor\" = 0.5";
+                let problem = format!("{} is no path into a table of the scene", field.path);
+                return Err(field.refuse(problem, remedy));
+            }
+            setting(path, &field, folder)
+        })
+        .collect()
+}
+
+fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
+    let is_path = path.split('.').all(|key| !key.is_empty());
+    if !is_path || !path.contains('.') || path.contains('=') {
+        let problem = format!("\"{}\" is no path of a scene", shortened(path, 40));
+        return Err(field.refuse(
+            problem,
+            "write TABLE.KEY, such as run.safety_factor or body.NAME",
+        ));
+    }
+    let value = if path.starts_with(BODY) {
+        let name = field.text()?;
+        if name.trim().is_empty() || name == "-" {
+            return Err(field.wrong("the name of a file", "write a name such as \"cake.vtp\""));
+        }
+        tidy_body(folder.join(name)).display().to_string()
+    } else {
+        toml(field.node)
+    };
+    Ok(Setting {
+        path: path.to_owned(),
+        value,
+        place: field.document.place(field.node.origin),
+    })
+}
+
+/// The same for a body, which may be two files of other names: its folder is made tidy.
+fn tidy_body(path: PathBuf) -> PathBuf {
+    match (path.parent(), path.file_name()) {
+        (Some(folder), Some(name)) => tidy(folder.to_owned()).join(name),
+        _ => path,
+    }
+}
+
+/// Gives the values the sizes and names of two lists of the same length.
+fn with_sizes(
+    values: &mut [AxisValue],
+    size: Option<&Field<'_>>,
+    names: Option<&Field<'_>>,
+) -> Result<()> {
+    let items = |list: &Field<'_>, count: usize| {
+        let items = list.items().map(|items| items.len());
+        match items {
+            Ok(found) if found != count => Err(list.wrong(
+                &format!("a list of {count}, one for each value"),
+                "give as many",
+            )),
+            _ => list.items().map(drop),
+        }
+    };
+    if let Some(list) = size {
+        items(list, values.len())?;
+        for (value, item) in values.iter_mut().zip(list.items()?) {
+            value.size = Some(size_of(item.node).ok_or_else(|| {
+                item.wrong("a size of more than 0", "write how coarse the value is")
+            })?);
+        }
+    }
+    if let Some(list) = names {
+        items(list, values.len())?;
+        for (value, item) in values.iter_mut().zip(list.items()?) {
+            item.text()?.clone_into(&mut value.label);
+        }
+    }
+    Ok(())
+}
+
+/// The values of `{ from, to, count, spacing }`, as TOML and for a person.
+fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
+    let table = Table::of(field, &RANGE)?;
+    let [from, to] = [table.need("from")?, table.need("to")?];
+    let ends = [&from, &to].map(|end| {
+        split(end.node).ok_or_else(|| {
+            let remedy = format!("write it as {path} wants it, such as \"1 us\" or 0.5");
+            end.wrong("a number", remedy)
+        })
+    });
+    let [(first, unit), (last, unit_of_last)] = match ends {
+        [Ok(first), Ok(last)] => [first, last],
+        [Err(error), _] | [_, Err(error)] => return Err(error),
+    };
+    if unit != unit_of_last {
+        let problem = format!(
+            "{} is in {}, but {} in {}",
+            to.path,
+            named(&unit_of_last),
+            from.path,
+            named(&unit)
+        );
+        return Err(to.refuse(problem, "write both in the same unit"));
+    }
+    let counted = table.need("count")?;
+    let remedy = "write how many values there are, both ends among them";
+    let count = counted.whole(1, None, remedy)?;
+    if !(2..=MOST_VALUES).contains(&count) {
+        let limit = format!("from 2 to {MOST_VALUES}");
+        return Err(counted.wrong(&limit, "write how many values there are"));
+    }
+    let log = table
+        .read_by("spacing", |field| field.choice(&SPACINGS))?
+        .unwrap_or(false);
+    if log && (first <= 0.0 || last <= 0.0) {
+        let problem = format!("{} has no logarithm at 0 and below", field.path);
+        return Err(field.refuse(problem, "write spacing = \"linear\", or ends above 0"));
+    }
+    let value = |at: u64| {
+        let share = at as f64 / (count - 1) as f64;
+        if at == 0 {
+            first
+        } else if at == count - 1 {
+            last
+        } else if log {
+            rounded(first * (last / first).powf(share))
+        } else {
+            rounded(first + (last - first) * share)
+        }
+    };
+    Ok((0..count)
+        .map(|at| {
+            let number = shown(value(at));
+            if unit.is_empty() {
+                (number.clone(), number)
+            } else {
+                let text = format!("{number} {unit}");
+                (quoted(&text), text)
+            }
+        })
+        .collect())
+}
+
+/// To six digits: what stands between the ends need not be exact, but short.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+fn shown(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+fn named(unit: &str) -> String {
+    if unit.is_empty() {
+        "no unit".to_owned()
+    } else {
+        format!("'{unit}'")
+    }
+}
+
+/// A number and its unit.
+fn split(node: &Node) -> Option<(f64, String)> {
+    match &node.value {
+        Value::Number(_, value) => value.is_finite().then(|| (*value, String::new())),
+        Value::Text(text) => {
+            let ends = (1..=text.len())
+                .rev()
+                .filter(|end| text.is_char_boundary(*end));
+            let number = |end: usize| text[..end].trim().parse::<f64>().ok().map(|v| (v, end));
+            let (value, end) = ends.filter_map(number).find(|(v, _)| v.is_finite())?;
+            Some((value, text[end..].trim().to_owned()))
+        }
+        _ => None,
+    }
+}
+
+/// How coarse a value is, if it is a number above 0.
+fn size_of(node: &Node) -> Option<f64> {
+    match &node.value {
+        Value::Number(_, value) => (value.is_finite() && *value > 0.0).then_some(*value),
+        Value::Text(text) => size_of_text(text),
+        _ => None,
+    }
+}
+
+fn size_of_text(text: &str) -> Option<f64> {
+    in_si(text).filter(|value| *value > 0.0)
+}
+
+/// A number with any unit, in SI.
+pub(super) fn in_si(text: &str) -> Option<f64> {
+    DIMENSIONS.iter().find_map(|d| quantity(text, d).ok())
+}
+
+/// A value for a person.
+fn label(node: &Node) -> String {
+    match &node.value {
+        Value::Text(text) => {
+            let name = Path::new(text);
+            let is_file = name.extension().is_some() && text.contains('/');
+            let short = name.file_name().and_then(|name| name.to_str());
+            match short {
+                Some(short) if is_file => short.to_owned(),
+                _ => text.clone(),
+            }
+        }
+        _ => shortened(&toml(node), LONGEST_LABEL),
+    }
+}
+
+/// A value as TOML.
+pub(super) fn toml(node: &Node) -> String {
+    match &node.value {
+        Value::Text(text) => quoted(text),
+        Value::Number(written, _) | Value::Date(written) => written.clone(),
+        Value::Boolean(boolean) => boolean.to_string(),
+        Value::List(items) => {
+            let items: Vec<String> = items.iter().map(toml).collect();
+            format!("[{}]", items.join(", "))
+        }
+        Value::Table(entries) => {
+            let entries: Vec<String> = entries
+                .iter()
+                .map(|(name, node)| format!("{} = {}", key(name), toml(node)))
+                .collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+    }
+}
+
+/// A text as TOML.
+pub(super) fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            control if control.is_control() => {
+                out.push_str(&format!("\\u{:04X}", u32::from(control)));
+            }
+            other => out.push(other),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// A path without `folder/..`, where that is the same.
+pub(super) fn tidy(path: PathBuf) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leads_down = matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && leads_down {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    match (short.canonicalize(), path.canonicalize()) {
+        (Ok(one), Ok(other)) if one == other => short,
+        _ => path,
+    }
+}
+
+/// A key as TOML wants it.
+pub(super) fn key(name: &str) -> String {
+    if well_formed(name) {
+        name.to_owned()
+    } else {
+        format!("{name:?}")
+    }
+}

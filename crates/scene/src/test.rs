@@ -1,0 +1,331 @@
+//! `[test]`: a quasi-static laboratory test.
+
+use std::collections::BTreeMap;
+use std::ops::Bound::{Included, Unbounded};
+
+use super::field::Field;
+use super::group::ParticleGroup;
+use super::listing::Listing;
+use super::material::poisson_ratio;
+use super::names::suggestion;
+use super::presence::Presence;
+use super::schema::{Key, Kind, Schema, words_of};
+use super::support::Support;
+use super::table::Table;
+use super::wall::{Wall, WallMotion};
+use dem_io::diagnostic::Result;
+use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY};
+
+pub(super) static TEST: Schema = Schema {
+    title: "[test]",
+    doc: "A laboratory test. `run.end_time` may be left out then.",
+    keys: &[
+        Key::new("type", Kind::Word(|| words_of(&KINDS)), "Type of test.").required("\"four-point-bending\""),
+        Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
+        Key::new(
+            "crosshead",
+            Kind::List(&Kind::Text("a name in [walls], for tension in [groups]")),
+            "Walls that load the body and do not move otherwise; for tension, groups that are gripped and pulled.",
+        )
+        .required("[\"NAME\"], walls that load the body"),
+        Key::new(
+            "direction",
+            Kind::Direction("a direction"),
+            "Direction of loading; for tension along x, y or z. Its length does not matter.",
+        )
+        .required("[0, 0, -1], in which they move"),
+        Key::quantity(
+            "stroke",
+            &LENGTH,
+            "Maximum crosshead travel; the run ends sooner when the body has broken.",
+        )
+        .positive()
+        .required("\"4 mm\""),
+        Key::new(
+            "rate",
+            Kind::Auto(&VELOCITY),
+            "Crosshead velocity; `auto`: such that the stroke takes `periods`.",
+        )
+        .positive()
+        .remedy("write \"auto\" or a velocity such as \"0.2 mm/s\"")
+        .or_word("auto"),
+        Key::number("periods", "Duration of the stroke in periods of the body's lowest natural frequency.")
+            .within(Included(1.0), Unbounded)
+            .remedy("a usual value is 20: more are slower, and nearer to rest")
+            .or(20.0),
+        Key::flag("rate_check", true, "The test is done at twice the rate as well."),
+        Key::quantity(
+            "young_modulus",
+            &STRESS,
+            "Young's modulus of the body as a whole, to compare with.",
+        )
+        .positive(),
+        poisson_ratio("Poisson's ratio of the body as a whole, for its shear in bending.").or(0.3),
+        Key::quantity("strength", &STRESS, "Strength of the body as a whole, to compare with.")
+            .positive(),
+        size("support_span", "Between the supports of a beam."),
+        size("loading_span", "Between the two loading pins."),
+        size("width", "Of a beam, or thickness of a disc."),
+        size("height", "Of a beam, or diameter of a disc."),
+        size("length", "Of a body that is pressed or pulled."),
+        Key::quantity("area", &AREA, "Of its section.")
+            .positive()
+            .otherwise(MEASURED),
+    ],
+};
+
+const MEASURED: &str = "measured on walls and body";
+
+/// A length of the test.
+const fn size(name: &'static str, doc: &'static str) -> Key {
+    Key::quantity(name, &LENGTH, doc)
+        .positive()
+        .otherwise(MEASURED)
+}
+
+/// Every kind of test and its name in a scene.
+const KINDS: [(&str, TestKind); 5] = [
+    ("four-point-bending", TestKind::FourPointBending),
+    ("three-point-bending", TestKind::ThreePointBending),
+    ("brazilian-disc", TestKind::BrazilianDisc),
+    ("compression", TestKind::Compression),
+    ("tension", TestKind::Tension),
+];
+
+/// Which laboratory test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TestKind {
+    /// "four-point-bending": two pins push between two supports.
+    FourPointBending,
+    /// "three-point-bending": one pin pushes halfway between two supports.
+    ThreePointBending,
+    /// "brazilian-disc": a disc is pressed across its diameter until it splits.
+    BrazilianDisc,
+    /// "compression": a body is pressed along its length.
+    Compression,
+    /// "tension": a body is gripped at its ends and pulled.
+    Tension,
+}
+
+impl TestKind {
+    /// Its name in a scene.
+    pub fn name(self) -> &'static str {
+        let found = KINDS.iter().find(|(_, kind)| *kind == self);
+        found.map_or("", |(name, _)| *name)
+    }
+
+    /// The keys of lengths and areas that mean something to it.
+    pub(super) fn dimensions(self) -> &'static [&'static str] {
+        match self {
+            Self::FourPointBending => &["support_span", "loading_span", "width", "height"],
+            Self::ThreePointBending => &["support_span", "width", "height"],
+            Self::BrazilianDisc => &["width", "height"],
+            Self::Compression | Self::Tension => &["length", "area"],
+        }
+    }
+}
+
+/// A quasi-static test: what moves, how far and how fast, and what it is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Test {
+    /// `type`
+    pub kind: TestKind,
+    /// `body` that is tested; the only one unless given.
+    pub body: String,
+    /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are
+    /// pulled. At least one.
+    pub crosshead: Vec<String>,
+    /// `direction` in which they move, of length 1; for tension along x, y or z. Length 3.
+    pub direction: [f64; 3],
+    /// `stroke`: how far they move at most, m.
+    pub stroke_m: f64,
+    /// `rate`: their velocity, m/s. None, "auto": such that the stroke takes `periods`.
+    pub rate_m_s: Option<f64>,
+    /// `periods` of the body's lowest frequency, 20 unless given. At least 1.
+    pub periods: f64,
+    /// `rate_check`: the test is done at twice the rate as well. True unless given.
+    pub rate_check: bool,
+    /// `young_modulus` that the body as a whole should have, Pa. None: compared with nothing.
+    pub young_modulus_pa: Option<f64>,
+    /// `poisson_ratio` of the body as a whole, for its shear in bending; 0.3 unless given.
+    pub poisson_ratio: f64,
+    /// `strength` that the body as a whole should have, by the formula of the test, Pa. None:
+    /// compared with nothing.
+    pub strength_pa: Option<f64>,
+    /// `support_span` between the supports of a beam, m. None: that of the walls.
+    pub support_span_m: Option<f64>,
+    /// `loading_span` between the two loading pins, m. None: that of the walls.
+    pub loading_span_m: Option<f64>,
+    /// `width` of a beam, or thickness of a disc, m. None: that of the body.
+    pub width_m: Option<f64>,
+    /// `height` of a beam, or diameter of a disc, m. None: that of the body.
+    pub height_m: Option<f64>,
+    /// `length` of a body that is pressed or pulled, m. None: that of the body.
+    pub length_m: Option<f64>,
+    /// `area` of its section, m2. None: volume of the body's shape over its length, or, where no
+    /// file names a volume, the product of its other two sides.
+    pub area_m2: Option<f64>,
+}
+
+/// What a test can name.
+pub(super) struct Known<'a> {
+    pub(super) presence: &'a Presence<'a>,
+    pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
+    pub(super) walls: &'a BTreeMap<String, Wall>,
+    pub(super) supports: &'a BTreeMap<String, Support>,
+}
+
+pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
+    let table = Table::of(field, &TEST)?;
+    let kind = table.need("type")?.choice(&KINDS)?;
+    refuse_dimensions(&table, kind)?;
+    let pulls = kind == TestKind::Tension;
+    let example = if pulls {
+        "[\"NAME\"], groups that are pulled"
+    } else {
+        "[\"NAME\"], walls that load the body"
+    };
+    let crosshead = table.need_such("crosshead", example)?;
+    let crosshead = all_moved(&crosshead, pulls, known)?;
+    let direction: [f64; 3] = table.read("direction")?;
+    if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
+        let remedy = "write [1, 0, 0], [0, 1, 0], [0, 0, 1] or the opposite";
+        let along = table.need("direction")?;
+        return Err(along.wrong("along x, y or z, as what a support moves", remedy));
+    }
+    Ok(Test {
+        kind,
+        body: body(&table, known)?,
+        crosshead,
+        direction,
+        stroke_m: table.read("stroke")?,
+        rate_m_s: table.read("rate")?,
+        periods: table.read("periods")?,
+        rate_check: table.read("rate_check")?,
+        young_modulus_pa: table.read("young_modulus")?,
+        poisson_ratio: table.read("poisson_ratio")?,
+        strength_pa: table.read("strength")?,
+        support_span_m: table.read("support_span")?,
+        loading_span_m: table.read("loading_span")?,
+        width_m: table.read("width")?,
+        height_m: table.read("height")?,
+        length_m: table.read("length")?,
+        area_m2: table.read("area")?,
+    })
+}
+
+pub(super) fn list(test: &Test, listing: &mut Listing) {
+    listing.text("type", test.kind.name());
+    listing.text("body", &test.body);
+    listing.text("crosshead", test.crosshead.join(", "));
+    listing.value("direction", &test.direction);
+    listing.value("stroke", &test.stroke_m);
+    listing.value("rate", &test.rate_m_s);
+    listing.value("periods", &test.periods);
+    listing.value("rate_check", &test.rate_check);
+    listing.value("young_modulus", &test.young_modulus_pa);
+    listing.value("poisson_ratio", &test.poisson_ratio);
+    listing.value("strength", &test.strength_pa);
+    for (key, given) in [
+        ("support_span", test.support_span_m),
+        ("loading_span", test.loading_span_m),
+        ("width", test.width_m),
+        ("height", test.height_m),
+        ("length", test.length_m),
+        ("area", test.area_m2),
+    ] {
+        if test.kind.dimensions().contains(&key) {
+            listing.value(key, &given);
+        }
+    }
+}
+
+/// Refuses dimensions that mean nothing to the kind of test.
+fn refuse_dimensions(table: &Table<'_>, kind: TestKind) -> Result<()> {
+    let all = [
+        "support_span",
+        "loading_span",
+        "width",
+        "height",
+        "length",
+        "area",
+    ];
+    let known = kind.dimensions();
+    match table.given(&all).find(|(key, _)| !known.contains(key)) {
+        Some((_, field)) => {
+            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
+            Err(field.refuse(
+                problem,
+                format!("remove it; known here: {}", known.join(", ")),
+            ))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The body that is named, or the only one.
+fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
+    let bodies = known.presence.bodies;
+    if let Some(field) = table.get("body") {
+        let name = field.reference(bodies.keys(), "bodies")?;
+        known.presence.refuse_body(&field, &name)?;
+        return Ok(name);
+    }
+    let mut names = bodies.keys();
+    match (names.next(), names.next()) {
+        (Some(only), None) => {
+            known.presence.refuse_only(table, only)?;
+            Ok(only.clone())
+        }
+        _ => {
+            let problem = format!("{}.body is missing, and there are several", table.path);
+            let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
+            Err(table.refuse(problem, format!("name one of {}", names.join(", "))))
+        }
+    }
+}
+
+/// What `crosshead` names, each once.
+fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<String>> {
+    let mut moves: Vec<String> = Vec::new();
+    for item in field.items()? {
+        let name = moved(&item, pulls, known)?;
+        if moves.contains(&name) {
+            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
+            return Err(item.refuse(problem, "remove one of them"));
+        }
+        moves.push(name);
+    }
+    Ok(moves)
+}
+
+/// What an item of `crosshead` names: a wall that stands still, or a group that no support holds.
+fn moved(item: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<String> {
+    let name = item.text()?;
+    if pulls {
+        if !known.groups.contains_key(name) {
+            let problem = format!("{} is \"{name}\", but no group has this name", item.path);
+            let names = known.groups.keys().map(String::as_str);
+            return Err(item.refuse(problem, suggestion(name, names)));
+        }
+        if let Some((support, _)) = known.supports.iter().find(|(_, s)| s.group == name) {
+            let problem = format!(
+                "{} is \"{name}\", which [supports.{support}] holds",
+                item.path
+            );
+            return Err(item.refuse(problem, "remove that support: the test moves the group"));
+        }
+        return Ok(name.to_owned());
+    }
+    let Some(wall) = known.walls.get(name) else {
+        let problem = format!("{} is \"{name}\", but no wall has this name", item.path);
+        let names = known.walls.keys().map(String::as_str);
+        return Err(item.refuse(problem, suggestion(name, names)));
+    };
+    if wall.motion != WallMotion::Fixed {
+        let problem = format!("{} is \"{name}\", which moves by itself", item.path);
+        let remedy = format!("take velocity, displacement or servo from [walls.{name}]");
+        return Err(item.refuse(problem, remedy));
+    }
+    Ok(name.to_owned())
+}

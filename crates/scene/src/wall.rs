@@ -1,0 +1,148 @@
+//! `[walls.NAME]`
+
+pub(super) mod motion;
+mod shape;
+
+pub use motion::WallMotion;
+pub use shape::WallShape;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::body::BodyEntry;
+use super::direction::ROTATION;
+use super::factor::{RAMP, TABLE};
+use super::field::Field;
+use super::group::ParticleGroup;
+use super::listing::Listing;
+use super::material::Material;
+use super::names::meaning;
+use super::schema::{Key, Schema};
+use super::shape::{BOX, CYLINDER, UNIT};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
+
+pub(super) static WALL: Schema = Schema {
+    title: "[walls.NAME]",
+    doc: "A rigid wall of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
+          a servo.",
+    keys: &[
+        Key::table("plane", &shape::PLANE, "A plane without end."),
+        Key::table("box", &BOX, "Solid, with particles outside."),
+        Key::table(
+            "cylinder",
+            &CYLINDER,
+            "A solid pin, with particles outside.",
+        ),
+        Key::text(
+            "stl",
+            "a file",
+            "Triangles, from the folder of the scene, with `unit`.",
+        ),
+        UNIT,
+        Key::number("scale", "Of `stl`: a factor on all its lengths.")
+            .positive()
+            .or(1.0),
+        Key::text("material", "a name in [materials]", "Its material.")
+            .required("\"NAME\", a name in [materials]"),
+        Key::table("rotation", &ROTATION, "Initial rotation about the pivot.").or(0.0),
+        Key::vector("pivot", &LENGTH, "Centre of rotation."),
+        Key::vector(
+            "surface_velocity",
+            &VELOCITY,
+            "Of a belt: its surface moves, its shape stays; in space, not rotated with the wall.",
+        ),
+        Key::vector("velocity", &VELOCITY, "Of the pivot."),
+        Key::vector(
+            "angular_velocity",
+            &ANGULAR_VELOCITY,
+            "About the pivot, which moves along.",
+        ),
+        Key::vector(
+            "displacement",
+            &LENGTH,
+            "Of the pivot. Needs a `ramp` or `table` that begins at 0.",
+        ),
+        Key::table(
+            "angular_displacement",
+            &ROTATION,
+            "About the pivot. Needs a `ramp` or `table` that begins at 0.",
+        )
+        .or(0.0),
+        Key::table(
+            "servo",
+            &motion::SERVO,
+            "Servo control: it moves such that it exerts a given force.",
+        ),
+        RAMP,
+        TABLE,
+    ],
+};
+
+/// A wall, fixed or moving.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    /// `plane`, `box`, `cylinder` or `stl`
+    pub shape: WallShape,
+    /// `material`: a name of `[materials]`.
+    pub material: String,
+    /// `rotation = { axis, angle }`: turned about the pivot, as a rotation vector, rad. Length 3.
+    pub rotation_rad: [f64; 3],
+    /// `pivot`, m; the origin unless given. Length 3.
+    pub pivot_m: [f64; 3],
+    /// How it moves; fixed unless given.
+    pub motion: WallMotion,
+    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given.
+    /// Length 3.
+    pub surface_velocity_m_s: [f64; 3],
+}
+
+pub(super) fn read_all(
+    root: &Table<'_>,
+    materials: &BTreeMap<String, Material>,
+    bodies: &BTreeMap<String, BodyEntry>,
+    groups: &BTreeMap<String, ParticleGroup>,
+    folder: &Path,
+) -> Result<BTreeMap<String, Wall>> {
+    let mut walls = BTreeMap::new();
+    for (name, field) in root.named("walls")? {
+        let like = if bodies.contains_key(&name) {
+            Some(format!("the body [bodies.{name}]"))
+        } else if groups.contains_key(&name) {
+            Some(format!("the group [groups.{name}]"))
+        } else {
+            meaning(&name).map(str::to_owned)
+        };
+        if let Some(like) = like {
+            let problem = format!("{} is named like {like}", field.path);
+            let remedy = "give it another name: measures name walls as they do groups and bodies";
+            return Err(field.refuse(problem, remedy));
+        }
+        walls.insert(name, read(&field, materials, folder)?);
+    }
+    Ok(walls)
+}
+
+fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path) -> Result<Wall> {
+    let table = Table::of(field, &WALL)?;
+    Ok(Wall {
+        shape: shape::read(&table, folder)?,
+        material: table
+            .need("material")?
+            .reference(materials.keys(), "materials")?,
+        rotation_rad: table.read("rotation")?,
+        pivot_m: table.read("pivot")?,
+        motion: motion::read(&table)?,
+        surface_velocity_m_s: table.read("surface_velocity")?,
+    })
+}
+
+pub(super) fn list(wall: &Wall, listing: &mut Listing) {
+    shape::list(&wall.shape, listing);
+    listing.text("material", &wall.material);
+    listing.value("pivot", &wall.pivot_m);
+    listing.value("rotation", &wall.rotation_rad);
+    listing.value("surface_velocity", &wall.surface_velocity_m_s);
+    motion::list(&wall.motion, listing);
+}

@@ -1,0 +1,166 @@
+//! How a wall moves: at a velocity, by a displacement, or as a servo.
+
+use crate::factor::{self, Factor, factor, factor_from_zero, over_time};
+use crate::field::Field;
+use crate::listing::Listing;
+use crate::schema::{Key, Kind, Schema};
+use crate::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{FORCE, VELOCITY};
+use serde::Serialize;
+
+/// How a wall moves.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub enum WallMotion {
+    /// Not at all.
+    #[default]
+    Fixed,
+    /// `velocity` and `angular_velocity`, with `ramp` or `table`.
+    Velocity {
+        /// Of the pivot, m/s. Length 3.
+        velocity_m_s: [f64; 3],
+        /// About the pivot, which moves along, rad/s. Length 3.
+        spin_rad_s: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `displacement` and `angular_displacement`, with `ramp` or `table`.
+    Displacement {
+        /// Of the pivot, m. Length 3.
+        displacement_m: [f64; 3],
+        /// About the pivot, which moves along: `angular_displacement = { axis, angle }` as a
+        /// rotation vector, rad. Length 3.
+        angular_displacement_rad: [f64; 3],
+        /// On both, over time.
+        factor: Factor,
+    },
+    /// `servo = { force, direction, max_velocity }`, with `ramp` or `table`: moves along
+    /// `direction` such that it exerts a given force.
+    Servo {
+        /// `force`: force to exert along `direction`, N; below 0 against it.
+        force_n: f64,
+        /// `direction`, of length 1. Length 3.
+        direction: [f64; 3],
+        /// `max_velocity`, m/s; more than 0.
+        max_velocity_m_s: f64,
+        /// On the force, over time.
+        factor: Factor,
+    },
+}
+
+pub(crate) static SERVO: Schema = Schema {
+    title: "Servo",
+    doc: "A servo-controlled wall: it moves along a direction such that it exerts a given force.",
+    keys: &[
+        Key::quantity(
+            "force",
+            &FORCE,
+            "Force to exert along `direction`; below 0 against it.",
+        )
+        .required("\"100 N\""),
+        Key::new(
+            "direction",
+            Kind::Direction("a direction"),
+            "Direction of motion; its length does not matter.",
+        )
+        .required("[0, 0, -1]"),
+        Key::quantity("max_velocity", &VELOCITY, "Maximum velocity.")
+            .positive()
+            .required("\"10 mm/s\", its largest"),
+    ],
+};
+
+/// The ways to move, each with its keys.
+const WAYS: [&[&str]; 3] = [
+    &["velocity", "angular_velocity"],
+    &["displacement", "angular_displacement"],
+    &["servo"],
+];
+const KEYS: [&str; 5] = [
+    "velocity",
+    "angular_velocity",
+    "displacement",
+    "angular_displacement",
+    "servo",
+];
+
+pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
+    let mut given = wall.given(&KEYS);
+    let Some((first, field)) = given.next() else {
+        if let Some(field) = over_time(wall) {
+            let problem = format!(
+                "{} has no effect without velocity, displacement or servo",
+                field.path
+            );
+            return Err(field.refuse(problem, "remove it"));
+        }
+        return Ok(WallMotion::Fixed);
+    };
+    let way = |key: &str| WAYS.iter().position(|keys| keys.contains(&key));
+    if let Some((_, second)) = given.find(|(key, _)| way(key) != way(first)) {
+        let problem = format!("{} cannot be combined with {first}", second.path);
+        let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
+        return Err(second.refuse(problem, remedy));
+    }
+    match first {
+        "servo" => servo(&field, factor(wall)?),
+        "displacement" | "angular_displacement" => Ok(WallMotion::Displacement {
+            displacement_m: wall.read("displacement")?,
+            angular_displacement_rad: wall.read("angular_displacement")?,
+            factor: factor_from_zero(wall, &field)?,
+        }),
+        _ => Ok(WallMotion::Velocity {
+            velocity_m_s: wall.read("velocity")?,
+            spin_rad_s: wall.read("angular_velocity")?,
+            factor: factor(wall)?,
+        }),
+    }
+}
+
+fn servo(field: &Field<'_>, factor: Factor) -> Result<WallMotion> {
+    let table = Table::of(field, &SERVO)?;
+    Ok(WallMotion::Servo {
+        direction: table.read("direction")?,
+        force_n: table.read("force")?,
+        max_velocity_m_s: table.read("max_velocity")?,
+        factor,
+    })
+}
+
+pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
+    let factor = match motion {
+        WallMotion::Fixed => return listing.text("motion", "fixed"),
+        WallMotion::Velocity {
+            velocity_m_s,
+            spin_rad_s,
+            factor,
+        } => {
+            listing.value("velocity", velocity_m_s);
+            listing.value("angular_velocity", spin_rad_s);
+            factor
+        }
+        WallMotion::Displacement {
+            displacement_m,
+            angular_displacement_rad,
+            factor,
+        } => {
+            listing.value("displacement", displacement_m);
+            listing.value("angular_displacement", angular_displacement_rad);
+            factor
+        }
+        WallMotion::Servo {
+            force_n,
+            direction,
+            max_velocity_m_s,
+            factor,
+        } => {
+            listing.table("servo", &SERVO, |listing| {
+                listing.value("force", force_n);
+                listing.value("direction", direction);
+                listing.value("max_velocity", max_velocity_m_s);
+            });
+            factor
+        }
+    };
+    factor::list(factor, listing);
+}

@@ -1,0 +1,268 @@
+//! Clumps, regions, replacement, inlets and outlets.
+
+use dem_scene::{
+    ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, Restore, StartAs,
+};
+use dem_scene::{read_scene, scene_from_text};
+
+use super::good::{assert_near, folder, good};
+
+/// The second example of the documentation goes on from the first, and each way that stands in a
+/// comment is one as well.
+#[test]
+fn the_documentation() {
+    let text = include_str!("../../../../doc/scenes.md");
+    let mut examples = text.split("```toml\n").skip(1);
+    let mut next = || examples.next().unwrap().split_once("```").unwrap().0;
+    let (first, second) = (next(), next());
+    let read = |second: &str| scene_from_text(&format!("{first}{second}"), "doc.toml", &[]);
+    let scene = read(second).unwrap();
+    assert_eq!(scene.regions.len(), 3);
+    assert_eq!(scene.replacement.len(), 1);
+    assert_eq!((scene.inlets.len(), scene.outlets.len()), (1, 1));
+    for (taken, comment) in [
+        ("box = ", "# sphere = "),
+        ("box = ", "# cylinder = "),
+        ("box = ", "# stl = "),
+        ("rate = ", "# mass_rate = "),
+        ("bodies = ", "# bodies = "),
+        ("inside = ", "# outside = "),
+    ] {
+        let unit = if comment == "# stl = " {
+            "unit = \"mm\"\n"
+        } else {
+            ""
+        };
+        let other = second.replacen(comment, &format!("{unit}{}", &comment[2..]), 1);
+        let other = other.replacen(&format!("\n{taken}"), &format!("\n# {taken}"), 1);
+        let read = read(&other).unwrap();
+        assert_ne!(read.describe(), scene.describe(), "{comment}");
+    }
+}
+
+#[test]
+fn what_bodies_start_as() {
+    let bodies = good("clumps-and-feed.toml").bodies;
+    let clump = |scale, mass| StartAs::Clump(ClumpSettings { scale, mass });
+    let StartAs::Clump(cake) = bodies["cake"].start_as else {
+        panic!("no clump");
+    };
+    assert_near(cake.scale, 1.02);
+    assert_eq!(cake.mass, ClumpMass::Spheres);
+    assert_eq!(bodies["pair"].start_as, clump(1.0, ClumpMass::Spheres));
+    assert_eq!(bodies["rock"].start_as, clump(1.5, ClumpMass::Union));
+    assert_eq!(bodies["bar"].start_as, StartAs::Bonded);
+    let others = good("every-key.toml").bodies;
+    assert!(others.values().all(|b| b.start_as == StartAs::Bonded));
+}
+
+#[test]
+fn regions() {
+    let regions = good("clumps-and-feed.toml").regions;
+    assert_eq!(
+        regions["impact"],
+        Region::Box {
+            min_m: [-0.1, -0.5, -1.0],
+            max_m: [1.0, 0.5, 0.5]
+        }
+    );
+    assert_eq!(
+        regions["gate"],
+        Region::Sphere {
+            centre_m: [0.0, 0.0, 2.0],
+            radius_m: 0.1
+        }
+    );
+    assert_eq!(
+        regions["all"],
+        Region::Cylinder {
+            from_m: [0.0, 0.0, -3.0],
+            to_m: [0.0, 0.0, 3.0],
+            radius_m: 2.0
+        }
+    );
+    assert_eq!(
+        regions["cake"],
+        Region::Stl {
+            file: folder().join("shapes/bin.stl"),
+            unit_m: 1e-3
+        }
+    );
+}
+
+#[test]
+fn replacement() {
+    let replacement = good("clumps-and-feed.toml").replacement;
+    assert_eq!(
+        replacement["cake"],
+        Replacement {
+            enters: Some("impact".to_owned()),
+            force_n: Some(100.0),
+            impact_energy_j: Some(0.5),
+            time_s: Some(0.1),
+            requires_all: true,
+            restore: Some(Restore {
+                leaves: "impact".to_owned(),
+                min_particles: 3,
+                strain_energy_j_kg: 0.02,
+                fluctuation_velocity_m_s: 0.001,
+            }),
+        }
+    );
+    assert_eq!(
+        replacement["pair"],
+        Replacement {
+            enters: None,
+            force_n: None,
+            impact_energy_j: None,
+            time_s: Some(0.0),
+            requires_all: false,
+            restore: Some(Restore {
+                leaves: "all".to_owned(),
+                min_particles: 10,
+                strain_energy_j_kg: 0.01,
+                fluctuation_velocity_m_s: 0.005,
+            }),
+        }
+    );
+}
+
+#[test]
+fn inlets_and_outlets() {
+    let scene = good("clumps-and-feed.toml");
+    assert_eq!(
+        scene.inlets["feed"],
+        Inlet {
+            bodies: vec![("rock".to_owned(), 3.0), ("cake".to_owned(), 0.5)],
+            region: "gate".to_owned(),
+            rate: FeedRate::Number(4.0),
+            velocity_m_s: [3.0, 0.0, 0.0],
+            angular_velocity_rad_s: [0.0, 0.0, std::f64::consts::PI],
+            random_orientation: true,
+            start_s: 0.1,
+            end_s: 1.0,
+            count: Some(100),
+        }
+    );
+    let second = &scene.inlets["second"];
+    let FeedRate::Mass(rate) = second.rate else {
+        panic!("{:?}", second.rate);
+    };
+    assert_near(rate, 1.0);
+    let usual = Inlet {
+        bodies: vec![("cake".to_owned(), 1.0)],
+        region: "gate".to_owned(),
+        rate: second.rate,
+        velocity_m_s: [0.0; 3],
+        angular_velocity_rad_s: [0.0; 3],
+        random_orientation: false,
+        start_s: 0.0,
+        end_s: f64::INFINITY,
+        count: None,
+    };
+    assert_eq!(*second, usual);
+    let outlet = |region: &str, removes_outside| Outlet {
+        region: region.to_owned(),
+        removes_outside,
+    };
+    assert_eq!(scene.outlets["floor"], outlet("cake", false));
+    assert_eq!(scene.outlets["lost"], outlet("all", true));
+}
+
+/// All bodies may be fed; a set of all bodies then picks from those that stand there, and what is
+/// zero says nothing of the start.
+#[test]
+fn bodies_that_are_fed() {
+    let scene = good("only-fed.toml");
+    assert_eq!((scene.bodies.len(), scene.inlets.len()), (1, 1));
+    let file = folder().join("only-fed.toml");
+    let options = ["groups.there.all=true", "bodies.block.velocity=[0, 0, 0]"];
+    let scene = read_scene(&file, &options.map(str::to_owned)).unwrap();
+    assert_eq!(scene.groups.len(), 1);
+}
+
+#[test]
+fn values_in_words() {
+    let words = |name: &str| -> Vec<String> {
+        let text = good(name).describe();
+        let about = ["regions.", "replacement.", "inlets.", "outlets."];
+        text.lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+            .filter(|line| {
+                about.iter().any(|table| line.starts_with(table))
+                    || line.contains(".start_as ")
+                    || line.contains(".clump.")
+            })
+            .collect()
+    };
+    let bin = folder().join("shapes/bin.stl");
+    assert_eq!(
+        words("clumps-and-feed.toml"),
+        [
+            "bodies.bar.start_as bonded",
+            "bodies.cake.start_as clump",
+            "bodies.cake.clump.scale 1.02",
+            "bodies.cake.clump.mass spheres",
+            "bodies.pair.start_as clump",
+            "bodies.pair.clump.scale 1",
+            "bodies.pair.clump.mass spheres",
+            "bodies.rock.start_as clump",
+            "bodies.rock.clump.scale 1.5",
+            "bodies.rock.clump.mass union",
+            "regions.all.cylinder.from [0, 0, -3] m",
+            "regions.all.cylinder.to [0, 0, 3] m",
+            "regions.all.cylinder.radius 2 m",
+            &format!("regions.cake.stl {}", bin.display()),
+            "regions.cake.unit 0.001 m",
+            "regions.gate.sphere.centre [0, 0, 2] m",
+            "regions.gate.sphere.radius 0.1 m",
+            "regions.impact.box.min [-0.1, -0.5, -1] m",
+            "regions.impact.box.max [1, 0.5, 0.5] m",
+            "replacement.cake.when.enters impact",
+            "replacement.cake.when.force 100 N",
+            "replacement.cake.when.impact_energy 0.5 J",
+            "replacement.cake.when.time 0.1 s",
+            "replacement.cake.require all",
+            "replacement.cake.restore.leaves impact",
+            "replacement.cake.restore.min_particles 3",
+            "replacement.cake.restore.strain_energy 0.02 J/kg",
+            "replacement.cake.restore.fluctuation_velocity 0.001 m/s",
+            "replacement.pair.when.enters not used",
+            "replacement.pair.when.force not used",
+            "replacement.pair.when.impact_energy not used",
+            "replacement.pair.when.time 0 s",
+            "replacement.pair.require any",
+            "replacement.pair.restore.leaves all",
+            "replacement.pair.restore.min_particles 10",
+            "replacement.pair.restore.strain_energy 0.01 J/kg",
+            "replacement.pair.restore.fluctuation_velocity 0.005 m/s",
+            "inlets.feed.bodies rock: 3, cake: 0.5",
+            "inlets.feed.region gate",
+            "inlets.feed.rate 4 1/s",
+            "inlets.feed.velocity [3, 0, 0] m/s",
+            "inlets.feed.angular_velocity [0, 0, 3.14159265359] rad/s",
+            "inlets.feed.orientation random",
+            "inlets.feed.start 0.1 s",
+            "inlets.feed.end 1 s",
+            "inlets.feed.count 100",
+            "inlets.second.bodies cake: 1",
+            "inlets.second.region gate",
+            "inlets.second.mass_rate 1 kg/s",
+            "inlets.second.velocity [0, 0, 0] m/s",
+            "inlets.second.angular_velocity [0, 0, 0] rad/s",
+            "inlets.second.orientation as-is",
+            "inlets.second.start 0 s",
+            "inlets.second.end never",
+            "inlets.second.count no limit",
+            "outlets.floor.inside cake",
+            "outlets.lost.outside all",
+        ]
+    );
+    let file = folder().join("clumps-and-feed.toml");
+    let options = ["replacement.pair={ when = { force = 1 } }".to_owned()];
+    let text = read_scene(&file, &options).unwrap().describe();
+    let back = text
+        .lines()
+        .find(|l| l.starts_with("replacement.pair.restore"));
+    assert!(back.unwrap().ends_with(" never"), "{text}");
+}

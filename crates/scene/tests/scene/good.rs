@@ -1,0 +1,745 @@
+//! What good files say.
+
+use std::path::{Path, PathBuf};
+
+use dem_io::units::DIMENSIONS;
+use dem_scene::{
+    BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
+    Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling, Scene,
+    Search, Statistic, StrainRateMeasure, TestKind, Wall, WallMotion, WallShape,
+};
+use dem_scene::{read_scene, scene_from_text};
+
+pub(crate) fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene/good")
+}
+
+pub(crate) fn good(name: &str) -> Scene {
+    read_scene(&folder().join(name), &[]).unwrap()
+}
+
+#[track_caller]
+pub(crate) fn assert_near(got: f64, wanted: f64) {
+    assert!(
+        (got - wanted).abs() <= 4.0 * f64::EPSILON * wanted.abs(),
+        "{got} is not {wanted}"
+    );
+}
+
+/// What the documentation shows is a scene.
+#[test]
+fn the_documentation() {
+    let text = include_str!("../../../../doc/scenes.md");
+    let (_, rest) = text.split_once("```toml\n").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let scene = scene_from_text(example, "doc.toml", &[]).unwrap();
+    assert_eq!(scene.walls.len(), 2);
+    // Each way that stands in a comment is one as well.
+    let ways = [
+        ("box = ", "# plane = "),
+        ("box = ", "# cylinder = "),
+        ("velocity = [0, 0, \"-10", "# displacement = [0, 0, \"-1 mm"),
+        ("velocity = [0, 0, \"-10", "# servo = "),
+    ];
+    for (taken, comment) in ways {
+        let walls = example.find("[walls.").unwrap();
+        let (before, walls) = example.split_at(walls);
+        let other =
+            walls
+                .replacen(taken, &format!("# {taken}"), 1)
+                .replacen(comment, &comment[2..], 1);
+        let text = format!("{before}{other}");
+        let read = scene_from_text(&text, "doc.toml", &[]).unwrap();
+        assert_ne!(read.walls, scene.walls, "{comment}");
+    }
+}
+
+#[test]
+fn the_documentation_lists_every_unit() {
+    let text = include_str!("../../../../doc/scene-keys.md");
+    for dimension in DIMENSIONS {
+        let units: Vec<String> = dimension
+            .units
+            .iter()
+            .map(|(unit, _)| format!("`{unit}`"))
+            .collect();
+        let row = format!(" | {} |\n", units.join(", "));
+        assert!(text.contains(&row), "{}: {row}", dimension.name);
+    }
+}
+
+#[test]
+fn the_run() {
+    let run = good("every-key.toml").run;
+    assert_eq!(run.end_time_s, 0.5);
+    assert_eq!(run.rest_energy_ratio, Some(1e-9));
+    assert_near(run.time_step_s.unwrap(), 2e-6);
+    assert_eq!(run.safety_factor, 0.8);
+    assert_eq!(run.gravity_m_s2, [0.0, -9.81, 0.0]);
+    assert_eq!(run.local_damping, 0.7);
+    assert_eq!(run.seed, u64::MAX);
+    assert_eq!(run.initial_overlap, InitialOverlap::Relax);
+    assert_eq!(run.integrator, Integrator::Leapfrog);
+}
+
+#[test]
+fn materials() {
+    let scene = good("every-key.toml");
+    let cake = &scene.materials["cake"];
+    assert_near(cake.density_kg_m3.unwrap(), 2050.0);
+    assert_near(cake.young_modulus_pa.unwrap(), 25e6);
+    assert_eq!(cake.poisson_ratio, 0.25);
+    let steel = &scene.materials["steel"];
+    assert_eq!(steel.density_kg_m3, None);
+    assert_eq!(steel.young_modulus_pa, Some(210e9));
+    assert_eq!(steel.poisson_ratio, 0.3);
+    assert!(!steel.rigid);
+    assert_eq!(scene.materials["belt-rubber"].poisson_ratio, 0.5);
+    let anvil = &scene.materials["anvil"];
+    assert!(anvil.rigid && anvil.young_modulus_pa.is_none());
+}
+
+fn contact(materials: [&str; 2], law: ContactLaw, restitution: f64, rolling: Rolling) -> Contact {
+    Contact {
+        materials: materials.map(str::to_owned),
+        law,
+        restitution,
+        friction: 0.0,
+        rolling,
+    }
+}
+
+#[test]
+fn contacts() {
+    let linear = |normal_n_m, tangential_stiffness_ratio| ContactLaw::Linear {
+        normal_n_m,
+        tangential_stiffness_ratio,
+    };
+    let sprung = |friction, damping| Rolling::SpringDashpot { friction, damping };
+    let torque = |friction| Rolling::ConstantTorque { friction };
+    let hertz = ContactLaw::HertzMindlin;
+    assert_eq!(
+        good("every-key.toml").contacts,
+        [
+            contact(["anvil", "cake"], hertz, 0.5, Rolling::None),
+            Contact {
+                friction: 0.1,
+                ..contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2))
+            },
+            Contact {
+                friction: 0.6,
+                ..contact(["cake", "cake"], hertz, 1.0, sprung(0.1, 0.5))
+            },
+            Contact {
+                friction: 0.4,
+                ..contact(["cake", "steel"], hertz, 0.3, torque(0.05))
+            },
+        ]
+    );
+    let usual = 2.0 / 7.0;
+    assert_eq!(
+        good("touching.toml").contacts,
+        [
+            contact(["a", "a"], hertz, 0.7, Rolling::None),
+            contact(["a", "a-a"], hertz, 0.5, Rolling::None),
+            Contact {
+                friction: 0.3,
+                ..contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3))
+            },
+            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::None),
+        ]
+    );
+}
+
+#[test]
+fn walls() {
+    let walls = good("every-key.toml").walls;
+    assert_eq!(
+        walls["floor"],
+        Wall {
+            shape: WallShape::Plane {
+                point_m: [0.0, 0.0, -0.01],
+                normal: [0.0, 0.0, 1.0]
+            },
+            material: "steel".to_owned(),
+            rotation_rad: [0.0; 3],
+            pivot_m: [0.0; 3],
+            motion: WallMotion::Fixed,
+            surface_velocity_m_s: [0.0; 3],
+        }
+    );
+    let belt = &walls["belt"];
+    assert_eq!(
+        belt.shape,
+        WallShape::Box {
+            min: [-2.0, -0.3, -0.02],
+            max: [0.0, 0.3, 0.0]
+        }
+    );
+    assert_eq!(belt.material, "belt-rubber");
+    assert_near(belt.rotation_rad[2], std::f64::consts::FRAC_PI_2);
+    assert_eq!(belt.pivot_m, [0.0, 0.0, 0.01]);
+    assert_eq!(belt.surface_velocity_m_s, [3.0, 0.0, 0.0]);
+    assert_eq!(
+        walls["pin"].shape,
+        WallShape::Cylinder {
+            from_m: [0.0, -0.01, 0.0],
+            to_m: [0.0, 0.01, 0.0],
+            radius_m: 0.005
+        }
+    );
+    assert_eq!(
+        walls["plate"].shape,
+        WallShape::Stl {
+            path: folder().join("shapes/plate.stl"),
+            unit_m: 1e-3,
+            scale: 0.5
+        }
+    );
+    let WallShape::Plane { normal, .. } = good("touching.toml").walls["ground"].shape else {
+        panic!("no plane");
+    };
+    assert_near(normal[1], 0.6);
+    assert_near(normal[2], 0.8);
+}
+
+#[test]
+fn motions_of_walls() {
+    let walls = good("every-key.toml").walls;
+    assert_eq!(
+        walls["pin"].motion,
+        WallMotion::Velocity {
+            velocity_m_s: [0.0, 0.0, -0.01],
+            spin_rad_s: [0.0, std::f64::consts::PI, 0.0],
+            factor: Factor::Ramp { until_s: 0.01 },
+        }
+    );
+    assert_eq!(
+        walls["plate"].motion,
+        WallMotion::Displacement {
+            displacement_m: [0.0, 0.0, -0.001],
+            angular_displacement_rad: [0.0, 4.0 * std::f64::consts::PI, 0.0],
+            factor: Factor::Table(vec![[0.0, 0.0], [0.005, 1.0]]),
+        }
+    );
+    assert_eq!(
+        walls["punch"].motion,
+        WallMotion::Servo {
+            force_n: 1000.0,
+            direction: [0.0, 0.0, -1.0],
+            max_velocity_m_s: 0.01,
+            factor: Factor::Ramp { until_s: 0.001 },
+        }
+    );
+    // One key of a way to move says nothing of the others.
+    let walls = good("touching.toml").walls;
+    assert_eq!(
+        walls["roller"].motion,
+        WallMotion::Velocity {
+            velocity_m_s: [0.0; 3],
+            spin_rad_s: [0.0, 1.0, 0.0],
+            factor: Factor::One,
+        }
+    );
+    assert_eq!(
+        walls["sieve"].motion,
+        WallMotion::Displacement {
+            displacement_m: [0.0; 3],
+            angular_displacement_rad: [0.0; 3],
+            factor: Factor::Ramp { until_s: 1.0 },
+        }
+    );
+}
+
+#[test]
+fn how_contacts_are_found() {
+    let scene = good("every-key.toml");
+    let clusters = Clusters {
+        interval: 20,
+        min_broken_bonds: 3,
+        force_every: 100,
+    };
+    let relaxation = Relaxation {
+        enabled: false,
+        min_overlap: 0.0,
+    };
+    assert_eq!(scene.clusters, clusters);
+    assert_eq!(scene.relaxation, relaxation);
+    assert_eq!(scene.search, Search { skin: Some(0.5) });
+    for name in ["touching.toml", "shortest.toml"] {
+        let scene = good(name);
+        let clusters = Clusters {
+            interval: 50,
+            min_broken_bonds: 1,
+            force_every: 0,
+        };
+        let relaxation = Relaxation {
+            enabled: true,
+            min_overlap: 1e-5,
+        };
+        assert_eq!(scene.clusters, clusters);
+        assert_eq!(scene.relaxation, relaxation);
+        assert_eq!(scene.search, Search { skin: None });
+        assert_eq!(scene.run.initial_overlap, InitialOverlap::Refuse);
+    }
+}
+
+#[test]
+fn bonds() {
+    let scene = good("every-key.toml");
+    let parallel = &scene.bonds["parallel"];
+    assert_eq!(
+        parallel.model,
+        BondModel::Parallel {
+            stiffness_ratio: Some(2.5)
+        }
+    );
+    assert_eq!(parallel.formulation, Formulation::Incremental);
+    assert_near(parallel.young_modulus_pa, 12.05e6);
+    assert_eq!(parallel.poisson_ratio, 0.3);
+    assert_eq!(parallel.radius_factor, Some(0.5));
+    assert_eq!(
+        parallel.damping,
+        BondDamping {
+            damping_ratio: 0.1,
+            per_mode: true,
+            damping_coefficient_n_s_m: 3.0,
+            torque_factor: 1.0
+        }
+    );
+    assert_eq!(
+        parallel.failure,
+        BondFailure {
+            tensile_strength_pa: Some(1e6),
+            shear_strength_pa: Some(2e6),
+            compressive_strength_pa: Some(15e6),
+            von_mises_strength_pa: Some(3e6),
+            rate_strengthening_from_1_s: Some(1e-5),
+            strain_rate_measure: StrainRateMeasure::RelativeVelocity,
+            weibull_modulus: Some(7.0),
+        }
+    );
+    let sheared = &scene.bonds["sheared"];
+    assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });
+    assert_eq!(sheared.formulation, Formulation::Total);
+    assert_eq!(sheared.radius_factor, None);
+    assert_eq!(sheared.damping, BondDamping::default());
+    assert_eq!(sheared.failure.rate_strengthening_from_1_s, Some(4.64e-6));
+    assert_eq!(sheared.failure.compressive_strength_pa, None);
+}
+
+#[test]
+fn bodies() {
+    let scene = good("every-key.toml");
+    let bar = &scene.bodies["bar"];
+    let BodySource::Inline { particles, bonds } = &bar.source else {
+        panic!("{:?}", bar.source);
+    };
+    assert_eq!(
+        *particles,
+        [
+            [0.0, 0.0, 0.0, 0.001],
+            [0.002, 0.0, 0.0, 0.001],
+            [0.004, 0.0, 0.0, 0.001]
+        ]
+    );
+    assert_eq!(*bonds, [[0, 1], [1, 2]]);
+    assert_eq!(bar.material, "cake");
+    assert_eq!(bar.bond_kind.as_deref(), Some("parallel"));
+    assert_eq!(bar.position_m, [0.01, 0.0, -0.001]);
+    assert_eq!(bar.rotation_rad[..2], [0.0, 0.0]);
+    assert_near(bar.rotation_rad[2], std::f64::consts::FRAC_PI_2);
+    assert_eq!(bar.velocity_m_s[..2], [3.0, 0.0]);
+    assert_near(bar.velocity_m_s[2], 10.0);
+    assert_near(bar.angular_velocity_rad_s[1], std::f64::consts::PI);
+    assert_eq!(bar.angular_velocity_rad_s[2], 2.0);
+    let file = |name: &str| scene.bodies[name].source.clone();
+    assert_eq!(
+        file("tool"),
+        BodySource::File(folder().join("shapes/tool.vtp"))
+    );
+    assert_eq!(file("piped"), BodySource::File(PathBuf::from("-")));
+    assert_eq!(scene.bodies["tool"].bond_kind, None);
+}
+
+#[test]
+fn sets() {
+    let scene = good("every-key.toml");
+    let left = &scene.groups["left-end"];
+    assert_eq!(left.body.as_deref(), Some("bar"));
+    assert_eq!(left.pick, Pick::Particles(vec![0]));
+    assert_eq!(scene.groups["tool_all"].pick, Pick::All);
+    assert_eq!(scene.groups["near"].body, None);
+    assert_eq!(
+        scene.groups["near"].pick,
+        Pick::Box {
+            min: [-0.001; 3],
+            max: [0.001; 3]
+        }
+    );
+    assert_eq!(
+        scene.groups["round"].pick,
+        Pick::Sphere {
+            centre: [0.0; 3],
+            radius: 0.005
+        }
+    );
+}
+
+#[test]
+fn supports_and_loads() {
+    let scene = good("every-key.toml");
+    assert_eq!(scene.supports["wall"].holds, [Some(Hold::Fixed); 6]);
+    assert_eq!(scene.supports["wall"].factor, Factor::One);
+    let pull = &scene.supports["pull"];
+    assert_eq!(pull.group, "near");
+    assert_eq!(
+        pull.holds,
+        [
+            Some(Hold::Velocity(0.01)),
+            Some(Hold::Displacement(0.001)),
+            Some(Hold::Fixed),
+            Some(Hold::Fixed),
+            Some(Hold::Displacement(0.001)),
+            Some(Hold::Velocity(90.0 * (std::f64::consts::PI / 180.0))),
+        ]
+    );
+    assert_eq!(pull.factor, Factor::Ramp { until_s: 0.01 });
+    assert_eq!(
+        scene.supports["shake"].factor,
+        Factor::Table(vec![[0.0, 0.0], [0.005, 1.0], [0.01, -0.5]])
+    );
+    let press = &scene.loads["press"];
+    assert_eq!(press.group, "all");
+    assert_eq!(press.force_n, [100e3, 0.0, -0.001]);
+    assert_eq!(press.torque_n_m, [0.0, 2.0, 0.0]);
+    assert_eq!(scene.loads["turn"].torque_n_m, [0.0, 0.0, 0.003]);
+    assert_eq!(scene.loads["turn"].factor, Factor::Ramp { until_s: 0.1 });
+    assert_eq!(pull.end_s, Some(0.02));
+    assert_eq!(scene.supports["wall"].end_s, None);
+    assert_eq!(press.end_s, Some(0.001));
+    assert_eq!(scene.loads["turn"].end_s, None);
+}
+
+/// What a set starts with, in SI; what is left out is 0.
+#[test]
+fn initial_states() {
+    let scene = good("every-key.toml");
+    let tip = &scene.initial["tip"];
+    assert_eq!(tip.group, "left-end");
+    assert_eq!(tip.velocity_m_s, [0.003, 0.0, 0.0]);
+    assert_near(tip.angular_velocity_rad_s[1], std::f64::consts::PI);
+    assert_eq!(tip.displacement_m, [0.0, -1e-6, 0.0]);
+    let options = ["initial.only={ group = \"all\", velocity = [1, 0, 0] }".to_owned()];
+    let file = folder().join("every-key.toml");
+    let scene = read_scene(&file, &options).unwrap();
+    assert_eq!(scene.initial["only"].displacement_m, [0.0; 3]);
+    assert_eq!(scene.initial["only"].angular_velocity_rad_s, [0.0; 3]);
+}
+
+/// A clump that is never replaced needs no kind of bonds, and overlaps may be kept.
+#[test]
+fn a_rigid_clump_without_a_kind_of_bonds() {
+    let options = ["bodies.bar.start_as=clump", "run.initial_overlap=keep"].map(str::to_owned);
+    let text = "version = 1\nrun.end_time = 1\nmaterials.clay.density = 2000\n\
+                bodies.bar = { particles = [[0, 0, 0, 1], [1, 0, 0, 1]], bond_list = [[0, 1]], \
+                material = \"clay\" }\n";
+    let error = scene_from_text(text, "bar.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("bodies.bar.bonds is missing"), "{error}");
+    let scene = scene_from_text(text, "bar.toml", &options).unwrap();
+    assert_eq!(scene.bodies["bar"].bond_kind, None);
+    assert_eq!(scene.run.initial_overlap, InitialOverlap::Keep);
+}
+
+#[test]
+fn measures_and_output() {
+    let scene = good("every-key.toml");
+    let bending = &scene.measures["bending"];
+    assert_eq!(bending.of, "left-end");
+    assert_eq!(bending.quantity, Quantity::Displacement(1));
+    assert_eq!(bending.statistic, Statistic::Largest);
+    assert_near(bending.reference.unwrap(), 0.0015);
+    assert_eq!(bending.tolerance, Some(0.02));
+    let energy = &scene.measures["energy"];
+    assert_eq!(
+        (energy.of.as_str(), energy.statistic),
+        ("all", Statistic::End)
+    );
+    assert_eq!((energy.reference, energy.tolerance), (None, None));
+    let push = &scene.measures["push"];
+    assert_eq!(
+        (push.of.as_str(), push.quantity),
+        ("punch", Quantity::Force(2))
+    );
+    assert_eq!(push.reference, Some(-1000.0));
+    assert_eq!((push.absolute_tolerance, &push.with), (None, &None));
+    let hit = &scene.measures["hit"];
+    assert_eq!(hit.quantity, Quantity::ContactOverlap);
+    assert_eq!(hit.with.as_deref(), Some("punch"));
+    assert_near(hit.absolute_tolerance.unwrap(), 1e-5);
+    let pieces = &scene.measures["pieces"];
+    assert_eq!(pieces.of, "fragments");
+    assert_eq!(pieces.quantity, Quantity::MassOfLargest);
+    assert_eq!(
+        (pieces.quantity.name(), pieces.reference),
+        ("mass_of_largest", Some(0.02))
+    );
+    let others = good("touching.toml").measures;
+    for (name, quantity, unit) in [
+        ("hit", Quantity::Force(2), "N"),
+        ("twist", Quantity::Torque(1), "N m"),
+        ("place", Quantity::Position(2), "m"),
+        ("pieces", Quantity::Count, ""),
+        ("largest", Quantity::MassFractionOfLargest, ""),
+        ("all_of_it", Quantity::ForceMagnitude, "N"),
+        ("sideways", Quantity::ContactForce(1), "N"),
+        ("while", Quantity::ContactDuration, "s"),
+        ("slope", Quantity::AngleOfRepose, "deg"),
+    ] {
+        assert_eq!(others[name].quantity, quantity);
+        assert_eq!(quantity.dimension().si, unit);
+    }
+    assert_near(others["slope"].reference.unwrap(), 30.0);
+    let output = scene.output.unwrap();
+    assert_eq!(output.folder, Some(folder().join("results")));
+    assert_eq!(output.frames_s, Some(0.005));
+    assert_eq!(output.series_s, Some(0.0005));
+    assert_eq!(output.pictures_s, Some(0.01));
+    let from = output.view_from.unwrap();
+    (0..3).for_each(|k| assert_near(from[k], [0.6, -0.8, 0.0][k]));
+    assert_eq!(output.checkpoint_s, Some(0.1));
+}
+
+/// The shortest scene, and what all its defaults are.
+#[test]
+fn defaults_in_words() {
+    let scene = good("shortest.toml");
+    assert_eq!(scene.output, None);
+    let wanted = "\
+run.end_time                    1 s
+run.integrator                  leapfrog
+run.rest_energy_ratio           never
+run.time_step                   auto
+run.safety_factor               0.9
+run.adaptive                    false
+run.gravity                     [0, 0, 0] m/s2
+run.local_damping               0
+run.seed                        0
+run.initial_overlap             refuse
+materials.clay.density          from the body's file
+materials.clay.young_modulus    none
+materials.clay.poisson_ratio    0.3
+bodies.block.file               block.vtp
+bodies.block.material           clay
+bodies.block.mass               that of its particles
+bodies.block.bonds              none
+bodies.block.position           [0, 0, 0] m
+bodies.block.rotation           [0, 0, 0] rad
+bodies.block.velocity           [0, 0, 0] m/s
+bodies.block.angular_velocity   [0, 0, 0] rad/s
+bodies.block.start_as           bonded
+output                          none
+";
+    let text = std::fs::read_to_string(folder().join("shortest.toml")).unwrap();
+    let scene = scene_from_text(&text, "shortest.toml", &[]).unwrap();
+    assert_eq!(scene.describe(), wanted);
+}
+
+/// A test says when the run ends, and all it leaves out in words.
+#[test]
+fn a_laboratory_test() {
+    let scene = good("bending-test.toml");
+    assert_eq!(scene.run.end_time_s, f64::INFINITY);
+    let test = scene.test.as_ref().unwrap();
+    assert_eq!(test.kind, TestKind::ThreePointBending);
+    assert_eq!(
+        (test.body.as_str(), test.crosshead.join(" ")),
+        ("beam", "pin".to_owned())
+    );
+    assert_eq!((test.direction, test.stroke_m), ([0.0, 0.0, -1.0], 0.004));
+    let text = scene.describe();
+    assert!(
+        text.starts_with("run.end_time                    that of the test\n"),
+        "{text}"
+    );
+    let (_, of_test) = text.split_once("test.type").unwrap();
+    let wanted = "\
+three-point-bending
+test.body                       beam
+test.crosshead                  pin
+test.direction                  [0, 0, -1]
+test.stroke                     0.004 m
+test.rate                       auto
+test.periods                    20
+test.rate_check                 true
+test.young_modulus              none
+test.poisson_ratio              0.3
+test.strength                   none
+test.support_span               measured on walls and body
+test.width                      measured on walls and body
+test.height                     measured on walls and body
+";
+    assert_eq!(of_test.trim_start(), wanted);
+
+    let file = folder().join("bending-test.toml");
+    let options = [
+        "test.rate=2 mm/s",
+        "test.type=compression",
+        "test.area=9 cm2",
+        "test.young_modulus=12 MPa",
+        "run.end_time=3 s",
+    ];
+    let scene = read_scene(&file, &options.map(str::to_owned)).unwrap();
+    let test = scene.test.as_ref().unwrap();
+    assert_near(test.rate_m_s.unwrap(), 0.002);
+    assert_near(test.area_m2.unwrap(), 0.0009);
+    assert_near(test.young_modulus_pa.unwrap(), 12e6);
+    assert_eq!(scene.run.end_time_s, 3.0);
+    let text = scene.describe();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let words = words.join(" ");
+    for line in [
+        "test.area 0.0009 m2",
+        "test.rate 0.002 m/s",
+        "test.length measured on",
+    ] {
+        assert!(words.contains(line), "{line}: {text}");
+    }
+    assert!(!text.contains("test.support_span"));
+}
+
+#[test]
+fn what_a_laboratory_test_is_told() {
+    let test = good("four-point-test.toml").test.unwrap();
+    assert_eq!((test.rate_m_s, test.periods), (Some(0.002), 5.0));
+    assert!(!test.rate_check);
+    assert_eq!(
+        (test.young_modulus_pa, test.poisson_ratio),
+        (Some(12e6), 0.25)
+    );
+    assert_eq!(test.strength_pa, Some(2e5));
+    assert_eq!(
+        (test.support_span_m, test.loading_span_m),
+        (Some(2.0), Some(1.0))
+    );
+    assert_eq!((test.width_m, test.height_m), (Some(2.0), Some(2.0)));
+    let test = good("compression-test.toml").test.unwrap();
+    assert_eq!((test.length_m, test.area_m2), (Some(2.0), Some(3.1)));
+}
+
+/// The echo names every key of the file that says them all.
+#[test]
+fn values_in_words() {
+    let text = good("every-key.toml").describe();
+    for line in [
+        "materials.cake.young_modulus 2.5e7 Pa",
+        "bodies.bar.mass that of its particles",
+        "bodies.piped.body_density 1800 kg/m3",
+        "bodies.tool.mass 1.2 kg",
+        "run.initial_overlap relax",
+        "contacts.belt-rubber-cake.law linear",
+        "contacts.belt-rubber-cake.normal_stiffness 100000 N/m",
+        "contacts.belt-rubber-cake.tangential_stiffness_ratio 0.5",
+        "contacts.belt-rubber-cake.rolling constant-torque",
+        "contacts.cake-cake.law hertz-mindlin",
+        "contacts.cake-cake.restitution 1",
+        "contacts.cake-cake.friction 0.6",
+        "contacts.cake-cake.rolling spring-dashpot",
+        "contacts.cake-cake.rolling_friction 0.1",
+        "contacts.cake-cake.rolling_damping_ratio 0.5",
+        "walls.floor.plane.point [0, 0, -0.01] m",
+        "walls.floor.plane.normal [0, 0, 1]",
+        "walls.floor.motion fixed",
+        "walls.belt.box.min [-2, -0.3, -0.02] m",
+        "walls.belt.surface_velocity [3, 0, 0] m/s",
+        "walls.pin.cylinder.radius 0.005 m",
+        "walls.pin.angular_velocity [0, 3.14159265359, 0] rad/s",
+        "walls.pin.ramp 0.01 s",
+        "walls.plate.unit 0.001 m",
+        "walls.plate.scale 0.5",
+        "walls.plate.angular_displacement [0, 12.5663706144, 0] rad",
+        "walls.plate.table 0 s: 0, 0.005 s: 1",
+        "walls.punch.servo.force 1000 N",
+        "walls.punch.servo.direction [0, 0, -1]",
+        "walls.punch.servo.max_velocity 0.01 m/s",
+        "measures.pieces.reference 0.02 kg",
+        "clusters.interval 20 steps",
+        "clusters.min_broken_bonds 3",
+        "clusters.force_every 100 intervals",
+        "relaxation.enabled false",
+        "relaxation.min_overlap 0",
+        "search.skin 0.5",
+        "sleep.speed 0.002 m/s",
+        "sleep.after 0.01 s",
+        "supports.swing.rx velocity 0.10471975512 rad/s",
+        "supports.turn.z displacement 1e-6 m",
+        "bonds.parallel.stiffness_ratio 2.5",
+        "bonds.parallel.damping.damping_coefficient 3 N s/m",
+        "bodies.bar.particles 3 in the scene",
+        "bodies.bar.position [0.01, 0, -0.001] m",
+        "supports.pull.x velocity 0.01 m/s",
+        "supports.wall.rz fixed",
+        "supports.shake.table 0 s: 0, 0.005 s: 1, 0.01 s: -0.5",
+        "loads.press.force [100000, 0, -0.001] N",
+        "loads.press.end 0.001 s",
+        "loads.turn.end never",
+        "supports.pull.end 0.02 s",
+        "initial.tip.velocity [0.003, 0, 0] m/s",
+        "initial.tip.displacement [0, -1e-6, 0] m",
+        "materials.anvil.rigid true",
+        "measures.bending.reference 0.0015 m",
+        "measures.bending.absolute_tolerance none",
+        "measures.hit.with punch",
+        "measures.hit.absolute_tolerance 1e-5 m",
+        "output.frames 0.005 s",
+        "output.pictures 0.01 s",
+        "output.view.from [0.6, -0.8, 0]",
+    ] {
+        let (key, value) = line.split_once(' ').unwrap();
+        assert!(
+            text.lines().any(|other| other
+                .split_once(' ')
+                .is_some_and(|(other, rest)| other == key && rest.trim() == value)),
+            "{line}\n{text}"
+        );
+    }
+}
+
+/// Where things can touch, all that says how is said, with its defaults; where nothing can, only
+/// what is asked.
+#[test]
+fn words_on_contacts() {
+    let said = |scene: &Scene| -> Vec<String> {
+        let of_contacts = |line: &&str| {
+            ["clusters.", "relaxation.", "search.", "sleep."]
+                .iter()
+                .any(|table| line.starts_with(table))
+        };
+        let text = scene.describe();
+        let lines = text.lines().filter(of_contacts);
+        let words = lines.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+        words.collect()
+    };
+    assert_eq!(
+        said(&good("touching.toml")),
+        [
+            "clusters.interval 50 steps",
+            "clusters.min_broken_bonds 1",
+            "clusters.force_every never",
+            "relaxation.enabled true",
+            "relaxation.min_overlap 1e-5",
+            "search.skin chosen by the program",
+        ]
+    );
+    let options = ["search.skin=0.1".to_owned()];
+    let scene = read_scene(&folder().join("shortest.toml"), &options).unwrap();
+    assert_eq!(said(&scene), ["search.skin 0.1"]);
+    let options = ["sleep.speed=\"2 mm/s\"".to_owned()];
+    let scene = read_scene(&folder().join("shortest.toml"), &options).unwrap();
+    assert_eq!(
+        said(&scene),
+        ["sleep.speed 0.002 m/s", "sleep.after 0.05 s"]
+    );
+}

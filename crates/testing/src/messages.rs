@@ -1,0 +1,38 @@
+//! Expected messages: one file a folder, `messages.txt`, a line for each message.
+
+use std::path::Path;
+
+/// Holds the messages that the cases of a folder gave, in order, to its file `messages.txt`; with
+/// `RENEW_MESSAGES` set, writes the file anew first.
+///
+/// # Panics
+/// They differ.
+pub fn hold_messages(folder: &Path, found: &[String]) {
+    let path = folder.join("messages.txt");
+    if std::env::var_os("RENEW_MESSAGES").is_some() {
+        std::fs::write(&path, found.join("\n") + "\n").unwrap();
+    }
+    let expected = messages_of(folder);
+    if found == expected {
+        return;
+    }
+    let only = |here: &[String], there: &[String], sign: &str| -> String {
+        let lines = here.iter().filter(|line| !there.contains(line));
+        lines.map(|line| format!("{sign} {line}\n")).collect()
+    };
+    panic!(
+        "not the messages of {} (after a look at them, RENEW_MESSAGES=1 writes it anew):\n{}{}",
+        path.display(),
+        only(&expected, found, "expected"),
+        only(found, &expected, "got     "),
+    );
+}
+
+/// The lines of `messages.txt` in a folder.
+///
+/// # Panics
+/// There is no such file.
+pub fn messages_of(folder: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(folder.join("messages.txt")).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
