@@ -70,7 +70,7 @@ fn quality_table() -> std::result::Result<(), Error> {
             mean(&|made| made
                 .quality
                 .interior_generating_density
-                .map_or(f64::NAN, |share| share.value)),
+                .map_or(f64::NAN, |fraction| fraction.value)),
             mean(&|made| made
                 .quality
                 .interior_fabric
@@ -139,7 +139,7 @@ fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
         1e6 * seconds / placed,
         made.quality
             .interior_generating_density
-            .map_or(f64::NAN, |share| share.value),
+            .map_or(f64::NAN, |fraction| fraction.value),
         made.quality.generating_density,
     )
 }

@@ -45,8 +45,12 @@ pub fn of_clump(id: u32) -> [u8; 3] {
 ///
 /// The whole body (1) is calm, and the smaller the piece, the more vivid. A share that is not a
 /// number counts as 0. Red, green, blue.
-pub fn of_fragment(id: u32, share: f64) -> [u8; 3] {
-    let calm = if share > 0.0 { share.min(1.0) } else { 0.0 };
+pub fn of_fragment(id: u32, fraction: f64) -> [u8; 3] {
+    let calm = if fraction > 0.0 {
+        fraction.min(1.0)
+    } else {
+        0.0
+    };
     mixed(of_cluster(id), of_clump(id), 0.75 * calm * calm)
 }
 
@@ -68,8 +72,9 @@ fn digit_sum(mut rest: u32, base: u32) -> u32 {
     sum
 }
 
-fn mixed(a: [u8; 3], b: [u8; 3], share: f64) -> [u8; 3] {
-    [0, 1, 2].map(|k| (f64::from(a[k]) * (1.0 - share) + f64::from(b[k]) * share).round() as u8)
+fn mixed(a: [u8; 3], b: [u8; 3], fraction: f64) -> [u8; 3] {
+    [0, 1, 2]
+        .map(|k| (f64::from(a[k]) * (1.0 - fraction) + f64::from(b[k]) * fraction).round() as u8)
 }
 
 #[cfg(test)]

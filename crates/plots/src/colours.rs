@@ -74,7 +74,7 @@ pub(crate) fn shape(kind: usize, [x, y]: [f64; 2], fill: &str) -> Markup {
 }
 
 /// Viridis, from dark violet (0) to yellow (1), in five steps with straight lines between them.
-pub(crate) fn viridis(share: f64) -> String {
+pub(crate) fn viridis(fraction: f64) -> String {
     const STEPS: [[f64; 3]; 5] = [
         [68.0, 1.0, 84.0],
         [59.0, 82.0, 139.0],
@@ -82,7 +82,7 @@ pub(crate) fn viridis(share: f64) -> String {
         [94.0, 201.0, 98.0],
         [253.0, 231.0, 37.0],
     ];
-    let at = 4.0 * share.clamp(0.0, 1.0);
+    let at = 4.0 * fraction.clamp(0.0, 1.0);
     let below = (at as usize).min(3);
     let part = at - below as f64;
     let [r, g, b] = [0, 1, 2]

@@ -106,20 +106,20 @@ fn seen(marks: &Marks) -> impl Iterator<Item = &Point> {
 }
 
 impl Area {
-    fn across(&self, share: f64) -> f64 {
-        self.left + share * (self.right - self.left)
+    fn across(&self, fraction: f64) -> f64 {
+        self.left + fraction * (self.right - self.left)
     }
 
-    fn up(&self, share: f64) -> f64 {
-        self.bottom - share * (self.bottom - self.top)
+    fn up(&self, fraction: f64) -> f64 {
+        self.bottom - fraction * (self.bottom - self.top)
     }
 
     fn height_of(&self, value: f64) -> f64 {
-        self.up(self.y.share(value))
+        self.up(self.y.fraction(value))
     }
 
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [self.across(self.x.share(x)), self.height_of(y)]
+        [self.across(self.x.fraction(x)), self.height_of(y)]
     }
 
     /// Where the point of a line stands. None: it is a gap.
@@ -201,21 +201,22 @@ fn entries(plot: &Plot, reference: Option<&str>) -> Vec<Entry> {
 
 fn grid(area: &Area) -> Markup {
     let path = |x: &[f64], y: &[f64]| {
-        let upright = x.iter().map(|share| {
-            let x = px(area.across(*share));
+        let upright = x.iter().map(|fraction| {
+            let x = px(area.across(*fraction));
             format!("M{x} {:.2}V{:.2}", area.top, area.bottom)
         });
-        let level = y.iter().map(|share| {
-            let y = px(area.up(*share));
+        let level = y.iter().map(|fraction| {
+            let y = px(area.up(*fraction));
             format!("M{:.2} {y}H{:.2}", area.left, area.right)
         });
         upright.chain(level).collect::<String>()
     };
-    let shares = |scale: &Scale| -> Vec<f64> { scale.ticks.iter().map(|t| t.share).collect() };
+    let fractions =
+        |scale: &Scale| -> Vec<f64> { scale.ticks.iter().map(|t| t.fraction).collect() };
     let fine = path(&area.x.fine, &area.y.fine);
     html! {
         @if !fine.is_empty() { path d=(fine) stroke=(FINE_GRID) fill="none" {} }
-        path d=(path(&shares(&area.x), &shares(&area.y))) stroke=(GRID) fill="none" {}
+        path d=(path(&fractions(&area.x), &fractions(&area.y))) stroke=(GRID) fill="none" {}
     }
 }
 
@@ -231,12 +232,12 @@ fn labels(area: &Area) -> Markup {
     html! {
         g class="x" text-anchor="middle" {
             @for tick in &area.x.ticks {
-                text x=(px(area.across(tick.share))) y=(px(bottom + 17.0)) { (tick.label) }
+                text x=(px(area.across(tick.fraction))) y=(px(bottom + 17.0)) { (tick.label) }
             }
         }
         g class="y" text-anchor="end" {
             @for tick in &area.y.ticks {
-                text x=(px(left - 7.0)) y=(px(area.up(tick.share) + 4.0)) { (tick.label) }
+                text x=(px(left - 7.0)) y=(px(area.up(tick.fraction) + 4.0)) { (tick.label) }
             }
         }
         g class="axes" text-anchor="middle" font-size="13" {

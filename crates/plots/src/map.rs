@@ -105,7 +105,7 @@ impl Map {
             (self.guides(&view))
             g class="dots" {
                 @for Dot { at_m: [x, y], time_s } in &self.dots {
-                    (circle([view.x(*x), view.y(*y)], DOT, Some(viridis(share(*time_s, times)))))
+                    (circle([view.x(*x), view.y(*y)], DOT, Some(viridis(fraction(*time_s, times)))))
                 }
             }
             (scale_bar(&view, below))
@@ -140,7 +140,7 @@ impl Map {
 }
 
 /// Where a time stands between the first and the last one, 0 to 1.
-fn share(time_s: f64, [first_s, last_s]: [f64; 2]) -> f64 {
+fn fraction(time_s: f64, [first_s, last_s]: [f64; 2]) -> f64 {
     if last_s > first_s {
         (time_s - first_s) / (last_s - first_s)
     } else {

@@ -31,7 +31,7 @@ pub(crate) struct Scale {
 #[derive(Debug, Clone)]
 pub(crate) struct Tick {
     /// Share of the axis, 0 to 1.
-    pub(crate) share: f64,
+    pub(crate) fraction: f64,
     pub(crate) label: String,
 }
 
@@ -106,7 +106,7 @@ impl Scale {
             .map(|number| {
                 let value = (first + f64::from(number)) * step;
                 Tick {
-                    share: scale.share(value),
+                    fraction: scale.fraction(value),
                     label: decimal(value / 10_f64.powi(power), decimals),
                 }
             })
@@ -139,7 +139,7 @@ impl Scale {
         let plain = ticks.iter().all(|(_, decade)| (-3..4).contains(decade));
         scale.ticks = (ticks.into_iter())
             .map(|(digit, decade)| Tick {
-                share: scale.share_of(digit, decade),
+                fraction: scale.share_of(digit, decade),
                 label: match (plain, digit) {
                     (true, _) => decimal(
                         f64::from(digit) * 10_f64.powi(decade),
@@ -152,8 +152,8 @@ impl Scale {
             .collect();
         if span <= 4.0 {
             let fine = scale.within(&[1, 2, 3, 4, 5, 6, 7, 8, 9], 1);
-            let share = |(digit, decade)| scale.share_of(digit, decade);
-            scale.fine = fine.into_iter().map(share).collect();
+            let fraction = |(digit, decade)| scale.share_of(digit, decade);
+            scale.fine = fine.into_iter().map(fraction).collect();
         }
         scale
     }
@@ -170,7 +170,7 @@ impl Scale {
         let tick = |number: u32| {
             let value = (first + f64::from(number)) * step;
             Tick {
-                share: self.share(value),
+                fraction: self.fraction(value),
                 label: decimal(value, decimals.max(0.0) as usize),
             }
         };
@@ -211,7 +211,7 @@ impl Scale {
 
     /// The share of the axis at which a value stands: 0 to 1 for those that the axis was made for,
     /// 0 for what has no logarithm.
-    pub(crate) fn share(&self, value: f64) -> f64 {
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
         let value = match self.log {
             true if value > 0.0 => value.log10(),
             true => self.low,
@@ -307,10 +307,10 @@ mod tests {
             assert!((3..=9).contains(&names.len()), "{low} {high} {names:?}");
             let room = scale.ticks.windows(2).map(|two| {
                 let words = 0.5 * (width(&two[0].label, 12.0) + width(&two[1].label, 12.0));
-                AREA * (two[1].share - two[0].share) - words
+                AREA * (two[1].fraction - two[0].fraction) - words
             });
             assert!(room.fold(AREA, f64::min) > 4.0, "{low} {high} {names:?}");
-            assert!(scale.share(low) > 0.0 && scale.share(high) < 1.0);
+            assert!(scale.fraction(low) > 0.0 && scale.fraction(high) < 1.0);
         }
     }
 }

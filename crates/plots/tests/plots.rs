@@ -345,9 +345,9 @@ fn a_long_series_keeps_its_peaks() {
     assert!((400..=1000).contains(&drawn), "{drawn}");
     // 40 and -20 are ticks, at which the axis begins and ends.
     let [left, top, wide, high] = picture.area;
-    let peak = |share: f64, y: f64| {
+    let peak = |fraction: f64, y: f64| {
         let near = |point: &&[f64; 2]| {
-            (point[0] - left - share * wide).abs() < 0.01 && (point[1] - y).abs() < 0.01
+            (point[0] - left - fraction * wide).abs() < 0.01 && (point[1] - y).abs() < 0.01
         };
         assert_eq!(pieces.iter().flatten().filter(near).count(), 1);
     };

@@ -26,9 +26,9 @@ const AT_ONCE: usize = 1000;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentRow {
     /// Its number, which no other one ever has.
-    pub id: u32,
+    pub fragment_id: u32,
     /// The fragment that it broke off.
-    pub parent: Option<u32>,
+    pub parent_id: Option<u32>,
     /// Number of its particles.
     pub particles: u32,
     /// kg.
@@ -42,9 +42,9 @@ pub struct FragmentRow {
     /// Sum of what acts on its particles, N. Length 3.
     pub force_n: [f64; 3],
     /// Diameter of the sphere with the volume of its particles, m.
-    pub size_m: f64,
+    pub equivalent_diameter_m: f64,
     /// Diagonal of the box around it, m.
-    pub extent_m: f64,
+    pub box_diagonal_m: f64,
 }
 
 /// The file of the fragments at chosen moments.
@@ -107,11 +107,15 @@ fn row(time_s: f64, fragment: &FragmentRow) -> String {
     let mut row = format!(
         "{},{},{},{}",
         exact(time_s),
-        fragment.id,
-        known(fragment.parent),
+        fragment.fragment_id,
+        known(fragment.parent_id),
         fragment.particles
     );
-    let [mass, size, extent] = [fragment.mass_kg, fragment.size_m, fragment.extent_m];
+    let [mass, size, extent] = [
+        fragment.mass_kg,
+        fragment.equivalent_diameter_m,
+        fragment.box_diagonal_m,
+    ];
     let vectors = [
         fragment.centre_m,
         fragment.velocity_m_s,
@@ -131,11 +135,11 @@ fn row(time_s: f64, fragment: &FragmentRow) -> String {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TreeRow {
     /// Its number.
-    pub id: u32,
+    pub fragment_id: u32,
     /// The fragment that it broke off; none: it was there whole.
-    pub parent: Option<u32>,
+    pub parent_id: Option<u32>,
     /// When it was found, s.
-    pub born_s: f64,
+    pub created_s: f64,
     /// When it was found in pieces, s; none: it is whole.
     pub ended_s: Option<f64>,
     /// Number of its particles.
@@ -150,9 +154,13 @@ pub fn write_fragment_tree(path: &Path, rows: impl Iterator<Item = TreeRow>) -> 
     write_file(path, |out| {
         writeln!(out, "{TREE_COLUMNS}")?;
         for row in rows {
-            let (parent, ended) = (known(row.parent), known(row.ended_s.map(exact)));
-            let born = exact(row.born_s);
-            writeln!(out, "{},{parent},{born},{ended},{}", row.id, row.particles)?;
+            let (parent, ended) = (known(row.parent_id), known(row.ended_s.map(exact)));
+            let created = exact(row.created_s);
+            writeln!(
+                out,
+                "{},{parent},{created},{ended},{}",
+                row.fragment_id, row.particles
+            )?;
         }
         Ok(())
     })

@@ -129,7 +129,7 @@ fn read(
         return Err(field.wrong(&limit, remedy));
     }
     Ok(Inlet {
-        bodies: shares(&named, bodies)?,
+        bodies: fractions(&named, bodies)?,
         region: table.need("region")?.reference(regions.keys(), "regions")?,
         rate: rate(&table)?,
         velocity_m_s: table.read("velocity")?,
@@ -144,7 +144,10 @@ fn read(
 }
 
 /// `["a", "b"]`, or `{ a = 0.7, b = 0.3 }`.
-fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec<(String, f64)>> {
+fn fractions(
+    field: &Field<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<Vec<(String, f64)>> {
     let is_empty = match &field.node.value {
         Value::List(items) => items.is_empty(),
         Value::Table(entries) => entries.is_empty(),
@@ -159,26 +162,26 @@ fn shares(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Vec
         let remedy = format!("name at least one of {}", names.join(", "));
         return Err(field.refuse(problem, remedy));
     }
-    let mut shares: Vec<(String, f64)> = Vec::new();
+    let mut fractions: Vec<(String, f64)> = Vec::new();
     if let Value::Table(_) = field.node.value {
         let table = Table::any(field)?;
         for (name, node) in table.entries {
             let field = table.field(name, node);
             field.key_reference(name, bodies.keys(), "bodies")?;
-            shares.push((name.clone(), field.positive(&NUMBER)?));
+            fractions.push((name.clone(), field.positive(&NUMBER)?));
         }
-        return Ok(shares);
+        return Ok(fractions);
     }
     for item in field.items()? {
         let name = item.reference(bodies.keys(), "bodies")?;
-        if shares.iter().any(|(other, _)| *other == name) {
+        if fractions.iter().any(|(other, _)| *other == name) {
             let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             let remedy = "remove one of them, or give proportions, such as { NAME = 2, OTHER = 1 }";
             return Err(item.refuse(problem, remedy));
         }
-        shares.push((name, 1.0));
+        fractions.push((name, 1.0));
     }
-    Ok(shares)
+    Ok(fractions)
 }
 
 fn rate(table: &Table<'_>) -> Result<FeedRate> {
@@ -230,9 +233,9 @@ fn refuse_own_start(
 }
 
 pub(super) fn list(inlet: &Inlet, listing: &mut Listing) {
-    let share = |(body, share): &(String, f64)| format!("{body}: {}", number(*share));
-    let shares: Vec<String> = inlet.bodies.iter().map(share).collect();
-    listing.text("bodies", shares.join(", "));
+    let fraction = |(body, fraction): &(String, f64)| format!("{body}: {}", number(*fraction));
+    let fractions: Vec<String> = inlet.bodies.iter().map(fraction).collect();
+    listing.text("bodies", fractions.join(", "));
     listing.text("region", &inlet.region);
     match inlet.rate {
         FeedRate::Number(rate) => listing.value("rate", &rate),

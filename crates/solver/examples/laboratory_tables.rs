@@ -658,8 +658,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-fn percent(share: f64) -> String {
-    format!("{:+.1} %", 100.0 * share)
+fn percent(fraction: f64) -> String {
+    format!("{:+.1} %", 100.0 * fraction)
 }
 
 fn thousands(value: &Value) -> String {

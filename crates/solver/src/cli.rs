@@ -337,7 +337,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         progress_bar()
     };
     let progress = |fraction: f64| bar.set_position((1000.0 * fraction) as u64);
-    let outcome = interrupt.heeded_by(|interrupted| {
+    let outcome = interrupt.run_interruptible(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
             resume,

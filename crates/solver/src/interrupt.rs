@@ -19,7 +19,7 @@ impl Interrupt {
 
     /// Does work that ends by itself when the flag is set. What comes after it is soon done, and is
     /// waited for as well.
-    pub fn heeded_by<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
+    pub fn run_interruptible<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
         self.heeded.store(true, Ordering::Relaxed);
         work(&self.asked)
     }

@@ -22,7 +22,7 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments;
 use crate::state::events::Renumbering;
-use crate::state::watches::{Seen, Watch, Watched};
+use crate::state::watches::{Seen, Watch, WatchTarget};
 
 use self::members::{Members, wall_number};
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
@@ -101,7 +101,7 @@ pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
     };
     let starts = Arc::new(starts);
     let members = |name: &str| {
-        let particles = plan.sets.get(name).cloned().unwrap_or_default();
+        let particles = plan.groups.get(name).cloned().unwrap_or_default();
         let mut members = Members::new(name, particles);
         // The sets of a plan know no spheres of clumps.
         members.renumber(&[], &plan.bodies, &plan.state);
@@ -235,16 +235,16 @@ impl Probe {
     }
 
     /// Whose forces and contacts it follows in every step. None: of none.
-    fn watched(&self, state: &State) -> Option<Watched> {
+    fn watched(&self, state: &State) -> Option<WatchTarget> {
         if !self.is_watched() {
             return None;
         }
         let own = || self.members.marked(state);
         Some(match (self.walls, &self.with) {
-            ([Some(wall), _], _) => Watched::Wall(wall),
-            ([None, Some(wall)], _) => Watched::WithWall(own(), wall),
-            (_, Some(with)) => Watched::Between([own(), with.marked(state)]),
-            (_, None) => Watched::Particles(own()),
+            ([Some(wall), _], _) => WatchTarget::Wall(wall),
+            ([None, Some(wall)], _) => WatchTarget::WithWall(own(), wall),
+            (_, Some(with)) => WatchTarget::Between([own(), with.marked(state)]),
+            (_, None) => WatchTarget::Particles(own()),
         })
     }
 
@@ -300,7 +300,7 @@ impl Probe {
                 heap::angle_of_repose_deg(members, state, up)
             }
             // Of the particles on the wall.
-            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.whole_push()[1][at(k)]),
+            Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][at(k)]),
             Quantity::Count => {
                 let clusters = state.clusters.as_ref();
                 clusters.map_or(f64::NAN, |c| c.living().count() as f64)

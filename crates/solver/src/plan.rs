@@ -5,6 +5,7 @@ pub mod bodies;
 mod clumps;
 mod contacts;
 mod forecast;
+pub mod groups;
 pub mod held;
 mod initial;
 pub mod inputs;
@@ -12,7 +13,6 @@ pub mod masses;
 pub mod measures;
 mod outputs;
 mod rules;
-pub mod sets;
 mod stages;
 pub mod test_setup;
 pub mod test_theory;
@@ -32,11 +32,11 @@ use crate::stages::population::apply_topology_change;
 use crate::state::State;
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
-use crate::state::loads::SetLoad;
+use crate::state::loads::GroupLoad;
 use crate::state::population::{InletProgress, OutletTotals};
 use crate::state::sleep::{Sleep, SleepRule};
-use crate::state::supports::Held;
-use crate::state::supports::SetSupport;
+use crate::state::supports::GroupSupport;
+use crate::state::supports::HeldParticle;
 
 use self::bodies::place_bodies;
 use self::clumps::{
@@ -44,14 +44,14 @@ use self::clumps::{
 };
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
 use self::forecast::forecast;
-pub use self::forecast::{Forecast, ToCome};
+pub use self::forecast::{Forecast, InletForecast};
+use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
 use self::held::refuse_loose;
 use self::initial::start;
 use self::inputs::Inputs;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::rules::{doubts, rules};
-use self::sets::{held_freedoms, particles_of, resolve_sets};
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::test_setup::{Setup, setup};
@@ -69,7 +69,7 @@ pub struct Plan {
     /// Bodies in the order of their names.
     pub bodies: Vec<PlacedBody>,
     /// Particles (numbers in the state, rising) of every set, every body and `all`.
-    pub sets: BTreeMap<String, Vec<u32>>,
+    pub groups: BTreeMap<String, Vec<u32>>,
     /// The time step and why.
     pub step: StepChoice,
     /// Whether the step follows the limit up as well as down.
@@ -121,7 +121,7 @@ pub fn plan(
     let tested_m3 = tested.and_then(|body| body.about.shape_volume_m3);
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
-    let sets = resolve_sets(scene, &bodies, &particles)?;
+    let groups = resolve_groups(scene, &bodies, &particles)?;
     let to_come = templates.iter();
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
     let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
@@ -131,9 +131,9 @@ pub fn plan(
     if state.model.particle_damping > 0.0 {
         state.divide();
     }
-    state.supports = supports(scene, &sets)?;
-    start(scene, &sets, &bodies, &mut state)?;
-    state.loads = loads(scene, &sets, &state.supports)?;
+    state.supports = supports(scene, &groups)?;
+    start(scene, &groups, &bodies, &mut state)?;
+    state.loads = loads(scene, &groups, &state.supports)?;
     let mut notes = masses::notes(scene, &masses);
     state.model.rules = rules(scene, &templates)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
@@ -149,7 +149,7 @@ pub fn plan(
         ));
     }
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
-    refuse_valueless(scene, &sets, &state)?;
+    refuse_valueless(scene, &groups, &state)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
@@ -178,14 +178,14 @@ pub fn plan(
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
     let test = scene.test.as_ref().map(|test| {
-        let particles = particles_of(&sets, &test.body);
+        let particles = particles_of(&groups, &test.body);
         setup(scene, test, &state, particles, tested_m3)
     });
     let test = test.transpose()?;
     Ok(Plan {
         state,
         bodies,
-        sets,
+        groups,
         step,
         is_adaptive: scene.run.adaptive && scene.run.integrator == Integrator::Leapfrog,
         stages,
@@ -250,11 +250,11 @@ fn place_meetings(
     Ok(())
 }
 
-fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetSupport>> {
+fn supports(scene: &Scene, groups: &BTreeMap<String, Vec<u32>>) -> Result<Vec<GroupSupport>> {
     let mut held_by: BTreeMap<(u32, usize), &str> = BTreeMap::new();
     let mut supports = Vec::new();
     for (name, support) in &scene.supports {
-        let particles = particles_of(sets, &support.group);
+        let particles = particles_of(groups, &support.group);
         for &particle in particles {
             for (k, _) in support
                 .holds
@@ -267,22 +267,22 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
                         format!("{}: [supports.{name}]", scene.source),
                         format!(
                             "{} of a particle of '{}' is already held by [supports.{other}]",
-                            FREEDOMS[k], support.group
+                            DEGREES_OF_FREEDOM[k], support.group
                         ),
                         "hold each freedom of a particle once",
                     ));
                 }
             }
         }
-        supports.push(SetSupport {
+        supports.push(GroupSupport {
             holds: support.holds,
             factor: support.factor.clone(),
             end_s: support.end_s.unwrap_or(f64::INFINITY),
             held: particles
                 .iter()
-                .map(|&particle| Held {
+                .map(|&particle| HeldParticle {
                     particle,
-                    ..Held::default()
+                    ..HeldParticle::default()
                 })
                 .collect(),
         });
@@ -290,20 +290,21 @@ fn supports(scene: &Scene, sets: &BTreeMap<String, Vec<u32>>) -> Result<Vec<SetS
     Ok(supports)
 }
 
-const FREEDOMS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+const DEGREES_OF_FREEDOM: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 fn loads(
     scene: &Scene,
-    sets: &BTreeMap<String, Vec<u32>>,
-    supports: &[SetSupport],
-) -> Result<Vec<SetLoad>> {
+    groups: &BTreeMap<String, Vec<u32>>,
+    supports: &[GroupSupport],
+) -> Result<Vec<GroupLoad>> {
     let mut loads = Vec::new();
     for (name, load) in &scene.loads {
         // What is let go before the load ends can move with it.
         let end_s = load.end_s.unwrap_or(f64::INFINITY);
-        let held = held_freedoms(supports.iter().filter(|support| support.end_s >= end_s));
-        let particles = particles_of(sets, &load.group);
-        let share = 1.0 / particles.len() as f64;
+        let held =
+            held_degrees_of_freedom(supports.iter().filter(|support| support.end_s >= end_s));
+        let particles = particles_of(groups, &load.group);
+        let fraction = 1.0 / particles.len() as f64;
         let six: Vec<f64> = load.force_n.into_iter().chain(load.torque_n_m).collect();
         for particle in particles {
             let Some(held) = held.get(particle) else {
@@ -330,10 +331,10 @@ fn loads(
                 ));
             }
         }
-        loads.push(SetLoad {
+        loads.push(GroupLoad {
             particles: particles.to_vec(),
-            force_n: load.force_n.map(|f| f * share),
-            torque_n_m: load.torque_n_m.map(|t| t * share),
+            force_n: load.force_n.map(|f| f * fraction),
+            torque_n_m: load.torque_n_m.map(|t| t * fraction),
             factor: load.factor.clone(),
             end_s,
         });

@@ -32,14 +32,14 @@ use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::Contacts;
 use self::ledger::EnergyLedger;
-use self::loads::SetLoad;
+use self::loads::GroupLoad;
 use self::model::Model;
 use self::particles::{Particles, Wrench};
 use self::partitions::divide_awake;
 use self::population::Population;
 use self::scratch::Scratch;
 use self::sleep::Sleep;
-use self::supports::SetSupport;
+use self::supports::GroupSupport;
 use self::walls::Wall;
 use self::watches::Watch;
 
@@ -73,9 +73,9 @@ pub struct State {
     /// Forces and contacts that measures follow in every step. Empty: none.
     pub watches: Vec<Watch>,
     /// Loads.
-    pub loads: Vec<SetLoad>,
+    pub loads: Vec<GroupLoad>,
     /// Supports.
-    pub supports: Vec<SetSupport>,
+    pub supports: Vec<GroupSupport>,
     /// Steps done.
     pub steps: u64,
     /// Simulated time, s.
@@ -92,7 +92,7 @@ pub struct State {
     /// The same by what they failed by.
     pub broken_by_cause: CauseCounts,
     /// Those of them that have gone with their bodies.
-    pub broken_gone: u64,
+    pub broken_removed: u64,
     /// Energy and momentum that went in and out.
     pub ledger: EnergyLedger,
 
@@ -130,7 +130,7 @@ impl State {
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
-            broken_gone: 0,
+            broken_removed: 0,
             scratch: Scratch {
                 threads,
                 ..Scratch::default()

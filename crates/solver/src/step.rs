@@ -11,7 +11,7 @@ use crate::stages::contacts::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
 };
 use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
-use crate::stages::flow::{FLOW, count_bond_steps, let_bodies_come_and_go};
+use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
 use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
@@ -71,7 +71,7 @@ const INTERACT: &[Part] = &[
 /// Second half, where velocities stand half a step later: bodies come, go and become others.
 const EXCHANGE: &[Part] = &[
     (&LEDGER, count_bond_steps),
-    (&FLOW, let_bodies_come_and_go),
+    (&FLOW, apply_inlets_and_outlets),
     (&REPLACEMENT, restore_clumps),
     (&REPLACEMENT, replace_clumps),
 ];

@@ -1,6 +1,6 @@
 //! Bodies that the tests run, and what they do with them.
 
-use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, Reduced, reduced};
+use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::direction;
@@ -17,7 +17,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     damped: false,
     criteria: None,
     strengthening_from_1_s: None,
-    rate_of: dem_scene::StrainRateMeasure::Elongation,
+    strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
 };
 
 /// All bond models, with the names of the reference values, which know no elastic solid bond.
@@ -45,13 +45,13 @@ pub(crate) enum BondDamping {
 }
 
 impl BondDamping {
-    fn coefficients(self, k: &Stiffness, ends: &Reduced) -> DampingCoefficients {
+    fn coefficients(self, k: &Stiffness, ends: &ReducedInertia) -> DampingCoefficients {
         match self {
             Self::Chen(damping_ratio) => Chen { damping_ratio }.coefficients(k, ends),
             Self::ChenByMode(damping_ratio) => ChenByMode { damping_ratio }.coefficients(k, ends),
-            Self::Platzer(share, moments) => {
+            Self::Platzer(fraction, moments) => {
                 let model = Platzer {
-                    coefficient_n_s_m: 2.0 * share * (k.normal * ends.mass_kg).sqrt(),
+                    coefficient_n_s_m: 2.0 * fraction * (k.normal * ends.mass_kg).sqrt(),
                     moment_factor: moments,
                 };
                 model.coefficients(k, ends)

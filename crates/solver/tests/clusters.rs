@@ -24,7 +24,7 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
             damped: false,
             criteria: None,
             strengthening_from_1_s: None,
-            rate_of: dem_scene::StrainRateMeasure::Elongation,
+            strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
         }]),
         ..Bonds::default()
     };

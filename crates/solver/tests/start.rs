@@ -59,8 +59,8 @@ fn run_of(
         threads: 1,
         interrupted: &interrupted,
     };
-    run(planned(text), &scene(text), settings, &|share| {
-        if share >= stop_at {
+    run(planned(text), &scene(text), settings, &|fraction| {
+        if fraction >= stop_at {
             interrupted.store(true, Ordering::Relaxed);
         }
     })

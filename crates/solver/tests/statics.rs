@@ -11,11 +11,11 @@ mod stability;
 mod supports;
 
 use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::run::statics::{Equilibrium, come_to_rest, equilibrium};
+use dem_run::run::statics::{Equilibrium, equilibrium, set_at_rest};
 use dem_run::state::State;
-use dem_run::state::loads::SetLoad;
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::loads::GroupLoad;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 use nalgebra::Vector3;
 
@@ -34,11 +34,11 @@ fn bar(model: BondModel, bonds: u32, radius_factor: f64) -> State {
 
 /// Holds these freedoms of these particles.
 fn hold(state: &mut State, particles: &[u32], holds: [Option<Hold>; 6], factor: Factor) {
-    let held = |&particle: &u32| Held {
+    let held = |&particle: &u32| HeldParticle {
         particle,
-        ..Held::default()
+        ..HeldParticle::default()
     };
-    state.supports.push(SetSupport {
+    state.supports.push(GroupSupport {
         end_s: f64::INFINITY,
         holds,
         factor,
@@ -53,7 +53,7 @@ fn fix(state: &mut State, particles: &[u32]) {
 
 /// Loads each of these particles.
 fn load(state: &mut State, particles: &[u32], force_n: [f64; 3], torque_n_m: [f64; 3]) {
-    state.loads.push(SetLoad {
+    state.loads.push(GroupLoad {
         end_s: f64::INFINITY,
         particles: particles.to_vec(),
         force_n,
@@ -65,7 +65,7 @@ fn load(state: &mut State, particles: &[u32], force_n: [f64; 3], torque_n_m: [f6
 /// Brings a state to rest, whole.
 fn rest(state: &mut State) -> Equilibrium {
     let found = equilibrium(state, END_S, &|_| true).unwrap();
-    come_to_rest(state, END_S, 1);
+    set_at_rest(state, END_S, 1);
     found
 }
 

@@ -54,8 +54,8 @@ pub(crate) fn box_surface(low: [f64; 3], high: [f64; 3], n: u32) -> Surface {
                 at[(axis + 2) % 3] = j;
                 [0, 1, 2].map(|k| {
                     // Ends are exact.
-                    let share = f64::from(at[k]) / f64::from(n);
-                    low[k] * (1.0 - share) + high[k] * share
+                    let fraction = f64::from(at[k]) / f64::from(n);
+                    low[k] * (1.0 - fraction) + high[k] * fraction
                 })
             };
             add_tiles(&mut surface, n, place);

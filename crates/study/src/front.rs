@@ -59,9 +59,9 @@ mod tests {
 
     fn points() -> impl Strategy<Value = Vec<Point>> {
         let point = (0.01..10.0f64, 0.0..0.3f64, -8.0..0.0f64);
-        let point = point.prop_map(|(time_s, share, log)| Point {
+        let point = point.prop_map(|(time_s, fraction, log)| Point {
             time_s,
-            spread_s: share * time_s,
+            spread_s: fraction * time_s,
             error: 10_f64.powf(log),
         });
         prop::collection::vec(point, 0..40)
@@ -100,9 +100,9 @@ mod tests {
             ranks in prop::collection::vec((0..8u32, 0..8i32), 1..30),
             noise in prop::collection::vec(-1.0..1.0f64, 30),
         ) {
-            let at = |share: f64, rank: u32, log: i32| {
+            let at = |fraction: f64, rank: u32, log: i32| {
                 let exact = 1.35_f64.powi(rank as i32);
-                Point { time_s: exact * (1.0 + 0.04 * share), spread_s: 0.1 * exact, error: 10_f64.powi(log) }
+                Point { time_s: exact * (1.0 + 0.04 * fraction), spread_s: 0.1 * exact, error: 10_f64.powi(log) }
             };
             let one: Vec<Point> = ranks.iter().map(|&(rank, log)| at(0.0, rank, log)).collect();
             let again: Vec<Point> =

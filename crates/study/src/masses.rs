@@ -64,8 +64,8 @@ pub fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
         .collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
-    for (at, (x, share)) in all.iter().enumerate() {
-        difference += share;
+    for (at, (x, fraction)) in all.iter().enumerate() {
+        difference += fraction;
         if all
             .get(at + 1)
             .is_none_or(|next| next.0 > x + SAME * x.abs())
@@ -116,8 +116,8 @@ mod tests {
         let (a, b) = (60, 90);
         let limit = by_chance(a, b);
         let beyond = (0..2000).filter(|_| distance(&sample(a), &sample(b), |_| 1.0) > limit);
-        let share = beyond.count() as f64 / 2000.0;
+        let fraction = beyond.count() as f64 / 2000.0;
         // The limit is that of large samples: these exceed it a little less often.
-        assert!((0.02..0.07).contains(&share), "{share}");
+        assert!((0.02..0.07).contains(&fraction), "{fraction}");
     }
 }

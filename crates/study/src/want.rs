@@ -82,26 +82,26 @@ pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
         ));
     }
     // Largest error over what is wanted: 1 is just enough.
-    let share = |row: &Row| {
-        let shares = wants
+    let fraction = |row: &Row| {
+        let fractions = wants
             .iter()
             .map(|want| Some(want.error_of(table, row)? / want.error));
-        shares.reduce(|a, b| Some(a?.max(b?))).flatten()
+        fractions.reduce(|a, b| Some(a?.max(b?))).flatten()
     };
     let known = || {
         table
             .runs
             .iter()
-            .filter_map(|row| Some((share(row)?, row.time_s?, row)))
+            .filter_map(|row| Some((fraction(row)?, row.time_s?, row)))
     };
-    let enough = || known().filter(|(share, ..)| *share <= 1.0);
+    let enough = || known().filter(|(fraction, ..)| *fraction <= 1.0);
     let Some((_, least_s, _)) = enough().min_by(|a, b| a.1.total_cmp(&b.1)) else {
         let best = known().min_by(|a, b| a.0.total_cmp(&b.0));
         let problem = match best {
-            Some((share, _, row)) => format!(
+            Some((fraction, _, row)) => format!(
                 "no run is as exact: the nearest, run {}, has {} times the error",
                 row.number,
-                significant(share, 3)
+                significant(fraction, 3)
             ),
             None => "no run has an error that is known".to_owned(),
         };

@@ -259,12 +259,12 @@ fn damping_ratio(restitution: f64) -> f64 {
 /// Restitution. The linear law's is of second order in the step over the faster of the two times
 /// of a damped swing; Hertz's stiffness grows within a step, which leaves a part of the first
 /// order.
-fn restitution_bound(law: Law, restitution: f64, share: f64) -> f64 {
+fn restitution_bound(law: Law, restitution: f64, fraction: f64) -> f64 {
     let zeta = damping_ratio(restitution);
-    let share = share * (zeta + zeta.hypot(1.0));
+    let fraction = fraction * (zeta + zeta.hypot(1.0));
     match law {
-        Law::Hertz => share,
-        Law::Linear => (PI * share).powi(2),
+        Law::Hertz => fraction,
+        Law::Linear => (PI * fraction).powi(2),
     }
 }
 

@@ -155,10 +155,10 @@ fn crossings(mode: Mode, state: &mut State, count: usize) -> Vec<[f64; 2]> {
 /// Logarithmic decrement and duration of half a swing.
 fn half_swing(crossings: &[[f64; 2]]) -> [f64; 2] {
     let (first, last) = (crossings[0], crossings[crossings.len() - 1]);
-    let swings = (crossings.len() - 1) as f64;
+    let oscillations = (crossings.len() - 1) as f64;
     [
-        (first[1] / last[1]).ln() / swings,
-        (last[0] - first[0]) / swings,
+        (first[1] / last[1]).ln() / oscillations,
+        (last[0] - first[0]) / oscillations,
     ]
 }
 
@@ -166,7 +166,7 @@ fn half_swing(crossings: &[[f64; 2]]) -> [f64; 2] {
 /// ago, which is as if the mass were less by a share of zeta omega dt.
 fn damped_bonds() -> [String; 2] {
     let (mut ratios, mut frequencies) = (Vec::new(), Vec::new());
-    let share = |mode: Mode| match mode {
+    let fraction = |mode: Mode| match mode {
         Mode::Axial => 1.0,
         Mode::Torsion => 2.0_f64.sqrt(),
         Mode::Bending => (2.0 * Mode::Torsion.stiffness() / Mode::Bending.stiffness()).sqrt(),
@@ -175,7 +175,7 @@ fn damped_bonds() -> [String; 2] {
     for mode in MODES {
         for eta in [0.02, 0.1, 0.4] {
             let chen = format!("damping_ratio = {eta}");
-            cases.push((mode, chen.clone(), share(mode) * eta));
+            cases.push((mode, chen.clone(), fraction(mode) * eta));
             cases.push((mode, format!("{chen}, per_mode = true"), eta));
         }
     }
@@ -250,7 +250,7 @@ fn particle_damping() -> [String; 2] {
             format!("{HELD}initial.right = {{ group = \"right\", velocity = [{speed:e}, 0, 0] }}");
         let mut state = pair(&run, "damping_ratio = 0", &more);
         let [decrement, half_s] = half_swing(&crossings(Mode::Axial, &mut state, 9));
-        let quarter = |share: f64| 0.5 * PI / omega / share.sqrt();
+        let quarter = |fraction: f64| 0.5 * PI / omega / fraction.sqrt();
         let wanted = 0.5 * ((1.0 + gamma) / (1.0 - gamma)).ln();
         let bound = gamma * STEP + STEP * STEP;
         let what = format!("{gamma}");

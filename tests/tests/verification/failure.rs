@@ -25,7 +25,7 @@ const VON_MISES_PA: f64 = 1.1e6;
 /// than its strength: late by one step of the load at most.
 const STEPS: f64 = 10_000.0;
 /// Of its end, a load has come to this share when the bond breaks: in the middle of a step.
-const SHARE: f64 = 0.700_05;
+const FRACTION: f64 = 0.700_05;
 /// Bonds break at strains of some 1e-6; loads are linear in displacements but for such a share.
 const STRAIN: f64 = 1e-5;
 
@@ -249,7 +249,7 @@ fn by_displacement() -> String {
         names.iter().map(move |name| (*criterion, of(name)))
     });
     let cases = tried.map(|(criterion, &(name, load))| {
-        let whole = 1.0 / (SHARE * criterion.used(load));
+        let whole = 1.0 / (FRACTION * criterion.used(load));
         let end = Stresses {
             axial: whole * load.axial,
             bending: whole * load.bending,
@@ -260,7 +260,12 @@ fn by_displacement() -> String {
         let largest = 1e-6 * stresses.into_iter().fold(0.0, f64::max);
         let found = largest * breaks_at(criterion, end);
         let what = format!("{}: {name}", criterion.name());
-        Case::new(what, found, largest * SHARE, 1.0 / (SHARE * STEPS) + STRAIN)
+        Case::new(
+            what,
+            found,
+            largest * FRACTION,
+            1.0 / (FRACTION * STEPS) + STRAIN,
+        )
     });
     compared("criterion: load", "MPa", &cases.collect::<Vec<_>>())
 }
@@ -312,14 +317,14 @@ fn by_load() -> String {
             moment_damping / torsion,
         ),
     ] {
-        let (end, end_s) = (strength / SHARE, STEPS * step_s);
+        let (end, end_s) = (strength / FRACTION, STEPS * step_s);
         let push = push.replace('1', &format!("{end:e}"));
         let more = format!(
             "supports.left = {{ group = \"left\", fixed = true }}\nloads.right = {{ group = \"right\", {push}, ramp = {end_s:e} }}"
         );
         let run = format!("end_time = {end_s:e}, time_step = {step_s:e}");
         let found = breaks_s(&mut bond(&criterion.key(), &run, &more), end_s) / end_s;
-        let bound = (1.0 + lag_s / step_s) / (SHARE * STEPS) + STRAIN;
+        let bound = (1.0 + lag_s / step_s) / (FRACTION * STEPS) + STRAIN;
         cases.push(Case::new(what, found * end, strength, bound));
     }
     compared("load", "", &cases)
@@ -452,10 +457,10 @@ fn scatter() -> String {
         let fourth = m4 - 4.0 * m1 * m3 + 6.0 * m1 * m1 * m2 - 3.0 * m1.powi(4);
         let kurtosis = fourth / wanted.powi(4);
         let distance = found.iter().enumerate().map(|(i, strength)| {
-            let share = 1.0 - (-strength.powf(modulus)).exp();
-            (share - i as f64 / n)
+            let fraction = 1.0 - (-strength.powf(modulus)).exp();
+            (fraction - i as f64 / n)
                 .abs()
-                .max((share - (i as f64 + 1.0) / n).abs())
+                .max((fraction - (i as f64 + 1.0) / n).abs())
         });
         let of_mean = 3.0 * wanted / n.sqrt() / m1 + 1.0 / STEPS;
         let of_deviation = 3.0 * (0.25 * (kurtosis - 1.0) / n).sqrt() + 1.0 / STEPS;

@@ -175,9 +175,9 @@ impl Packed {
                 .iter()
                 .any(|(place, radius)| (place - point).norm_squared() < radius * radius)
         });
-        let share = inside.count() as f64 / f64::from(POINTS);
-        let error = (share * (1.0 - share) / f64::from(POINTS)).sqrt();
-        [share, error].map(|share| share * size.product())
+        let fraction = inside.count() as f64 / f64::from(POINTS);
+        let error = (fraction * (1.0 - fraction) / f64::from(POINTS)).sqrt();
+        [fraction, error].map(|fraction| fraction * size.product())
     }
 
     /// Pairs at most this times the sum of their radii apart, and the largest overlap of reduced
@@ -290,7 +290,7 @@ fn counts(all: &[Packed]) -> [String; 3] {
 /// spheres of 1 mm and 0.7 mm at an overlap of 0.1.
 fn touching() -> String {
     let [bar, ..] = shapes();
-    let share = |overlap: f64| {
+    let fraction = |overlap: f64| {
         let packed = packed(bar, overlap, Some(0.0));
         let spheres: Vec<(Vector3<f64>, f64)> = packed.spheres().collect();
         let pairs = spheres.iter().enumerate().flat_map(|(i, a)| {
@@ -299,7 +299,7 @@ fn touching() -> String {
         });
         pairs.fold(0.0, f64::max)
     };
-    let [little, much] = [0.1, OVERLAP].map(share);
+    let [little, much] = [0.1, OVERLAP].map(fraction);
     compared(
         "overlap",
         "",

@@ -205,8 +205,8 @@ fn thrown() -> String {
     let hertz = Hertz { pair: false };
     let weight_n = hertz.mass_kg() * GRAVITY_M_S2;
     let sinks_m = (15.0 / 8.0 * weight_n / hertz.stiffness()).powf(2.0 / 3.0);
-    let cases = [0.2, 0.5, 0.8].map(|share| {
-        let rises_m = share * OVERLAP_M;
+    let cases = [0.2, 0.5, 0.8].map(|fraction| {
+        let rises_m = fraction * OVERLAP_M;
         let speed = (2.0 * GRAVITY_M_S2 * rises_m).sqrt();
         // The swing is about as slow as one of the stiffness at half of its depth.
         let stiffness = 2.0 * hertz.stiffness() * (0.5 * sinks_m).sqrt();
@@ -231,7 +231,12 @@ fn thrown() -> String {
         // The top is met to half a step, and with it the place from where the ball falls.
         let top = 0.5 * GRAVITY_M_S2 * step_s * step_s / sinks_m;
         let bound = (PI / STEPS).powi(2) + top;
-        Case::new(format!("rises by {share} mm"), found, 1e6 * sinks_m, bound)
+        Case::new(
+            format!("rises by {fraction} mm"),
+            found,
+            1e6 * sinks_m,
+            bound,
+        )
     });
     compared("thrown up by", "um", &cases)
 }

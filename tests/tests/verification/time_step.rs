@@ -134,8 +134,8 @@ impl Row<'_> {
     fn observed(&self, limit_s: f64, steps: usize) -> f64 {
         let speed = 1e-9 * LENGTH_M / limit_s;
         let more = format!("initial.last = {{ group = \"last\", velocity = [{speed:e}, 0, 0] }}");
-        let grows = |share: f64| {
-            let mut state = self.plan(&format!("{:e}", share * limit_s), &more).state;
+        let grows = |fraction: f64| {
+            let mut state = self.plan(&format!("{:e}", fraction * limit_s), &more).state;
             (0..steps).any(|_| {
                 step(&mut state);
                 let last = place(&state, self.spheres - 1).x;

@@ -39,7 +39,7 @@ pub(super) fn split(mesh: &mut Mesh, tolerance: f64) -> usize {
 /// A vertex that lies on a half-edge, at `share` of the way.
 struct OnEdge {
     half_edge: u32,
-    share: f64,
+    fraction: f64,
     vertex: u32,
 }
 
@@ -69,12 +69,12 @@ fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
                     return;
                 }
                 let point = mesh.vertices[vertex as usize];
-                let share = dot(subtract(point, start), edge) / dot(edge, edge);
-                let apart = distance(point, along(start, share, edge));
-                if share > 0.0 && share < 1.0 && apart <= tolerance {
+                let fraction = dot(subtract(point, start), edge) / dot(edge, edge);
+                let apart = distance(point, along(start, fraction, edge));
+                if fraction > 0.0 && fraction < 1.0 && apart <= tolerance {
                     found.push(OnEdge {
                         half_edge,
-                        share,
+                        fraction,
                         vertex,
                     });
                 }
@@ -84,7 +84,7 @@ fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
     found.sort_unstable_by(|a, b| {
         a.half_edge
             .cmp(&b.half_edge)
-            .then(a.share.total_cmp(&b.share))
+            .then(a.fraction.total_cmp(&b.fraction))
             .then(a.vertex.cmp(&b.vertex))
     });
     found
@@ -123,8 +123,8 @@ fn on_one_line(mesh: &Mesh, from: u32, a: u32, b: u32, tolerance: f64) -> bool {
         (b, a)
     };
     let (to_near, to_far) = (subtract(near, from), subtract(far, from));
-    let share = dot(to_near, to_far) / dot(to_far, to_far);
-    distance(near, along(from, share, to_far)) <= tolerance
+    let fraction = dot(to_near, to_far) / dot(to_far, to_far);
+    distance(near, along(from, fraction, to_far)) <= tolerance
 }
 
 /// Replaces the triangle of `half_edge` by a fan from its opposite corner to the pieces of the

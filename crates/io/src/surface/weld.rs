@@ -90,7 +90,7 @@ pub(super) fn near_vertices(mesh: &mut Mesh, edges: &Edges, diagonal: f64) -> Op
     let tree = Tree::new(&points);
     let mut best: Option<Clusters> = None;
     let mut fewest_bad = edges.bad_count();
-    for tolerance in TOLERANCES.map(|share| share * diagonal) {
+    for tolerance in TOLERANCES.map(|fraction| fraction * diagonal) {
         if fewest_bad == 0 {
             break;
         }

@@ -69,8 +69,11 @@ fn exact_on(kind: usize) {
                 * 4.0
                 / 3.0
                 * std::f64::consts::PI;
-            let share = filled * surface.unit_m.powi(3) / surface.volume_m3();
-            assert!(share > 0.25 && share < 0.66, "{what}: filled {share}");
+            let fraction = filled * surface.unit_m.powi(3) / surface.volume_m3();
+            assert!(
+                fraction > 0.25 && fraction < 0.66,
+                "{what}: filled {fraction}"
+            );
         }
     }
 }

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// nearer to another or to the wall than the share `apart` of where they would touch.
 fn cloud(
     facets: &Facets,
-    share: f64,
+    fraction: f64,
     sizes: [f64; 2],
     overlap: f64,
     apart: f64,
@@ -29,7 +29,7 @@ fn cloud(
     let mut random = random_numbers(seed);
     let mut balls: Vec<ReducedSphere> = Vec::new();
     let mut filled = 0.0;
-    while filled < share * volume {
+    while filled < fraction * volume {
         let radius = between(&mut random, 0.5 * sizes[0], 0.5 * sizes[1]) / unit_mm;
         let place = point_between(&mut random, [0.0; 3], surface.extent());
         let centre = Vector3::from(place);
@@ -66,8 +66,9 @@ fn assert_clouds_settle(apart: f64) {
         ("box, overlap", cuboid([10.0, 8.0, 7.0]), 0.45, 0.25, 2),
         ("ball", icosphere(2, &|_| 5.0), 0.45, 0.1, 3),
     ];
-    for (name, facets, share, overlap, seed) in cases {
-        let (facets, mut balls, boundary) = cloud(&facets, share, [0.8, 1.2], overlap, apart, seed);
+    for (name, facets, fraction, overlap, seed) in cases {
+        let (facets, mut balls, boundary) =
+            cloud(&facets, fraction, [0.8, 1.2], overlap, apart, seed);
         let before = sizes_of(&balls);
         let settled =
             minimise_overlaps(&boundary, &mut balls, overlap, WhenJammed::TakeOut, &|_| {

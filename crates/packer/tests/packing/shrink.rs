@@ -41,10 +41,10 @@ fn bodies_are_as_full_as_can_be_without_jamming() {
         (&block, "1mm..1.5mm", 0.5),
     ] {
         for seed in 1..=2 {
-            let share = filled_over_wanted(facets, diameter, overlap, seed);
+            let fraction = filled_over_wanted(facets, diameter, overlap, seed);
             assert!(
-                (0.985..1.01).contains(&share),
-                "{diameter}, overlap {overlap}, seed {seed}: {share}"
+                (0.985..1.01).contains(&fraction),
+                "{diameter}, overlap {overlap}, seed {seed}: {fraction}"
             );
         }
     }

@@ -36,14 +36,17 @@ fn packed(name: &str, more: &[&str], volume: f64, pieces: u64, unsure: f64) -> M
         "{name}: radii"
     );
     // As dense as a packing with walls in every direction is at least.
-    let share = radii
+    let fraction = radii
         .iter()
         .map(|r| 4.0 / 3.0 * PI * r.powi(3))
         .sum::<f64>()
         / volume;
-    assert!(share > 0.5 && share < 0.66, "{name}: filled {share}");
     assert!(
-        (made.number("/quality/generating_density") - share).abs() < 1e-4,
+        fraction > 0.5 && fraction < 0.66,
+        "{name}: filled {fraction}"
+    );
+    assert!(
+        (made.number("/quality/generating_density") - fraction).abs() < 1e-4,
         "{name}: reported share"
     );
     assert!(
@@ -121,8 +124,8 @@ fn a_hole_is_refused_or_filled() {
 fn both_of_two_balls_are_filled_and_stay_two() {
     let made = packed("08", &[], 8359.48, 2, 0.0);
     for x in [0.0, 30.0] {
-        let share = filled_share(&made, [x, 0.0, 0.0], 10.0);
-        assert!(share > 0.5, "the ball at {x} is filled {share}");
+        let fraction = filled_share(&made, [x, 0.0, 0.0], 10.0);
+        assert!(fraction > 0.5, "the ball at {x} is filled {fraction}");
     }
 }
 
@@ -208,8 +211,8 @@ fn both_balls_of_a_dumbbell_are_filled_and_stay_two() {
     let ends = [f64::min, f64::max]
         .map(|pick| facets.iter().flatten().map(|p| p[0]).reduce(pick).unwrap());
     for x in [ends[0] + 10.0, ends[1] - 10.0] {
-        let share = filled_share(&made, [x, 0.0, 0.0], 10.0);
-        assert!(share > 0.5, "the ball at {x} is filled {share}");
+        let fraction = filled_share(&made, [x, 0.0, 0.0], 10.0);
+        assert!(fraction > 0.5, "the ball at {x} is filled {fraction}");
     }
     let warnings = made.report["quality"]["warnings"].to_string();
     assert!(warnings.contains("2 pieces"), "{warnings}");

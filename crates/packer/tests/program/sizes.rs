@@ -25,10 +25,10 @@ fn kolmogorov_smirnov(
     let squares: f64 = diameters.iter().map(|d| weight(*d).powi(2)).sum();
     let (mut below, mut distance) = (0.0, 0.0_f64);
     for d in &diameters {
-        let share = wanted(*d);
-        distance = distance.max((share - below / total).abs());
+        let fraction = wanted(*d);
+        distance = distance.max((fraction - below / total).abs());
         below += weight(*d);
-        distance = distance.max((share - below / total).abs());
+        distance = distance.max((fraction - below / total).abs());
     }
     (distance, total * total / squares)
 }
@@ -42,7 +42,7 @@ struct Law {
 
 impl Law {
     /// The share at or below `d`, counted with the weight d^power.
-    fn share(&self, d: f64, power: i32) -> f64 {
+    fn fraction(&self, d: f64, power: i32) -> f64 {
         self.moment(d, power) / self.moment(f64::INFINITY, power)
     }
 
@@ -156,7 +156,7 @@ fn every_distribution_is_followed_by_number_and_by_mass() {
             for (what, weight, power) in [("number", 0, powers(by)[0]), ("mass", 3, powers(by)[1])]
             {
                 let (distance, samples) =
-                    kolmogorov_smirnov(&made, &|d| d.powi(weight), &|d| law.share(d, power));
+                    kolmogorov_smirnov(&made, &|d| d.powi(weight), &|d| law.fraction(d, power));
                 let off = distance * samples.sqrt();
                 assert!(
                     off < LIMIT_999,

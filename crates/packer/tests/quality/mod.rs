@@ -82,10 +82,13 @@ impl Case {
 
 /// Within four of the stated errors, which is small.
 #[track_caller]
-fn close(share: Fraction, wanted: f64) {
-    assert!(share.error > 0.0 && share.error < 0.003, "{share:?}");
+fn close(fraction: Fraction, wanted: f64) {
     assert!(
-        (share.value - wanted).abs() < 4.0 * share.error,
-        "{share:?} {wanted}"
+        fraction.error > 0.0 && fraction.error < 0.003,
+        "{fraction:?}"
+    );
+    assert!(
+        (fraction.value - wanted).abs() < 4.0 * fraction.error,
+        "{fraction:?} {wanted}"
     );
 }

@@ -155,7 +155,7 @@ fn smooth(points: &str) -> Vec<[f64; 2]> {
         })
         .collect();
     let between =
-        |a: [f64; 2], b: [f64; 2], share: f64| [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+        |a: [f64; 2], b: [f64; 2], fraction: f64| [0, 1].map(|k| a[k] + fraction * (b[k] - a[k]));
     for _ in 0..CUTS {
         let (Some(first), Some(last)) = (line.first(), line.last()) else {
             break;
@@ -163,7 +163,7 @@ fn smooth(points: &str) -> Vec<[f64; 2]> {
         let mut next = vec![*first];
         let inner = line.windows(2);
         next.extend(
-            inner.flat_map(|ends| [0.25, 0.75].map(|share| between(ends[0], ends[1], share))),
+            inner.flat_map(|ends| [0.25, 0.75].map(|fraction| between(ends[0], ends[1], fraction))),
         );
         next.push(*last);
         line = next;

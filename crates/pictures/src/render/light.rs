@@ -113,13 +113,13 @@ impl Lights {
 
     /// How much of the sky a ball sees: the mean, and how it grows along each axis.
     pub(super) fn sky_of(&self, body: &Body) -> [f32; 4] {
-        let share = 1.0 / SKY as f32;
+        let fraction = 1.0 / SKY as f32;
         let seen: Vec<f32> = self.sky.iter().map(|map| map.seen(body)).collect();
-        let mean = seen.iter().sum::<f32>() * share;
+        let mean = seen.iter().sum::<f32>() * fraction;
         let mut fit = [mean, 0.0, 0.0, 0.0];
         for (map, seen) in self.sky.iter().zip(seen) {
             for k in 0..3 {
-                fit[k + 1] += 1.5 * share * (seen - mean) * map.towards[k];
+                fit[k + 1] += 1.5 * fraction * (seen - mean) * map.towards[k];
             }
         }
         fit

@@ -23,8 +23,8 @@ const DEPTH_OF_SKY: f32 = 0.50;
 /// Light of a stored colour.
 pub(super) fn linear(colour: [u8; 3]) -> [f32; 3] {
     colour.map(|c| {
-        let share = f32::from(c) / 255.0;
-        share * share
+        let fraction = f32::from(c) / 255.0;
+        fraction * fraction
     })
 }
 
@@ -33,8 +33,8 @@ pub(super) fn stored(light: [f32; 3]) -> [u8; 3] {
     light.map(|c| (255.0 * c.clamp(0.0, 1.0).sqrt() + 0.5) as u8)
 }
 
-pub(super) fn mixed(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
-    [0, 1, 2].map(|k| a[k] + share * (b[k] - a[k]))
+pub(super) fn mixed(a: [f32; 3], b: [f32; 3], fraction: f32) -> [f32; 3] {
+    [0, 1, 2].map(|k| a[k] + fraction * (b[k] - a[k]))
 }
 
 /// The light of a ball where it is seen at `x`, `y`.

@@ -11,16 +11,16 @@ use tempfile::tempdir;
 fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow {
     let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
     FragmentRow {
-        id,
-        parent: id.checked_sub(1),
+        fragment_id: id,
+        parent_id: id.checked_sub(1),
         particles: 10 * id,
         mass_kg: numbers[0],
         centre_m: three(1),
         velocity_m_s: three(4),
         angular_velocity_rad_s: three(7),
         force_n: three(10),
-        size_m: numbers[13],
-        extent_m: numbers[14],
+        equivalent_diameter_m: numbers[13],
+        box_diagonal_m: numbers[14],
     }
 }
 
@@ -52,16 +52,16 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragment-tree.csv");
     let root = TreeRow {
-        id: 0,
-        parent: None,
-        born_s: 0.0,
+        fragment_id: 0,
+        parent_id: None,
+        created_s: 0.0,
         ended_s: Some(2.5e-3),
         particles: 7,
     };
     let child = TreeRow {
-        id: 1,
-        parent: Some(0),
-        born_s: 2.5e-3,
+        fragment_id: 1,
+        parent_id: Some(0),
+        created_s: 2.5e-3,
         ended_s: None,
         particles: 4,
     };

@@ -237,15 +237,15 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
         return Err(field.refuse(problem, "write spacing = \"linear\", or ends above 0"));
     }
     let value = |at: u64| {
-        let share = at as f64 / (count - 1) as f64;
+        let fraction = at as f64 / (count - 1) as f64;
         if at == 0 {
             first
         } else if at == count - 1 {
             last
         } else if log {
-            rounded(first * (last / first).powf(share))
+            rounded(first * (last / first).powf(fraction))
         } else {
-            rounded(first + (last - first) * share)
+            rounded(first + (last - first) * fraction)
         }
     };
     Ok((0..count)

@@ -24,7 +24,7 @@ const MOVES: usize = 2000;
 
 /// A body that flies freely, as a rigid assembly of spheres.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flyer {
+pub struct FreeBody {
     /// Name of the body in the scene.
     pub name: String,
     /// Centre of mass, m.
@@ -65,7 +65,7 @@ pub fn can_meet(state: &State, scene: &Scene) -> bool {
 /// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their
 /// velocities
 /// stand `ahead_s` after their places.
-pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> {
+pub fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
     let held = state.supports.iter().flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
     let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
@@ -75,18 +75,18 @@ pub fn flyers(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<Flyer> 
         let living = body.particles.iter().copied();
         let living: Vec<u32> = living.filter(|i| *i != REMOVED).collect();
         let flies = !living.is_empty() && living.iter().all(is_free);
-        flies.then(|| Flyer::of_particles(state, &body.name, &living))
+        flies.then(|| FreeBody::of_particles(state, &body.name, &living))
     });
     let awake = state.clumps.all.iter().filter(|clump| !clump.asleep);
-    let of_clumps = awake.map(|clump| Flyer::of_clump(state, clump));
-    let mut flyers: Vec<Flyer> = of_bodies.chain(of_clumps).collect();
-    for flyer in &mut flyers {
+    let of_clumps = awake.map(|clump| FreeBody::of_clump(state, clump));
+    let mut free_bodies: Vec<FreeBody> = of_bodies.chain(of_clumps).collect();
+    for flyer in &mut free_bodies {
         flyer.velocity_m_s -= ahead_s * flyer.gravity_m_s2;
     }
-    flyers
+    free_bodies
 }
 
-impl Flyer {
+impl FreeBody {
     fn of_particles(state: &State, name: &str, particles: &[u32]) -> Self {
         let p = &state.particles;
         let (mut mass_kg, mut moment, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
@@ -307,9 +307,9 @@ mod tests {
     use super::*;
     use crate::geometry::{Frame, Plane, SolidBox};
 
-    fn ball(at: [f64; 3], velocity: [f64; 3], gravity: [f64; 3]) -> Flyer {
+    fn ball(at: [f64; 3], velocity: [f64; 3], gravity: [f64; 3]) -> FreeBody {
         let spheres = vec![(Vector3::zeros(), 0.1)];
-        Flyer::new("ball", spheres, gravity.into()).moving(
+        FreeBody::new("ball", spheres, gravity.into()).moving(
             at.into(),
             velocity.into(),
             Vector3::zeros(),

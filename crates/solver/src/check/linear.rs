@@ -192,7 +192,7 @@ pub fn linear_wrenches(
 /// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all
 /// that touch, 1/s2: how far the limit may have fallen since this was smaller. 0 where nothing
 /// touches. Contacts that are not stiffer than `matters` says may be left out.
-pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
+pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
@@ -240,7 +240,7 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: Matters) -> f64 {
 
 /// Which contacts matter for a step: those that are stiffer than others have been.
 #[derive(Debug, Clone, Copy)]
-pub struct Matters {
+pub struct StiffestContacts {
     /// Stiffness over mass that contacts have had, 1/s2.
     pub above_1_s2: f64,
     /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be; none: nobody
@@ -248,7 +248,7 @@ pub struct Matters {
     pub extremes: Option<[f64; 2]>,
 }
 
-impl Matters {
+impl StiffestContacts {
     /// All do.
     pub const ALL: Self = Self {
         above_1_s2: 0.0,

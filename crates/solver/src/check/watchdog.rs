@@ -20,7 +20,7 @@ const EVERY: u64 = 64;
 /// Watches the energy of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Watchdog {
-    share_of_limit: f64,
+    fraction_of_limit: f64,
     /// Energy that may appear from nowhere, over what was put in.
     allowed: f64,
 }
@@ -30,10 +30,10 @@ impl Watchdog {
     ///
     /// Leapfrog below the limit keeps an energy close to the true one; for the fastest mode the two
     /// differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
-    pub fn new(share_of_limit: f64) -> Self {
-        let square = share_of_limit * share_of_limit;
+    pub fn new(fraction_of_limit: f64) -> Self {
+        let square = fraction_of_limit * fraction_of_limit;
         Self {
-            share_of_limit,
+            fraction_of_limit,
             allowed: if square < 1.0 {
                 2.0 / (1.0 - square)
             } else {
@@ -55,7 +55,7 @@ impl Watchdog {
             <= (1.0 + self.allowed)
                 * state
                     .ledger
-                    .put_in_j(state.model.gravity_m_s2, &state.walls);
+                    .energy_supplied_j(state.model.gravity_m_s2, &state.walls);
         !quiet
     }
 
@@ -75,24 +75,24 @@ impl Watchdog {
         let coming = 0.5 * state.time_step_s * power_w.abs();
         let put_in = state
             .ledger
-            .put_in_j(state.model.gravity_m_s2, &state.walls)
+            .energy_supplied_j(state.model.gravity_m_s2, &state.walls)
             + coming;
         if balance.energy_error_j <= self.allowed * put_in {
             return Ok(());
         }
-        Err(unstable(state, balance, self.share_of_limit, bodies))
+        Err(unstable(state, balance, self.fraction_of_limit, bodies))
     }
 }
 
 fn unstable(
     state: &State,
     balance: &Balance,
-    share_of_limit: f64,
+    fraction_of_limit: f64,
     bodies: &[PlacedBody],
 ) -> Diagnostic {
     let mut problem = format!(
         "unstable at step {}, {:.6e} s: {:.3e} J of energy were created; the time step is {:.4e} s and began at {:.3} of the largest stable one",
-        state.steps, state.time_s, balance.energy_error_j, state.time_step_s, share_of_limit
+        state.steps, state.time_s, balance.energy_error_j, state.time_step_s, fraction_of_limit
     );
     let contact = contact_culprit(state);
     let parted =
@@ -121,7 +121,7 @@ fn unstable(
     }
     let remedy = if is_unrelaxed {
         "set relaxation.enabled = true: without it, fragments that separate while they overlap are pushed apart with spurious energy"
-    } else if share_of_limit > 1.0 {
+    } else if fraction_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {
         "take a smaller run.safety_factor or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"

@@ -183,7 +183,7 @@ fn time_step(plan: &Plan) -> String {
     let limit = if choice.foreseen_s.is_finite() {
         format!(
             "{} of the largest stable one, {} s ({} Lanczos steps)",
-            significant(choice.share_of_limit(), 3),
+            significant(choice.fraction_of_limit(), 3),
             significant(choice.foreseen_s, 5),
             choice.limit.iterations,
         )

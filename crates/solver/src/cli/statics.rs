@@ -8,7 +8,7 @@ use serde_json::json;
 use super::check::size_text;
 use crate::plan::Plan;
 use crate::plan::masses;
-use crate::run::statics::Outlook;
+use crate::run::statics::StaticsEstimate;
 
 /// Keys and tables that mean nothing to such a scene.
 const UNUSED: &str = "run.rest_energy_ratio, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
@@ -17,9 +17,9 @@ const UNUSED: &str = "run.rest_energy_ratio, run.time_step, run.safety_factor, r
 /// take.
 pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
     let state = &plan.state;
-    let outlook =
-        Outlook::of(state, scene.run.end_time_s).map_err(|error| error.within(&scene.source))?;
-    let bytes = state_bytes + outlook.memory_bytes;
+    let estimate = StaticsEstimate::of(state, scene.run.end_time_s)
+        .map_err(|error| error.within(&scene.source))?;
+    let bytes = state_bytes + estimate.memory_bytes;
     write_standard_output(|out| {
         if as_json {
             let value = json!({
@@ -27,7 +27,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "particles": state.particles.len(),
                 "bonds": state.bonds.len(),
                 "bodies": plan.masses,
-                "equilibrium": outlook,
+                "equilibrium": estimate,
                 "memory_bytes": bytes,
                 "notes": plan.notes,
                 "warnings": plan.warnings,
@@ -51,10 +51,10 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
             "solves",
             &format!(
                 "equilibrium under what acts at {} s: {} unknowns, {} freedoms held; no time steps",
-                scene.run.end_time_s, outlook.unknowns, outlook.held
+                scene.run.end_time_s, estimate.unknowns, estimate.held
             ),
         )?;
-        let factor = match outlook.factor_entries {
+        let factor = match estimate.factor_entries {
             Some(entries) => format!("Cholesky, {entries} entries in the factor"),
             None => {
                 "L U, as torques act on particles that can turn: several times as long as Cholesky"

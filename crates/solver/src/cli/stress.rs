@@ -11,7 +11,7 @@ use super::in_pool;
 use crate::interrupt::Interrupt;
 use crate::stress::cases::chosen;
 use crate::stress::text::{HEAD, row};
-use crate::stress::verdict::{CaseResult, try_case};
+use crate::stress::verdict::{CaseResult, run_case};
 
 #[derive(Debug, Args)]
 pub(super) struct StressArguments {
@@ -43,10 +43,10 @@ pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result
     };
     let mut results: Vec<CaseResult> = Vec::new();
     let tried = in_pool(options.threads, |_| {
-        interrupt.heeded_by(|interrupted| {
+        interrupt.run_interruptible(|interrupted| {
             for case in &cases {
                 bar.set_message(case.name);
-                results.push(try_case(case, interrupted)?);
+                results.push(run_case(case, interrupted)?);
                 bar.inc(1);
             }
             Ok(())

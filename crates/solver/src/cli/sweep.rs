@@ -224,8 +224,9 @@ fn do_what_is_left(
         .collect();
     let bar = progress_bar(options, todo.len());
     let tell = |done: usize| bar.set_position(done as u64);
-    let worked = interrupt
-        .heeded_by(|interrupted| work(study, all, &todo, &runs, options.jobs, interrupted, &tell));
+    let worked = interrupt.run_interruptible(|interrupted| {
+        work(study, all, &todo, &runs, options.jobs, interrupted, &tell)
+    });
     bar.finish_and_clear();
     worked
 }

@@ -57,12 +57,12 @@ pub struct Mesh {
     tree: Tree,
     diagonal_m: f64,
     /// What it consists of.
-    pub content: Content,
+    pub content: MeshContent,
 }
 
 /// What a mesh consists of.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Content {
+pub struct MeshContent {
     /// Triangles with an area.
     pub triangles: usize,
     /// Triangles without, dropped.
@@ -122,7 +122,7 @@ impl Mesh {
         let sorted: Vec<Triangle> = indices.iter().map(|t| Triangle::new(corners(t))).collect();
         let features = features(&sorted, &indices, diagonal_m);
         Ok(Self {
-            content: Content {
+            content: MeshContent {
                 triangles: sorted.len(),
                 degenerate: triangles.len() - sorted.len(),
                 open_edges: features.open_edges,

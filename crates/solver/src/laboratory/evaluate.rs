@@ -75,7 +75,7 @@ pub struct Crack {
     pub is_within: bool,
     /// Fraction of the broken bonds of which each by itself is.
     #[serde(rename = "fraction_within")]
-    pub share_within: f64,
+    pub fraction_within: f64,
 }
 
 /// What came of a test.
@@ -172,9 +172,9 @@ pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
 /// None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let peak = peak(rows)?;
-    let up_to = |share: f64| {
+    let up_to = |fraction: f64| {
         rows.iter()
-            .position(|row| row.load_n() >= share * peak.load_n())
+            .position(|row| row.load_n() >= fraction * peak.load_n())
     };
     let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
     if elastic.len() < FEWEST_ROWS {
@@ -456,6 +456,6 @@ fn crack(evidence: &TestInput<'_>) -> Option<Crack> {
         spread_m: variance.sqrt(),
         within_m,
         is_within: mean.abs() <= within_m,
-        share_within: within as f64 / count,
+        fraction_within: within as f64 / count,
     })
 }

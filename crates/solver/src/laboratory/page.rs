@@ -141,8 +141,8 @@ pub fn shown(value: f64, unit: &str) -> String {
 }
 
 /// A share as a percentage with its sign.
-pub fn percent(share: f64) -> String {
-    format!("{:+.1} %", 100.0 * share)
+pub fn percent(fraction: f64) -> String {
+    format!("{:+.1} %", 100.0 * fraction)
 }
 
 /// Everything on one page that needs no other file.

@@ -180,13 +180,13 @@ impl Record {
         if *steps < loading.every {
             return false;
         }
-        let share = 1.0 / *steps as f64;
+        let fraction = 1.0 / *steps as f64;
         let row = Row {
-            time_s: share * sum.time_s,
-            travel_m: share * sum.travel_m,
-            force_n: share * sum.force_n,
-            reaction_n: share * sum.reaction_n,
-            deflection_m: share * sum.deflection_m,
+            time_s: fraction * sum.time_s,
+            travel_m: fraction * sum.travel_m,
+            force_n: fraction * sum.force_n,
+            reaction_n: fraction * sum.reaction_n,
+            deflection_m: fraction * sum.deflection_m,
         };
         self.open = Default::default();
         self.rows.push(row);
@@ -208,8 +208,8 @@ impl Record {
 }
 
 fn mean(rows: &[Row]) -> Row {
-    let share = 1.0 / rows.len() as f64;
-    let of = |value: fn(&Row) -> f64| share * rows.iter().map(value).sum::<f64>();
+    let fraction = 1.0 / rows.len() as f64;
+    let of = |value: fn(&Row) -> f64| fraction * rows.iter().map(value).sum::<f64>();
     Row {
         time_s: of(|row| row.time_s),
         travel_m: of(|row| row.travel_m),

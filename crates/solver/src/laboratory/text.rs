@@ -17,9 +17,9 @@ impl TestResult {
         if self.target_strength_pa.is_some() && !self.broken {
             let although = match self.broken_share() {
                 0.0 => "; no bond broke".to_owned(),
-                share => format!(
+                fraction => format!(
                     ", although {} % of the bonds are broken",
-                    significant(100.0 * share, 2)
+                    significant(100.0 * fraction, 2)
                 ),
             };
             doubts.push(format!(
@@ -101,7 +101,7 @@ impl TestResult {
                     shown(crack.offset_m, "m"),
                     shown(crack.spread_m, "m"),
                     shown(crack.within_m, "m"),
-                    100.0 * crack.share_within
+                    100.0 * crack.fraction_within
                 ),
             );
         }

@@ -44,7 +44,7 @@ impl<'a> Watch<'a> {
         plan: &Plan,
     ) -> Self {
         let state = &plan.state;
-        let particles = plan.sets.get(&test.body).map_or(&[][..], Vec::as_slice);
+        let particles = plan.groups.get(&test.body).map_or(&[][..], Vec::as_slice);
         let walls = scene.walls.keys().map(|name| test.crosshead.contains(name));
         let grips: Vec<String> = test.crosshead.iter().map(|name| support_of(name)).collect();
         let supports = scene.supports.keys().map(|name| grips.contains(name));

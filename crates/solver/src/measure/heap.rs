@@ -58,8 +58,8 @@ pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<
         if heap.len() == before {
             let slope = (8.0 * moments.upright_m2 / moments.across_m2).sqrt();
             let falling = -40.0 * moments.covariance_m3 / radius_m.powi(3);
-            let share = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
-            return (share * slope).atan().to_degrees();
+            let fraction = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
+            return (fraction * slope).atan().to_degrees();
         }
     }
 }

@@ -41,16 +41,16 @@ impl FragmentSummary {
 /// Fragments as rows of the table of fragments.
 pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
     let row = |fragment: &Fragment| FragmentRow {
-        id: fragment.id,
-        parent: fragment.parent,
+        fragment_id: fragment.fragment_id,
+        parent_id: fragment.parent_id,
         particles: fragment.particles,
         mass_kg: fragment.mass_kg,
         centre_m: fragment.centre_m,
         velocity_m_s: fragment.velocity_m_s,
         angular_velocity_rad_s: fragment.angular_velocity_rad_s,
         force_n: fragment.force_n,
-        size_m: fragment.size_m,
-        extent_m: fragment.extent_m,
+        equivalent_diameter_m: fragment.equivalent_diameter_m,
+        box_diagonal_m: fragment.box_diagonal_m,
     };
     fragments.iter().map(row).collect()
 }
@@ -61,9 +61,9 @@ pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
 /// Those of the files.
 pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     let row = |(id, cluster): (u32, &Cluster)| TreeRow {
-        id,
-        parent: cluster.parent,
-        born_s: cluster.born_s,
+        fragment_id: id,
+        parent_id: cluster.parent,
+        created_s: cluster.created_s,
         ended_s: cluster.ended_s,
         particles: cluster.particles,
     };
@@ -127,9 +127,9 @@ pub fn write_fragment_plots(
 
 /// Time, s, and number of fragments, with a step at every change, of all clusters that are or were.
 pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
-    let born = history.iter().map(|c| (c.born_s, 1.0));
+    let created = history.iter().map(|c| (c.created_s, 1.0));
     let ended = history.iter().filter_map(|c| c.ended_s);
-    let mut changes: Vec<(f64, f64)> = born.chain(ended.map(|time_s| (time_s, -1.0))).collect();
+    let mut changes: Vec<(f64, f64)> = created.chain(ended.map(|time_s| (time_s, -1.0))).collect();
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut count = 0.0;
@@ -148,12 +148,12 @@ pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
 /// Size, m, and share of all mass in fragments of that size and smaller ones, with a step at every
 /// size.
 pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
-    let mut share = 0.0;
+    let mut fraction = 0.0;
     let mut points = Vec::new();
     for passing in size_distribution(fragments) {
-        points.push([passing.size_m, share]);
-        share = passing.mass_fraction;
-        points.push([passing.size_m, share]);
+        points.push([passing.equivalent_diameter_m, fraction]);
+        fraction = passing.mass_fraction;
+        points.push([passing.equivalent_diameter_m, fraction]);
     }
     points
 }

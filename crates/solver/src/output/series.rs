@@ -79,7 +79,7 @@ pub fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
         state.time_step_s,
     ];
     let of_walls = state.walls.iter().flat_map(|wall| {
-        let [x, y, z] = wall.whole_push()[0].map(|f| -f);
+        let [x, y, z] = wall.total_load()[0].map(|f| -f);
         [x, y, z, wall.work_j]
     });
     // Adding 0 takes the sign from a zero.

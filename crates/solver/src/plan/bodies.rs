@@ -405,8 +405,12 @@ fn rule(kind: &BondKind) -> BondRule {
         failure.shear_strength_pa,
         failure.von_mises_strength_pa,
     ];
-    let [tension_pa, compression_pa, shear_pa, von_mises_pa] =
-        strengths.map(|s| s.unwrap_or(f64::INFINITY));
+    let [
+        tensile_strength_pa,
+        compressive_strength_pa,
+        shear_strength_pa,
+        von_mises_strength_pa,
+    ] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
     let damping = &kind.damping;
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
@@ -414,13 +418,13 @@ fn rule(kind: &BondKind) -> BondRule {
             || damping.damping_coefficient_n_s_m > 0.0
             || damping.torque_factor > 0.0,
         criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
-            tension_pa,
-            compression_pa,
-            shear_pa,
-            von_mises_pa,
+            tensile_strength_pa,
+            compressive_strength_pa,
+            shear_strength_pa,
+            von_mises_strength_pa,
         }),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
-        rate_of: failure.strain_rate_measure,
+        strain_rate_measure: failure.strain_rate_measure,
     }
 }
 

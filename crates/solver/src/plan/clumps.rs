@@ -13,7 +13,7 @@ use super::contacts::Kinds;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::shape::inertia::{of_spheres, of_union};
-use crate::shape::outer_layer::{HIDDEN, SHARE_OF_SMALLEST, outer_layer};
+use crate::shape::outer_layer::{FRACTION_OF_SMALLEST, HIDDEN, outer_layer};
 use crate::stages::inlets::angular_momentum;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, Template, reach_m, sub_spheres};
@@ -88,7 +88,7 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
         } => radius_m.min(0.5 * (Vector3::from(*to_m) - Vector3::from(*from_m)).norm()),
         WallShape::Stl { .. } => 0.0,
     });
-    skin_left_m.fold(SHARE_OF_SMALLEST * smallest_m, f64::min)
+    skin_left_m.fold(FRACTION_OF_SMALLEST * smallest_m, f64::min)
 }
 
 /// The spheres of a template that something in the scene can touch.

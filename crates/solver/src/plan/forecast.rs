@@ -6,7 +6,7 @@ use dem_io::units::significant;
 use dem_scene::{FeedRate, Scene};
 use serde::Serialize;
 
-use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
+use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
 use crate::check::laws::foreseen;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -23,7 +23,7 @@ pub struct Forecast {
     /// What bodies meet first, a sentence each.
     pub first_contacts: Vec<String>,
     /// What inlets will feed.
-    pub to_come: Vec<ToCome>,
+    pub to_come: Vec<InletForecast>,
     /// What speaks against running the scene as it stands, a sentence each. The run says at its end
     /// what came of it.
     pub warnings: Vec<String>,
@@ -31,7 +31,7 @@ pub struct Forecast {
 
 /// What an inlet will feed until the end, if all find their place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ToCome {
+pub struct InletForecast {
     /// Name of the inlet.
     pub inlet: String,
     /// Number of bodies.
@@ -66,7 +66,7 @@ pub(super) fn forecast(
 }
 
 fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut Forecast) {
-    let flying = flyers(state, bodies, 0.0);
+    let flying = free_bodies(state, bodies, 0.0);
     let end_s = scene.run.end_time_s;
     let end = significant(end_s, 4);
     let mut seen: Vec<&str> = Vec::new();
@@ -109,7 +109,7 @@ fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut 
 }
 
 /// When a body that is replaced in a region comes there, if it does so in free flight.
-fn regions(scene: &Scene, state: &State, flyer: &Flyer, until_s: f64, forecast: &mut Forecast) {
+fn regions(scene: &Scene, state: &State, flyer: &FreeBody, until_s: f64, forecast: &mut Forecast) {
     let rule = scene.replacement.get(&flyer.name);
     let Some(name) = rule.and_then(|rule| rule.enters.as_ref()) else {
         return;
@@ -134,7 +134,7 @@ fn regions(scene: &Scene, state: &State, flyer: &Flyer, until_s: f64, forecast: 
     }
 }
 
-fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<ToCome> {
+fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<InletForecast> {
     let bytes_each = arriving.map_or(0.0, |arriving| {
         let items = arriving.particles.len() + arriving.bonds.len();
         all_bytes(arriving) as f64 / items.max(1) as f64
@@ -144,7 +144,7 @@ fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<ToCome
         .map(|(inlet, asked)| {
             let mean = |of: &dyn Fn(&crate::state::clumps::Template) -> f64| -> f64 {
                 let each = inlet.templates.iter();
-                each.map(|(t, share)| share * of(&state.clumps.templates[*t as usize]))
+                each.map(|(t, fraction)| fraction * of(&state.clumps.templates[*t as usize]))
                     .sum()
             };
             let mass_kg = mean(&|template| template.mass_kg);
@@ -162,7 +162,7 @@ fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<ToCome
             let bodies = bodies.min(f64::from(inlet.count));
             let spheres = bodies * mean(&|template| template.spheres.len() as f64);
             let bonds = bodies * mean(&|template| template.bonds.len() as f64);
-            ToCome {
+            InletForecast {
                 inlet: inlet.name.clone(),
                 bodies,
                 spheres,

@@ -7,7 +7,7 @@ use dem_scene::{Initial, Scene};
 use nalgebra::Vector3;
 
 use super::bodies::check_place;
-use super::sets::{held_freedoms, particles_of};
+use super::groups::{held_degrees_of_freedom, particles_of};
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 
@@ -29,7 +29,7 @@ const MOTIONS: [&str; 6] = [
 /// or particles too far away; a motion of a freedom that a support holds.
 pub(super) fn start(
     scene: &Scene,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
     bodies: &[PlacedBody],
     state: &mut State,
 ) -> Result<()> {
@@ -38,13 +38,13 @@ pub(super) fn start(
     }
     for (name, initial) in &scene.initial {
         let place = format!("{}: [initial.{name}]", scene.source);
-        displace(&place, initial, sets, bodies, state)?;
+        displace(&place, initial, groups, bodies, state)?;
     }
     refuse_short_bonds(scene, bodies, state)?;
-    let held = held_freedoms(state.supports.iter());
+    let held = held_degrees_of_freedom(state.supports.iter());
     for (name, initial) in &scene.initial {
         let place = format!("{}: [initial.{name}]", scene.source);
-        set_moving(&place, initial, sets, &held, state)?;
+        set_moving(&place, initial, groups, &held, state)?;
     }
     Ok(())
 }
@@ -52,7 +52,7 @@ pub(super) fn start(
 fn displace(
     place: &str,
     initial: &Initial,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
     bodies: &[PlacedBody],
     state: &mut State,
 ) -> Result<()> {
@@ -68,7 +68,7 @@ fn displace(
             "write formulation = \"total\" in [bonds], or remove displacement",
         ));
     }
-    for &i in particles_of(sets, &initial.group) {
+    for &i in particles_of(groups, &initial.group) {
         let pose = &mut state.particles.poses[i as usize];
         pose.put_at((pose.place() + by_m).into());
         check_place(pose, || called(bodies, &state.clumps, i))
@@ -101,11 +101,11 @@ fn refuse_short_bonds(scene: &Scene, bodies: &[PlacedBody], state: &State) -> Re
 fn set_moving(
     place: &str,
     initial: &Initial,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
     held: &BTreeMap<u32, [bool; 6]>,
     state: &mut State,
 ) -> Result<()> {
-    let particles = particles_of(sets, &initial.group);
+    let particles = particles_of(groups, &initial.group);
     let p = &mut state.particles;
     let (mut mass_kg, mut moment) = (0.0, Vector3::zeros());
     for &i in particles {

@@ -17,7 +17,7 @@ pub const FEWEST_IN_HEAP: usize = 50;
 /// Names the measure.
 pub(super) fn refuse_valueless(
     scene: &Scene,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
     state: &State,
 ) -> Result<()> {
     for (name, measure) in &scene.measures {
@@ -37,14 +37,14 @@ pub(super) fn refuse_valueless(
             );
         }
         if let Some(with) = &measure.with
-            && let Some(shared) = shared(of, with, scene, sets)
+            && let Some(shared) = shared(of, with, scene, groups)
         {
             return refuse(
                 format!("\"{of}\" and \"{with}\" share {shared}"),
                 "measure the contact of two that have no particle in common",
             );
         }
-        if let Some(count) = few(measure, scene, sets, state) {
+        if let Some(count) = few(measure, scene, groups, state) {
             return refuse(
                 format!(
                     "an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {count}"
@@ -61,12 +61,12 @@ fn shared(
     of: &str,
     with: &str,
     scene: &Scene,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
 ) -> Option<String> {
     if of == "all" && !scene.walls.contains_key(with) {
         return Some(format!("all particles of \"{with}\""));
     }
-    let [of, with] = [of, with].map(|name| sets.get(name).map_or(&[][..], Vec::as_slice));
+    let [of, with] = [of, with].map(|name| groups.get(name).map_or(&[][..], Vec::as_slice));
     let both = of.iter().filter(|i| with.binary_search(i).is_ok()).count();
     match both {
         0 => None,
@@ -80,7 +80,7 @@ fn shared(
 fn few(
     measure: &Measure,
     scene: &Scene,
-    sets: &BTreeMap<String, Vec<u32>>,
+    groups: &BTreeMap<String, Vec<u32>>,
     state: &State,
 ) -> Option<usize> {
     if measure.quantity != Quantity::AngleOfRepose {
@@ -92,7 +92,7 @@ fn few(
     if fed.any(|(name, _)| means(name)) {
         return None;
     }
-    let standing = sets.get(of).map_or(0, Vec::len);
+    let standing = groups.get(of).map_or(0, Vec::len);
     let clumps = state.clumps.templates.iter();
     let clumps = clumps.filter(|template| means(&template.body));
     let count = standing + clumps.map(|template| template.spheres.len()).sum::<usize>();

@@ -55,10 +55,10 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
         }
     });
     let inlets = scene.inlets.iter().map(|(name, inlet)| {
-        let sum: f64 = inlet.bodies.iter().map(|(_, share)| share).sum();
+        let sum: f64 = inlet.bodies.iter().map(|(_, fraction)| fraction).sum();
         let templates = inlet.bodies.iter();
-        let templates =
-            templates.filter_map(|(name, share)| Some((template_of(name)? as u32, share / sum)));
+        let templates = templates
+            .filter_map(|(name, fraction)| Some((template_of(name)? as u32, fraction / sum)));
         Inlet {
             name: name.clone(),
             templates: templates.collect(),
@@ -126,8 +126,8 @@ fn region(entry: &SceneRegion) -> Result<Region> {
             let region = Region::Inside(triangles, bounds);
             let centre = [0, 1, 2].map(|k| 0.5 * (bounds.low[k] + bounds.high[k]));
             let is_somewhere = (0..1000).any(|n| {
-                let share = [1, 2, 3].map(|of| dem_io::random::uniform(n, &[of]));
-                region.point(share).is_some()
+                let fraction = [1, 2, 3].map(|of| dem_io::random::uniform(n, &[of]));
+                region.point(fraction).is_some()
             });
             if !is_somewhere && !region.contains(centre) {
                 return Err(Diagnostic::input(
@@ -217,8 +217,9 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
                 Feed::Number(per_s) => per_s,
                 Feed::Mass(kg_s) => {
                     let mean = inlet.templates.iter();
-                    let mean =
-                        mean.map(|(t, share)| share * state.clumps.templates[*t as usize].mass_kg);
+                    let mean = mean.map(|(t, fraction)| {
+                        fraction * state.clumps.templates[*t as usize].mass_kg
+                    });
                     kg_s / mean.sum::<f64>()
                 }
             };

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
-use crate::check::linear::{Matters, at_impact, contact_rates, largest_contact_rate_1_s2};
+use crate::check::linear::{StiffestContacts, at_impact, contact_rates, largest_contact_rate_1_s2};
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
@@ -45,12 +45,12 @@ pub struct StepChoice {
     pub platzer_eq_15_s: f64,
     /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
     /// by, unless it is adaptive.
-    pub replaced: Outlook,
+    pub replaced: StepBasis,
 }
 
 /// What a step has to be right for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outlook {
+pub struct StepBasis {
     /// Of what is there, and of what may come: the smallest.
     pub limit: Limit,
     /// Largest step that is stable in the first impacts, too, as far as they can be foreseen, s.
@@ -63,7 +63,7 @@ pub struct Outlook {
     pub step_s: f64,
 }
 
-impl Outlook {
+impl StepBasis {
     /// From a state as it stands, and `to_come`, if anything may come: see [`arriving`].
     pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
         let run = &scene.run;
@@ -106,7 +106,7 @@ impl Outlook {
             limit: found,
             foreseen_s,
             impact_speed_m_s,
-            contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state, Matters::ALL)),
+            contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state, StiffestContacts::ALL)),
             step_s,
         }
     }
@@ -123,7 +123,7 @@ impl StepChoice {
             iterations: 0,
             all_iterations: 0,
         };
-        let nothing = Outlook {
+        let nothing = StepBasis {
             limit,
             foreseen_s: f64::INFINITY,
             impact_speed_m_s: 0.0,
@@ -144,7 +144,7 @@ impl StepChoice {
     }
 
     /// Step over the smaller of both limits.
-    pub fn share_of_limit(&self) -> f64 {
+    pub fn fraction_of_limit(&self) -> f64 {
         self.step_s / self.foreseen_s.min(self.limit.step_s)
     }
 }
@@ -156,15 +156,15 @@ impl StepChoice {
 /// A given step above the limit, unless any step is allowed.
 pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
     let run = &scene.run;
-    let replaced = Outlook::of(scene, state, coming(state, true).as_mut());
-    let outlook = if run.adaptive {
-        Outlook::of(scene, state, arriving(state).as_mut())
+    let replaced = StepBasis::of(scene, state, coming(state, true).as_mut());
+    let basis = if run.adaptive {
+        StepBasis::of(scene, state, arriving(state).as_mut())
     } else {
         replaced
     };
-    let Outlook {
+    let StepBasis {
         limit, foreseen_s, ..
-    } = outlook;
+    } = basis;
     if limit.step_s.is_nan() || limit.step_s <= 0.0 {
         return Err(Diagnostic::input(
             scene.source.clone(),
@@ -193,14 +193,14 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
             }
             given
         }
-        None => run.end_time_s / (run.end_time_s / outlook.step_s).ceil(),
+        None => run.end_time_s / (run.end_time_s / basis.step_s).ceil(),
     };
     if !(step_s.is_finite() && step_s > 0.0) {
         return Err(Diagnostic::input(
             scene.source.clone(),
             format!(
                 "the time step would be {step_s} s: impacts at {:.3e} m/s, an end after {:.3e} s",
-                outlook.impact_speed_m_s, run.end_time_s
+                basis.impact_speed_m_s, run.end_time_s
             ),
             "check the units of speeds, rates and times",
         ));
@@ -210,8 +210,8 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
         given: run.time_step_s.is_some(),
         limit,
         foreseen_s,
-        impact_speed_m_s: outlook.impact_speed_m_s,
-        contact_rate_1_s2: outlook.contact_rate_1_s2,
+        impact_speed_m_s: basis.impact_speed_m_s,
+        contact_rate_1_s2: basis.contact_rate_1_s2,
         rayleigh_s: f64::INFINITY,
         platzer_eq_15_s: platzer_eq_15_s(state),
         replaced,

@@ -19,7 +19,7 @@ use crate::state::contacts::ContactHistory;
 use crate::state::walls::{Wall, WallContact, WallModel};
 
 pub(super) use self::surface::surface_of;
-use self::surface::{Sizes, oddities, question_size};
+use self::surface::{Sizes, question_size, surface_warnings};
 
 /// Fraction of a belt's speed that may be off its plane: what rounding of written numbers costs.
 const OFF_PLANE: f64 = 1e-6;
@@ -119,7 +119,9 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
                 *vertex = from_pivot(*vertex);
             }
             let mesh = Mesh::from_surface(&surface)?;
-            notes.extend(oddities(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")));
+            notes.extend(
+                surface_warnings(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")),
+            );
             Shape::Mesh(mesh)
         }
     })
@@ -232,7 +234,7 @@ fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallCon
     let history = if keeps {
         ContactHistory::pressed_by(overlap_m)
     } else {
-        ContactHistory::parted_at(overlap_m)
+        ContactHistory::separated_at(overlap_m)
     };
     WallContact {
         particle,

@@ -144,7 +144,7 @@ impl<'a> Run<'a> {
             bodies,
             probes,
             watch,
-            watchdog: Watchdog::new(choice.share_of_limit()),
+            watchdog: Watchdog::new(choice.fraction_of_limit()),
             limits,
             progress,
             schedule,

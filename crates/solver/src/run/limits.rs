@@ -8,8 +8,8 @@ use super::events::{change, look_anew_for_near, new_step};
 use super::files::Files;
 use super::progress::Progress;
 use crate::check::limit::{Bound, bound_near, limit};
-use crate::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
-use crate::plan::time_step::{FARTHEST, Outlook, StepChoice, arriving, impact_step_s};
+use crate::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
+use crate::plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
 use crate::stages::totals::kinetic_energy;
 use crate::state::State;
@@ -24,7 +24,7 @@ const STRAIN_EVERY: u64 = 64;
 const MORE_STRAIN: f64 = 0.02;
 /// Steps between two looks at the contacts: a collision takes more. All other looks are at
 /// multiples of it, too.
-pub(super) const LOOKS_EVERY: u64 = 8;
+pub(super) const CHECK_EVERY_STEPS: u64 = 8;
 /// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
 const STIFFER: f64 = 1.2;
 /// The step is looked at again when bodies are faster by this factor, on the mean of their mass,
@@ -61,7 +61,7 @@ struct Adaptive<'a> {
     scene: &'a Scene,
     arriving: Option<State>,
     /// Once clumps have become clusters.
-    replaced: Outlook,
+    replaced: StepBasis,
 }
 
 impl<'a> Limits<'a> {
@@ -107,10 +107,10 @@ impl<'a> Limits<'a> {
             }
         }
         let touches = state.contacts.is_some();
-        let look_at_contacts = touches && state.steps.is_multiple_of(LOOKS_EVERY);
+        let look_at_contacts = touches && state.steps.is_multiple_of(CHECK_EVERY_STEPS);
         if look_at_contacts {
             let above_1_s2 = STIFFER * progress.contact_rate_1_s2;
-            let matters = Matters {
+            let matters = StiffestContacts {
                 above_1_s2,
                 extremes: self.extremes,
             };
@@ -177,24 +177,24 @@ impl<'a> Limits<'a> {
         };
         let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
         if replaced {
-            let outlook = adaptive.replaced;
-            progress.allow_as_well_for(&outlook);
+            let basis = adaptive.replaced;
+            progress.allow_as_well_for(&basis);
             progress.had_bonds = true;
-            self.take(state, outlook.step_s, "replacement", progress, files)?;
-        } else if state.steps >= progress.next_look || has_lost_all_bonds {
-            let outlook = Outlook::of(adaptive.scene, state, adaptive.arriving.as_mut());
-            let iterations = outlook.limit.all_iterations as u64;
+            self.take(state, basis.step_s, "replacement", progress, files)?;
+        } else if state.steps >= progress.next_check || has_lost_all_bonds {
+            let basis = StepBasis::of(adaptive.scene, state, adaptive.arriving.as_mut());
+            let iterations = basis.limit.all_iterations as u64;
             let pause = LOOK_EVERY.max(STEPS_PER_ITERATION * iterations);
-            progress.next_look = (state.steps + pause).next_multiple_of(LOOKS_EVERY);
+            progress.next_check = (state.steps + pause).next_multiple_of(CHECK_EVERY_STEPS);
             progress.had_bonds = !state.bonds.is_empty();
-            progress.allow_for(&outlook);
+            progress.allow_for(&basis);
             progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
             progress.strain = progress.bound_strain;
-            let is_larger = outlook.step_s >= LARGER * state.time_step_s;
+            let is_larger = basis.step_s >= LARGER * state.time_step_s;
             let is_unstable =
-                state.time_step_s > adaptive.scene.run.safety_factor * outlook.foreseen_s;
-            if is_larger || is_unstable || state.time_step_s > SMALLER * outlook.step_s {
-                self.set(state, outlook.step_s, "adaptive", progress, files)?;
+                state.time_step_s > adaptive.scene.run.safety_factor * basis.foreseen_s;
+            if is_larger || is_unstable || state.time_step_s > SMALLER * basis.step_s {
+                self.set(state, basis.step_s, "adaptive", progress, files)?;
             }
         }
         Ok(())
@@ -307,7 +307,7 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
 
 /// A particle that has gone through a wall, or two that are pressed into each other so far that
 /// they would go through each other, as a reason to stop.
-pub(super) fn went_through(
+pub(super) fn tunnelling(
     state: &State,
     scene: &Scene,
     bodies: &[PlacedBody],

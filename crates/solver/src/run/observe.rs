@@ -10,7 +10,7 @@ use super::begin::Run;
 use super::events::{write_breaks, write_population, write_sleep, write_splits};
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
-use super::limits::{LOOKS_EVERY, went_through};
+use super::limits::{CHECK_EVERY_STEPS, tunnelling};
 use super::schedule::{due, next};
 use crate::measure::{read_probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
@@ -69,7 +69,7 @@ impl Run<'_> {
     /// # Errors
     /// Those of the files.
     pub(super) fn observe(&mut self, tell: &dyn Fn(f64)) -> Result<Option<Ended>> {
-        if let Some(problem) = went_through(&self.state, self.scene, &self.bodies) {
+        if let Some(problem) = tunnelling(&self.state, self.scene, &self.bodies) {
             return Ok(Some(self.ended_early("instability", problem)));
         }
         self.note_step()?;
@@ -142,7 +142,7 @@ impl Run<'_> {
         let since = self
             .state
             .steps
-            .is_multiple_of(LOOKS_EVERY)
+            .is_multiple_of(CHECK_EVERY_STEPS)
             .then(Instant::now);
         let (bodies, files) = (&self.bodies, self.files.as_mut());
         let followed =
@@ -177,7 +177,7 @@ impl Run<'_> {
         if state.steps.is_multiple_of(EDGES_EVERY) {
             seen.look_at_edges(state, bodies);
         }
-        if state.steps.is_multiple_of(LOOKS_EVERY) {
+        if state.steps.is_multiple_of(CHECK_EVERY_STEPS) {
             seen.look_at_contacts(state, self.scene, bodies);
         }
         if let Some(files) = &mut self.files {

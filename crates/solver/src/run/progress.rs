@@ -9,7 +9,7 @@ use super::schedule::{OutputSchedule, first_after};
 use super::seen::Seen;
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
-use crate::plan::time_step::{Outlook, StepChoice};
+use crate::plan::time_step::{StepBasis, StepChoice};
 use crate::stages::ledger::{Balance, over};
 use crate::state::State;
 
@@ -45,7 +45,7 @@ pub struct Progress {
     /// Speed of the impacts that the step allows for, m/s.
     pub(super) impact_speed_m_s: f64,
     /// Step at which an adaptive time step is looked at again, at the latest.
-    pub(super) next_look: u64,
+    pub(super) next_check: u64,
     /// Whether there were bonds when it was looked at last.
     pub(super) had_bonds: bool,
     /// Smallest and largest time step so far, s.
@@ -105,23 +105,23 @@ impl Progress {
     }
 
     /// From now on the step is right for this.
-    pub(super) fn allow_for(&mut self, outlook: &Outlook) {
-        self.limit_s = outlook.foreseen_s;
-        self.bound = outlook.limit.bound();
+    pub(super) fn allow_for(&mut self, basis: &StepBasis) {
+        self.limit_s = basis.foreseen_s;
+        self.bound = basis.limit.bound();
         self.bound_rates = [0.0; 2];
-        self.contact_rate_1_s2 = outlook.contact_rate_1_s2;
-        self.impact_speed_m_s = outlook.impact_speed_m_s;
+        self.contact_rate_1_s2 = basis.contact_rate_1_s2;
+        self.impact_speed_m_s = basis.impact_speed_m_s;
     }
 
     /// From now on the step is right for this as well as for what it was right for.
-    pub(super) fn allow_as_well_for(&mut self, outlook: &Outlook) {
-        if outlook.limit.step_s < self.bound.step_s {
-            self.bound = outlook.limit.bound();
+    pub(super) fn allow_as_well_for(&mut self, basis: &StepBasis) {
+        if basis.limit.step_s < self.bound.step_s {
+            self.bound = basis.limit.bound();
             self.bound_rates = [0.0; 2];
         }
-        self.limit_s = self.limit_s.min(outlook.foreseen_s);
-        self.contact_rate_1_s2 = self.contact_rate_1_s2.max(outlook.contact_rate_1_s2);
-        self.impact_speed_m_s = self.impact_speed_m_s.max(outlook.impact_speed_m_s);
+        self.limit_s = self.limit_s.min(basis.foreseen_s);
+        self.contact_rate_1_s2 = self.contact_rate_1_s2.max(basis.contact_rate_1_s2);
+        self.impact_speed_m_s = self.impact_speed_m_s.max(basis.impact_speed_m_s);
     }
 
     /// The time step has become this, s.
@@ -206,9 +206,9 @@ impl Progress {
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }
-        if let Some(share) = rest {
+        if let Some(fraction) = rest {
             let settled = state.time_s >= last_change_s(state);
-            let calm = settled && balance.kinetic_j <= share * balance.elastic_j();
+            let calm = settled && balance.kinetic_j <= fraction * balance.elastic_j();
             self.calm_since_s = calm.then(|| self.calm_since_s.unwrap_or(state.time_s));
         }
     }

@@ -7,7 +7,7 @@ use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
-use crate::check::flight::{Flyer, Meeting, can_meet, flyers};
+use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
 use crate::state::State;
@@ -288,7 +288,7 @@ impl Seen {
             return Vec::new();
         }
         // Between a kick and the drift after it.
-        let flying = flyers(state, bodies, 0.5 * state.time_step_s);
+        let flying = free_bodies(state, bodies, 0.5 * state.time_step_s);
         let mut warnings = Vec::new();
         let mut unnamed = 0;
         for name in scene
@@ -355,11 +355,11 @@ impl Seen {
         let pieces = pieces_by_body(state, fragments);
         let apart_j: f64 = pieces.values().map(|pieces| kinetic_apart_j(pieces)).sum();
         let count: usize = pieces.values().map(Vec::len).sum();
-        let share = apart_j / self.largest_kinetic_j;
-        if can_break && share > FLYING {
+        let fraction = apart_j / self.largest_kinetic_j;
+        if can_break && fraction > FLYING {
             warnings.push(format!(
                 "{count} pieces still fly apart at the end, with {} % of the largest kinetic energy of the run: what they hit later may break them further; set run.end_time later than {} s",
-                significant(100.0 * share, 2),
+                significant(100.0 * fraction, 2),
                 significant(scene.run.end_time_s, 4)
             ));
         }
@@ -375,7 +375,7 @@ fn is_present(state: &State, bodies: &[PlacedBody], name: &str) -> bool {
 }
 
 /// What will become of a body in flight, in words.
-fn outlook(flyer: &Flyer, state: &State, flying: &[Flyer]) -> String {
+fn outlook(flyer: &FreeBody, state: &State, flying: &[FreeBody]) -> String {
     let gaps = state
         .walls
         .iter()
@@ -423,9 +423,9 @@ fn pieces_by_body<'a>(
     };
     for fragment in fragments
         .iter()
-        .filter(|fragment| fragment.parent.is_some())
+        .filter(|fragment| fragment.parent_id.is_some())
     {
-        let mut root = fragment.id;
+        let mut root = fragment.fragment_id;
         while let Some(parent) = clusters.history[root as usize].parent {
             root = parent;
         }

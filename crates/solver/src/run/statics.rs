@@ -9,16 +9,16 @@
 //! turns about those axes. Where the particle turns far about the others as well, that depends on
 //! its way, which here is that of the Newton steps.
 
+pub mod degrees_of_freedom;
+pub mod displacements;
+mod estimate;
 pub mod factor;
-pub mod freedoms;
 pub mod matrix;
-pub mod moves;
 pub mod newton;
-mod outlook;
 mod record;
 
+pub use estimate::StaticsEstimate;
 pub use newton::{Cause, Equilibrium, Unsolved, equilibrium};
-pub use outlook::Outlook;
 
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -70,13 +70,13 @@ pub fn run(
     let end_s = scene.run.end_time_s;
     let clock = Instant::now();
     let processor_before_s = processor_time_s();
-    let goes_on = |share: f64| {
-        tell(share);
+    let goes_on = |fraction: f64| {
+        tell(fraction);
         !settings.interrupted.load(Ordering::Relaxed)
     };
     let found = equilibrium(&mut state, end_s, &goes_on);
     let found = found.map_err(|unsolved| problem(&unsolved, scene))?;
-    come_to_rest(&mut state, end_s, found.newton_steps as u64);
+    set_at_rest(&mut state, end_s, found.newton_steps as u64);
     let wall_s = clock.elapsed().as_secs_f64();
     let processor_s = processor_time_s().zip(processor_before_s);
 
@@ -103,7 +103,7 @@ pub fn run(
 
 /// Makes of a state whose poses are in equilibrium one that has rested there for one long step: at
 /// `end_s`, without velocities, with the reactions of its supports.
-pub fn come_to_rest(state: &mut State, end_s: f64, steps: u64) {
+pub fn set_at_rest(state: &mut State, end_s: f64, steps: u64) {
     let load = loads(state, end_s);
     for motion in &mut state.particles.motions {
         *motion = Motion {
@@ -133,8 +133,9 @@ pub fn come_to_rest(state: &mut State, end_s: f64, steps: u64) {
 /// What went wrong, for a person.
 fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
     let place = scene.source.clone();
-    let share = significant(100.0 * unsolved.share, 4);
-    let reached = format!("an equilibrium was found for {share} % of the loads and displacements");
+    let fraction = significant(100.0 * unsolved.fraction, 4);
+    let reached =
+        format!("an equilibrium was found for {fraction} % of the loads and displacements");
     match unsolved.cause {
         Cause::Pivot => Diagnostic::unstable(
             place,

@@ -16,7 +16,7 @@ pub const HIDDEN: f64 = 0.05;
 
 /// Of the smallest sphere that clumps can meet, the share that balls have which cannot get in: less
 /// than 1, for edges and corners are further from such balls.
-pub const SHARE_OF_SMALLEST: f64 = 0.7;
+pub const FRACTION_OF_SMALLEST: f64 = 0.7;
 
 /// How far the centre of a ball is from the corner of three walls at right angles that it touches
 /// from within, in its radii. For edges and faces it is less.

@@ -17,7 +17,7 @@ use crate::stages::motion::CHUNK;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
-use crate::state::partitions::{Batch, Computed, Partition, Which};
+use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
 
 /// Forces of bonds.
 pub const BONDS: Stage = Stage {
@@ -220,7 +220,7 @@ impl LaneWork for PartitionWork<'_> {
                 computed.compared += which.count();
             }
             match which {
-                Which::Run(range) => {
+                BondSelection::Run(range) => {
                     for block in blocks_of(range) {
                         fetch_second_ends(bonds, block, poses, wrenches, particles);
                         let four = BondGroup::of_block(bonds, block, range);
@@ -239,14 +239,14 @@ impl LaneWork for PartitionWork<'_> {
                         }
                     }
                 }
-                Which::Own(list) | Which::Border(list) => {
+                BondSelection::Own(list) | BondSelection::Border(list) => {
                     for some in list.chunks(BLOCK) {
                         let four = BondGroup::of_list(bonds, some);
                         let numbers = &BondBlock::of(bonds, four.numbers);
                         for first in (0..BLOCK).step_by(T::COUNT) {
                             let found = kind.forces::<T>(proof, &four, numbers, first, poses);
                             four.add(first, found.force_on_b, found.torques, wrenches, particles);
-                            if matches!(which, Which::Own(_)) {
+                            if matches!(which, BondSelection::Own(_)) {
                                 list_failing(
                                     bonds,
                                     &four,
@@ -320,7 +320,7 @@ impl Kind {
         );
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
-            let [used, factor] = screen.used_and_factor(&bond_response.load, radius_m);
+            let [used, factor] = screen.utilisation_and_factor(&bond_response.load, radius_m);
             beyond = (used - factor.scale(NEARLY)).values();
         }
         Found {
@@ -398,7 +398,7 @@ mod tests {
                 damped: false,
                 criteria: Some(criteria),
                 strengthening_from_1_s: None,
-                rate_of: dem_scene::StrainRateMeasure::Elongation,
+                strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
             }]),
             ..Bonds::default()
         };
@@ -433,31 +433,31 @@ mod tests {
     }
 
     const NEVER: Criteria = Criteria {
-        tension_pa: f64::INFINITY,
-        compression_pa: f64::INFINITY,
-        shear_pa: f64::INFINITY,
-        von_mises_pa: f64::INFINITY,
+        tensile_strength_pa: f64::INFINITY,
+        compressive_strength_pa: f64::INFINITY,
+        shear_strength_pa: f64::INFINITY,
+        von_mises_strength_pa: f64::INFINITY,
     };
 
     #[test]
     fn as_many_lanes_as_there_are_give_the_bits_of_one() {
         let tension = Criteria {
-            tension_pa: 1.5,
+            tensile_strength_pa: 1.5,
             ..NEVER
         };
         let compression = Criteria {
-            compression_pa: 0.7,
+            compressive_strength_pa: 0.7,
             ..NEVER
         };
         let shear = Criteria {
-            shear_pa: 0.6,
+            shear_strength_pa: 0.6,
             ..NEVER
         };
         let all = Criteria {
-            tension_pa: 2.0,
-            compression_pa: 2.0,
-            shear_pa: 2.0,
-            von_mises_pa: 3.0,
+            tensile_strength_pa: 2.0,
+            compressive_strength_pa: 2.0,
+            shear_strength_pa: 2.0,
+            von_mises_strength_pa: 3.0,
         };
         for criteria in [tension, compression, shear, all] {
             for is_scattered in [false, true] {

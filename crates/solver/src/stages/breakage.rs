@@ -122,7 +122,7 @@ fn leave_out_broken(state: &mut State) {
         .iter()
         .map(Partition::own_bonds)
         .sum();
-    let broken = state.broken_count - state.broken_gone;
+    let broken = state.broken_count - state.broken_removed;
     let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
     let whole = state.bonds.len() as u64 - broken - asleep;
     if (computed as u64 - whole) * STALE >= computed as u64 {
@@ -184,7 +184,7 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
         let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
         let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
         let length_m = bonds.initial_length_m(at);
-        let rate_1_s = match rule.rate_of {
+        let rate_1_s = match rule.strain_rate_measure {
             StrainRateMeasure::Elongation => elongation_rate(&c, &velocities, length_m),
             StrainRateMeasure::RelativeVelocity => {
                 (velocities[1] - velocities[0]).norm() / length_m

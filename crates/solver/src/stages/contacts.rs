@@ -12,7 +12,7 @@ use self::close::{close_m, look};
 use self::input::StepInput;
 use super::bonds::any_bond;
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::physics::contact::assembly::{Remembered, assemble};
+use crate::physics::contact::assembly::{StoredContact, assemble};
 use crate::physics::contact::kinematics::{ContactSphere, contact_kinematics};
 use crate::physics::contact::law::{ContactWork, Rolling};
 use crate::physics::contact::rolling::RollingFriction;
@@ -485,7 +485,7 @@ impl StepInput<'_> {
         let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
         let touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
-        let before = Remembered {
+        let before = StoredContact {
             springs: ContactSprings {
                 tangential_m: Vec3(sx, sy, sz),
                 rolling_rad,
@@ -499,7 +499,7 @@ impl StepInput<'_> {
         };
         let least_overlap = self.contacts.model.least_overlap;
         let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
-        let Remembered {
+        let StoredContact {
             springs,
             damped,
             origin_m,

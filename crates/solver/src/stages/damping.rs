@@ -11,7 +11,7 @@ use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
-use crate::state::partitions::{Batch, Partition, Which};
+use crate::state::partitions::{Batch, BondSelection, Partition};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 19.3;
@@ -110,7 +110,7 @@ impl LaneWork for PartitionWork<'_> {
             }
             partition.computed.damped += which.count();
             match which {
-                Which::Run(range) => {
+                BondSelection::Run(range) => {
                     for block in blocks_of(range) {
                         fetch_second_ends(bonds, block, poses, resisting, particles);
                         let four = BondGroup::of_block(bonds, block, range);
@@ -121,7 +121,7 @@ impl LaneWork for PartitionWork<'_> {
                         }
                     }
                 }
-                Which::Own(list) | Which::Border(list) => {
+                BondSelection::Own(list) | BondSelection::Border(list) => {
                     for some in list.chunks(BLOCK) {
                         let four = BondGroup::of_list(bonds, some);
                         for first in (0..BLOCK).step_by(T::COUNT) {

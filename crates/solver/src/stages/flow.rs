@@ -28,7 +28,7 @@ pub const FLOW: Stage = Stage {
 
 /// Bodies come and go, between a kick and the drift after it. Returns how many inlets and outlets
 /// were looked at.
-pub fn let_bodies_come_and_go(state: &mut State) -> usize {
+pub fn apply_inlets_and_outlets(state: &mut State) -> usize {
     let leaving = leaving(state);
     let coming = coming(state);
     if !(leaving.is_empty() && coming.is_empty()) {

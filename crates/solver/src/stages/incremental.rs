@@ -11,7 +11,7 @@ use crate::stages::blocks::for_each_partition;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Particles, Pose, Wrench};
-use crate::state::partitions::{Batch, Partition, Which};
+use crate::state::partitions::{Batch, BondSelection, Partition};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const HISTORY_NS: f64 = 37.6;
@@ -140,8 +140,10 @@ fn of_partition(bonds: &Bonds, poses: &[Pose], partition: &mut Partition, wrench
             }
         };
         match which {
-            Which::Own(list) | Which::Border(list) => list.iter().for_each(|&at| add(at as usize)),
-            Which::Run(range) => range.clone().for_each(&mut add),
+            BondSelection::Own(list) | BondSelection::Border(list) => {
+                list.iter().for_each(|&at| add(at as usize))
+            }
+            BondSelection::Run(range) => range.clone().for_each(&mut add),
         }
     }
 }

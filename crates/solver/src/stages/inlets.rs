@@ -108,11 +108,11 @@ fn next_body(
     let number = u64::from(come.bodies);
     let random = |of: u64, attempt: u32| uniform(seed, &[n as u64, number, of, u64::from(attempt)]);
     let which = {
-        let share = random(0, 0);
+        let fraction = random(0, 0);
         let mut sum = 0.0;
         let chosen = inlet.templates.iter().find(|(_, part)| {
             sum += part;
-            share < sum
+            fraction < sum
         });
         chosen.or(inlet.templates.last())?.0
     };

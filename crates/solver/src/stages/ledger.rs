@@ -16,7 +16,7 @@ use crate::state::State;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
-use crate::state::walls::{Push, Wall};
+use crate::state::walls::{Wall, WallLoad};
 use serde::Serialize;
 
 /// The ledgers of energy and momentum.
@@ -105,7 +105,7 @@ pub fn opened(state: &State) -> EnergyLedger {
         let stretch = 1e-6 * bonds.initial_length_m(at);
         0.5 * bonds.normal(at) * stretch * stretch
     };
-    ledger.floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
+    ledger.rounding_floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
     let pressed = state.contacts.as_ref();
     let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
     let pressed = pressed
@@ -116,7 +116,7 @@ pub fn opened(state: &State) -> EnergyLedger {
             .sum::<f64>();
     let kinetic = kinetic_energy(p, |i| p.motions[i]) + clumps.kinetic_j();
     ledger.opening_j = kinetic + elastic + pressed;
-    ledger.scale_j = ledger.opening_j.max(ledger.floor_j);
+    ledger.scale_j = ledger.opening_j.max(ledger.rounding_floor_j);
     let (momentum, scales) = momenta(p, clumps, about_m);
     [ledger.momentum, ledger.angular_momentum] = momentum;
     [ledger.momentum_scale, ledger.angular_momentum_scale] = scales;
@@ -188,7 +188,7 @@ impl Balance {
 
 /// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to
 /// come (1).
-fn wall_power_w(wall: &Wall, push: &Push, step: usize) -> f64 {
+fn wall_power_w(wall: &Wall, push: &WallLoad, step: usize) -> f64 {
     push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
 }
 

@@ -6,7 +6,7 @@
 use super::clumps;
 use super::contacts::list_contacts;
 use super::pieces::clusters_bytes;
-use super::sleep::{begins_to_move, disturbed, keep_touches, wake};
+use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::list_near;
 use crate::state::State;
@@ -65,7 +65,7 @@ pub fn renew_lists(state: &mut State) -> usize {
     }
     let mut listed = 0;
     clumps::place_all(&state.clumps, &mut state.particles);
-    keep_touches(state);
+    freeze_contacts(state);
     loop {
         list_awake(state);
         listed += state.particles.len();

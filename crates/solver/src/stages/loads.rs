@@ -2,7 +2,7 @@
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
-use crate::state::loads::SetLoad;
+use crate::state::loads::GroupLoad;
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Loads.
@@ -42,7 +42,7 @@ pub fn apply_loads(state: &mut State) -> usize {
 
 /// Adds the loads of the kick at this time to the wrenches. `steps_s`: the step before and the one
 /// to come.
-pub fn add_loads(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], wrenches: &mut [Wrench]) {
+pub fn add_loads(loads: &[GroupLoad], time_s: f64, steps_s: [f64; 2], wrenches: &mut [Wrench]) {
     for load in loads {
         let factor = load.factor_in_kick(time_s, steps_s);
         for &particle in &load.particles {
@@ -56,8 +56,13 @@ pub fn add_loads(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], wrenches: &m
 }
 
 /// Power of the loads of the kick at this time on particles moving so, W.
-pub fn loads_power_w(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], motions: &[Motion]) -> f64 {
-    let power = |load: &SetLoad| {
+pub fn loads_power_w(
+    loads: &[GroupLoad],
+    time_s: f64,
+    steps_s: [f64; 2],
+    motions: &[Motion],
+) -> f64 {
+    let power = |load: &GroupLoad| {
         let of_one = |&particle: &u32| {
             let motion = &motions[particle as usize];
             (0..3)
@@ -74,7 +79,7 @@ pub fn loads_power_w(loads: &[SetLoad], time_s: f64, steps_s: [f64; 2], motions:
 
 /// Force of all loads of the kick at this time together, N, and their torque about a point, N m.
 pub fn loads_resultant(
-    loads: &[SetLoad],
+    loads: &[GroupLoad],
     time_s: f64,
     steps_s: [f64; 2],
     poses: &[Pose],

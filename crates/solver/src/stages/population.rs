@@ -37,14 +37,14 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let goes = |id: u32| leaving.binary_search(&id).is_ok() || stiffens(id);
     rebuilt.keep_free(clusters.as_ref(), goes);
-    let mut born = rebuilt.replace_clumps(&to_clusters, &state.clumps);
+    let mut created = rebuilt.replace_clumps(&to_clusters, &state.clumps);
     rebuilt.keep_clumps(&mut state.clumps, &to_clusters, &leaving);
     rebuilt.stiffen(&mut state.clumps, to_clumps, clusters.as_ref());
     let mut history = clusters.as_ref().map_or(Vec::new(), |c| c.history.clone());
     rebuilt.receive(&mut state.clumps, coming, &mut history, state.time_s);
     state.clusters = clusters;
-    for born in &born {
-        history[born.clump.cluster as usize].particles = born.template.spheres.len() as u32;
+    for created in &created {
+        history[created.clump.cluster as usize].particles = created.template.spheres.len() as u32;
     }
     for clump in &state.clumps.all {
         let outer = state.clumps.template(clump).outer.len();
@@ -68,7 +68,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     near.sort_unstable();
     state.clumps.set_near(near);
     state.particles = new;
-    let bonds = change_bonds(state, &particles, &mut born);
+    let bonds = change_bonds(state, &particles, &mut created);
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
     count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
@@ -76,8 +76,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         // They are made to belong together above.
         let _ = clusters.rebuild(&state.bonds);
     }
-    for born in &born {
-        state.ledger.gain(strain_of(born, state));
+    for created in &created {
+        state.ledger.gain(strain_of(created, state));
     }
     count_sleepers(state);
     let pressed_j = pressed_j(state);
@@ -86,15 +86,15 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         particles,
         bonds,
         free: state.particles.free as u32,
-        born,
+        created,
     }
 }
 
 /// Elastic energy that the bonds of a new cluster bring, J: a fragment has the strain that it had
 /// when it became a clump.
-fn strain_of(born: &NewCluster, state: &State) -> f64 {
+fn strain_of(created: &NewCluster, state: &State) -> f64 {
     let poses = &state.particles.poses;
-    let bonds = born.first_bond..born.first_bond + born.template.bonds.len();
+    let bonds = created.first_bond..created.first_bond + created.template.bonds.len();
     bonds
         .map(|at| state.bonds.forces(at, poses).energy.total())
         .sum()
@@ -144,7 +144,7 @@ impl<'a> Rebuilt<'a> {
 
     /// Clumps that become clusters, whose particles move by themselves from now on.
     fn replace_clumps(&mut self, to_clusters: &[usize], clumps: &Clumps) -> Vec<NewCluster> {
-        let mut born = Vec::new();
+        let mut created = Vec::new();
         for &at in to_clusters {
             let clump = clumps.all[at];
             let template = Arc::clone(clumps.template(&clump));
@@ -154,14 +154,14 @@ impl<'a> Rebuilt<'a> {
                 self.numbers[clump.first as usize + n] = first_particle as u32 + sphere;
             }
             self.label(clump.cluster, Some(template.material));
-            born.push(NewCluster {
+            created.push(NewCluster {
                 clump,
                 template,
                 first_particle,
                 first_bond: 0,
             });
         }
-        born
+        created
     }
 
     /// Clumps that stay clumps, and their spheres.
@@ -217,7 +217,7 @@ impl<'a> Rebuilt<'a> {
             clump.cluster = history.len() as u32;
             history.push(Cluster {
                 parent: None,
-                born_s: time_s,
+                created_s: time_s,
                 ended_s: None,
                 particles: template.outer.len() as u32,
             });
@@ -277,7 +277,7 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
 
 /// Bonds of particles that are still there, and those of the clusters born. Returns how they are
 /// counted now.
-fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -> Vec<u32> {
+fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]) -> Vec<u32> {
     let free = state.particles.free as u32;
     // Those of clumps and of what has gone are beyond.
     let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
@@ -293,7 +293,7 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -
         .collect();
     if (count as usize) < bonds.len() {
         let gone = (0..bonds.len()).filter(|&at| bonds[at] == REMOVED);
-        state.broken_gone += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
+        state.broken_removed += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
         let old = std::mem::take(&mut state.bonds);
         state.bonds.rules.clone_from(&old.rules);
         for at in (0..old.len()).filter(|&at| bonds[at] != REMOVED) {
@@ -304,13 +304,13 @@ fn change_bonds(state: &mut State, particles: &[u32], born: &mut [NewCluster]) -
             *ends = now(*ends);
         }
     }
-    for born in born {
-        born.first_bond = state.bonds.len();
-        let template = &born.template;
-        let first = born.first_particle as u32;
+    for created in created {
+        created.first_bond = state.bonds.len();
+        let template = &created.template;
+        let first = created.first_particle as u32;
         for (at, ends) in template.bonds.ends.iter().enumerate() {
             let factor = template.scatter.map_or(1.0, |scatter| {
-                let body = body_key(&template.body, born.clump.instance);
+                let body = body_key(&template.body, created.clump.instance);
                 let pair = ends.map(|end| u64::from(template.file_number[end as usize]));
                 strength_factor(scatter.seed, body, pair, scatter.modulus)
             });
@@ -376,7 +376,7 @@ fn count_anew(
                 contacts.materials[now as usize] = old_materials[i];
                 place
             }
-            None => &mut contacts.lost_by_gone_j,
+            None => &mut contacts.lost_by_removed_j,
         };
         for k in 0..2 {
             booked[k] += old_lost_j[i][k];

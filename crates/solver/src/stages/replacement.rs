@@ -106,19 +106,19 @@ fn swap(state: &mut State, to_clusters: Vec<usize>, causes: &[&'static str]) {
         ..TopologyChange::default()
     };
     let renumbered = apply_topology_change(state, changes);
-    for born in &renumbered.born {
-        let base = state.base_of(born.clump.template);
-        let of_scene = (base, born.clump.instance);
+    for created in &renumbered.created {
+        let base = state.base_of(created.clump.template);
+        let of_scene = (base, created.clump.instance);
         state
             .population
             .base_of_cluster
-            .insert(born.clump.cluster, of_scene);
+            .insert(created.clump.cluster, of_scene);
     }
-    for (born, cause) in renumbered.born.iter().zip(causes) {
-        let (clump, template) = (&born.clump, &born.template);
+    for (created, cause) in renumbered.created.iter().zip(causes) {
+        let (clump, template) = (&created.clump, &created.template);
         let p = &state.particles;
         let (mut mass, mut momentum, mut kinetic) = (0.0, Vector3::zeros(), 0.0);
-        for i in born.first_particle..born.first_particle + template.spheres.len() {
+        for i in created.first_particle..created.first_particle + template.spheres.len() {
             let motion = &p.motions[i];
             mass += 1.0 / motion.inverse_mass;
             momentum += Vector3::from(motion.velocity_m_s) / motion.inverse_mass;

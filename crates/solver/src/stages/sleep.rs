@@ -19,7 +19,7 @@ use crate::state::events::TopologyChange;
 use crate::state::particles::Wrench;
 use crate::state::partitions::divide_awake;
 use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep};
-use crate::state::walls::{Push, Wall};
+use crate::state::walls::{Wall, WallLoad};
 use dem_io::disjoint::{find, join};
 use dem_io::units::significant;
 
@@ -392,7 +392,7 @@ fn put_back(
 }
 
 /// Takes what contacts of sleepers remember from the lists, and keeps it.
-pub fn keep_touches(state: &mut State) {
+pub fn freeze_contacts(state: &mut State) {
     let (Some(sleep), Some(contacts)) = (&mut state.sleep, &state.contacts) else {
         return;
     };
@@ -440,11 +440,11 @@ pub fn keep_touches(state: &mut State) {
 /// What walls do to those who sleep on them.
 fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
     for wall in walls.iter_mut() {
-        wall.slept_on = Push::default();
+        wall.load_by_sleepers = WallLoad::default();
     }
     for FrozenWallContact { wall, push, .. } in touches {
         walls[*wall]
-            .slept_on
+            .load_by_sleepers
             .add(push.force_n, push.torque_n_m, push.belt_w);
     }
 }

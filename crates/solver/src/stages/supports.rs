@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::state::events::Break;
 use crate::state::loads::factor_at;
 use crate::state::particles::{Motion, Particles};
-use crate::state::supports::{Held, Phase, SetSupport};
+use crate::state::supports::{GroupSupport, HeldParticle, SupportPhase};
 
 /// Supports.
 pub const SUPPORTS: Stage = Stage {
@@ -55,7 +55,7 @@ pub fn hold_supports(state: &mut State) -> usize {
 }
 
 /// Notes how the held particles move before the kick.
-pub fn remember(supports: &mut [SetSupport], motions: &[Motion]) {
+pub fn remember(supports: &mut [GroupSupport], motions: &[Motion]) {
     for support in supports {
         for held in &mut support.held {
             held.before = six(&motions[held.particle as usize]);
@@ -68,7 +68,7 @@ pub fn remember(supports: &mut [SetSupport], motions: &[Motion]) {
 /// step before and half of the one to come, `steps_s`. The bonds that are `broken` acted in the
 /// first half only.
 pub fn hold(
-    supports: &mut [SetSupport],
+    supports: &mut [GroupSupport],
     particles: &mut Particles,
     broken: &[Break],
     time_s: f64,
@@ -78,11 +78,11 @@ pub fn hold(
     let kick_s = 0.5 * (before_s + time_step_s);
     for support in supports {
         let phase = support.phase(time_s, steps_s);
-        if phase != Phase::Holds {
+        if phase != SupportPhase::Holds {
             let_go(support, phase, particles, broken, steps_s);
             continue;
         }
-        let SetSupport {
+        let GroupSupport {
             holds,
             factor,
             held,
@@ -125,8 +125,8 @@ pub fn hold(
 /// Gives the freedoms of a support that has ended their own half of the kick at which it lets go of
 /// them: in the step before it held them, and exerted what that took.
 fn let_go(
-    support: &mut SetSupport,
-    phase: Phase,
+    support: &mut GroupSupport,
+    phase: SupportPhase,
     particles: &mut Particles,
     broken: &[Break],
     [before_s, time_step_s]: [f64; 2],
@@ -134,7 +134,7 @@ fn let_go(
     let kick_s = 0.5 * (before_s + time_step_s);
     for held in &mut support.held {
         held.reactions = [[0.0; 6]; 2];
-        if phase == Phase::Over {
+        if phase == SupportPhase::Over {
             continue;
         }
         let parted = of_broken(broken, held.particle);
@@ -184,17 +184,17 @@ pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
 /// kinetic energy changes by beyond that, as velocities may be prescribed to jump. So a blow is
 /// booked with what it does, not with the velocity after it.
 pub fn reactions_work_j(
-    supports: &[SetSupport],
+    supports: &[GroupSupport],
     particles: &Particles,
     time_s: f64,
     steps_s: [f64; 2],
 ) -> [f64; 2] {
     let mut work = [0.0; 2];
     for support in supports {
-        let SetSupport { holds, held, .. } = support;
-        if support.phase(time_s, steps_s) != Phase::Holds {
+        let GroupSupport { holds, held, .. } = support;
+        if support.phase(time_s, steps_s) != SupportPhase::Holds {
             // Nothing jumps where freedoms are let go, and what has been over exerts nothing.
-            let of_one = |held: &Held| {
+            let of_one = |held: &HeldParticle| {
                 (0..6)
                     .map(|k| held.reactions[0][k] * held.before[k])
                     .sum::<f64>()

@@ -9,8 +9,8 @@ use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::ledger::momenta_of;
 use crate::state::particles::{Motion, Particles};
-use crate::state::supports::Phase;
-use crate::state::supports::SetSupport;
+use crate::state::supports::GroupSupport;
+use crate::state::supports::SupportPhase;
 use rayon::prelude::*;
 
 /// Velocities and spins at the time of the poses, between a kick and the drift after it. One per
@@ -57,7 +57,8 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         );
     }
     let steps_s = state.steps_s();
-    let holds = |support: &&SetSupport| support.phase(state.time_s, steps_s) == Phase::Holds;
+    let holds =
+        |support: &&GroupSupport| support.phase(state.time_s, steps_s) == SupportPhase::Holds;
     for support in state.supports.iter().filter(holds) {
         for held in &support.held {
             let after = &p.motions[held.particle as usize];

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
-use crate::physics::contact::assembly::Remembered;
+use crate::physics::contact::assembly::StoredContact;
 use crate::physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, wall_contact_kinematics,
 };
@@ -19,7 +19,7 @@ use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
 use crate::state::particles::{Particles, Pose};
-use crate::state::walls::{Push, Wall, WallContact};
+use crate::state::walls::{Wall, WallContact, WallLoad};
 
 /// Contacts with walls, and their motion.
 pub const WALLS: Stage = Stage {
@@ -153,8 +153,8 @@ pub fn wall_wrenches(
             found
         };
         let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(of_chunk).collect();
-        wall.push = Push::default();
-        wall.scratch.damping = Push::default();
+        wall.push = WallLoad::default();
+        wall.scratch.damping = WallLoad::default();
         wall.scratch.elastic_j = 0.0;
         wall.stiffness_n_m = 0.0;
         wall.touching.clear();
@@ -303,7 +303,7 @@ fn meet_at(
     let touch = wall_contact_kinematics(&foot, ball, dt);
     let history = old.map_or(ContactHistory::default(), |old| old.history);
     let vector = |[x, y, z, _]: [f64; 4]| Vec3(x, y, z);
-    let before = Remembered {
+    let before = StoredContact {
         springs: ContactSprings {
             tangential_m: vector(history.tangential),
             rolling_rad: vector(history.rolling),
@@ -316,7 +316,7 @@ fn meet_at(
         origin_m: history.origin_m(),
     };
     let met = kind.assemble(&touch, &before, least_overlap, dt);
-    let Remembered {
+    let StoredContact {
         springs,
         damped,
         origin_m,
@@ -362,7 +362,7 @@ pub fn push_at_rest(
     contacts: &Contacts,
     particles: &Particles,
     old: &WallContact,
-) -> Push {
+) -> WallLoad {
     let pose = &particles.poses[old.particle as usize];
     let there = Touch {
         point: pose.place().into(),
@@ -383,7 +383,7 @@ pub fn push_at_rest(
     );
     let arm = met.point - Vector3::from(wall.frame.position_m);
     let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
-    let mut push = Push::default();
+    let mut push = WallLoad::default();
     push.add(met.forces[0].into(), about_pivot.into(), 0.0);
     push
 }

@@ -10,7 +10,7 @@ use super::walls::{gap_m, touch_force_n};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::walls::{Wall, WallContact};
-use crate::state::watches::{Seen, Watch, Watched};
+use crate::state::watches::{Seen, Watch, WatchTarget};
 use dem_scene::Quantity;
 
 /// Measures, files and pictures.
@@ -84,18 +84,18 @@ fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
         overlap_m: f64::NEG_INFINITY,
     };
     match &watch.of {
-        Watched::Wall(wall) => {
+        WatchTarget::Wall(wall) => {
             let wall = state.walls.get(*wall);
-            met.force_n = wall.map_or(met.force_n, |wall| -Vector3::from(wall.whole_push()[0]));
+            met.force_n = wall.map_or(met.force_n, |wall| -Vector3::from(wall.total_load()[0]));
         }
-        Watched::Particles(of) => {
+        WatchTarget::Particles(of) => {
             let all = |[a, b]: [bool; 2]| (a != b).then_some(if b { 1.0 } else { -1.0 });
             met.pairs(state, contacts, |pair| all(pair.map(|i| of[i as usize])));
             for (number, wall) in state.walls.iter().enumerate() {
                 met.wall(state, contacts, (number, wall), of);
             }
         }
-        Watched::WithWall(of, number) => {
+        WatchTarget::WithWall(of, number) => {
             if let Some(wall) = state.walls.get(*number) {
                 met.wall(state, contacts, (*number, wall), of);
                 if watch.quantity == Quantity::ContactDuration && met.overlap_m <= 0.0 {
@@ -105,7 +105,7 @@ fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
                 }
             }
         }
-        Watched::Between([of, with]) => met.pairs(state, contacts, |[a, b]| {
+        WatchTarget::Between([of, with]) => met.pairs(state, contacts, |[a, b]| {
             let [a, b] = [a as usize, b as usize];
             match (of[b] && with[a], of[a] && with[b]) {
                 (true, _) => Some(1.0),

@@ -28,17 +28,17 @@ impl PlacedBody {
     }
 
     /// A clump that has become a cluster.
-    pub fn born(born: &NewCluster) -> Self {
-        let template = &born.template;
+    pub fn created(created: &NewCluster) -> Self {
+        let template = &created.template;
         let mut particles = vec![REMOVED; template.spheres.len()];
-        for (i, &number) in (born.first_particle as u32..).zip(&template.file_number) {
+        for (i, &number) in (created.first_particle as u32..).zip(&template.file_number) {
             particles[number as usize] = i;
         }
         Self {
             name: template.body.clone(),
-            first_particle: born.first_particle,
+            first_particle: created.first_particle,
             particles,
-            first_bond: born.first_bond,
+            first_bond: created.first_bond,
             bonds: template.bonds_of_file.clone(),
         }
     }
@@ -70,7 +70,7 @@ pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbering) {
         body.first_particle = first.map_or(0, |first| *first as usize);
         first.is_some()
     });
-    bodies.extend(by.born.iter().map(PlacedBody::born));
+    bodies.extend(by.created.iter().map(PlacedBody::created));
 }
 
 /// The body of a bond of the state, and the bond's number in that body's file.

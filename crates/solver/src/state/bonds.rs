@@ -30,7 +30,7 @@ pub struct BondRule {
     /// Strain rate from which strengths rise with the rate, 1/s. None: never.
     pub strengthening_from_1_s: Option<f64>,
     /// What that rate is of.
-    pub rate_of: StrainRateMeasure,
+    pub strain_rate_measure: StrainRateMeasure,
 }
 
 /// Bonds in a block.

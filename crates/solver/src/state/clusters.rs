@@ -26,7 +26,7 @@ pub struct Cluster {
     /// The cluster that it broke off; none: it was there from the start or came later whole.
     pub parent: Option<u32>,
     /// When it was found, s.
-    pub born_s: f64,
+    pub created_s: f64,
     /// When it was found in pieces, s; none: it is whole.
     pub ended_s: Option<f64>,
     /// Number of its particles.
@@ -218,7 +218,7 @@ impl Clusters {
                 self.of_particle[*p as usize] = self.history.len() as u32;
                 self.history.push(Cluster {
                     parent,
-                    born_s: time_s,
+                    created_s: time_s,
                     ended_s: None,
                     particles: 0,
                 });

@@ -26,7 +26,7 @@ pub struct ContactHistory {
 
 impl ContactHistory {
     /// Of a pair whose law begins at this overlap, m.
-    pub fn parted_at(overlap_m: f64) -> Self {
+    pub fn separated_at(overlap_m: f64) -> Self {
         Self {
             damping: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
             ..Self::default()
@@ -104,7 +104,7 @@ pub struct Contacts {
     /// pair, J.
     pub lost_j: Vec<[f64; 2]>,
     /// The same of particles that are no more, J.
-    pub lost_by_gone_j: [f64; 2],
+    pub lost_by_removed_j: [f64; 2],
     /// What can be rebuilt.
     #[serde(skip)]
     pub scratch: ContactScratch,
@@ -174,7 +174,7 @@ impl Contacts {
                 while before.next_if(|(old, _)| *old < pair).is_some() {}
                 match before.peek() {
                     Some((old, history)) if *old == pair => **history,
-                    _ => ContactHistory::parted_at(overlap_m(*pair)),
+                    _ => ContactHistory::separated_at(overlap_m(*pair)),
                 }
             })
             .collect();

@@ -167,7 +167,7 @@ pub struct Renumbering {
     /// Particles from this number on are carried by clumps.
     pub free: u32,
     /// Clusters that clumps have become.
-    pub born: Vec<NewCluster>,
+    pub created: Vec<NewCluster>,
 }
 
 /// Bodies that are to come, leave and become others.

@@ -25,7 +25,7 @@ pub struct EnergyLedger {
     pub(crate) scale_j: f64,
     /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
     /// millionth: less is rounding, J.
-    pub(crate) floor_j: f64,
+    pub(crate) rounding_floor_j: f64,
     /// The centre of mass at the start, about which moments are taken, m.
     pub(crate) about_m: [f64; 3],
     pub(crate) mass_kg: f64,
@@ -54,8 +54,8 @@ pub(crate) struct Work {
 impl EnergyLedger {
     /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
     /// millionth: less is rounding, J.
-    pub fn floor_j(&self) -> f64 {
-        self.floor_j
+    pub fn rounding_floor_j(&self) -> f64 {
+        self.rounding_floor_j
     }
 
     /// Mass of all particles, kg.
@@ -65,12 +65,12 @@ impl EnergyLedger {
 
     /// What a run could have in energy at most: that of the start, what loads, supports, walls and
     /// gravity gave, J.
-    pub fn put_in_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
+    pub fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
         let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen;
         let given = given + self.brought_j.abs();
-        self.opening_j.abs() + given + self.floor_j
+        self.opening_j.abs() + given + self.rounding_floor_j
     }
 
     /// Size of what gravity has given until now, J.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A load on some particles, the same on each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SetLoad {
+pub struct GroupLoad {
     /// The particles.
     pub particles: Vec<u32>,
     /// On each, N. Length 3.
@@ -19,7 +19,7 @@ pub struct SetLoad {
     pub end_s: f64,
 }
 
-impl SetLoad {
+impl GroupLoad {
     /// What the load is multiplied by in the kick at `time_s`, which makes up for half of the step
     /// before and half of the one to come, `steps_s`. Where the load ends in between, its share of
     /// that time: so its impulse is the same whatever the steps.

@@ -15,12 +15,12 @@ pub struct Batch {
     /// Which of [`Bonds::rules`] they follow.
     pub rule: usize,
     /// Which they are.
-    pub which: Which,
+    pub which: BondSelection,
 }
 
 /// Which bonds a batch holds.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Which {
+pub enum BondSelection {
     /// One after another, none of them broken; their first ends are in the partition.
     Run(Range<usize>),
     /// These; their first ends are in the partition.
@@ -57,7 +57,7 @@ pub struct Computed {
     pub damped: usize,
 }
 
-impl Which {
+impl BondSelection {
     /// How many of them are listed one by one.
     pub fn listed(&self) -> usize {
         match self {
@@ -183,9 +183,9 @@ fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize]
                 continue;
             }
             let which = if whole.len() == range.len() {
-                Which::Run(range)
+                BondSelection::Run(range)
             } else {
-                Which::Own(whole)
+                BondSelection::Own(whole)
             };
             partition.batches.push(Batch { rule, which });
         }
@@ -213,11 +213,11 @@ fn add_borders(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
         match batches.last_mut() {
             Some(Batch {
                 rule: last,
-                which: Which::Border(list),
+                which: BondSelection::Border(list),
             }) if *last == rule => list.push(at as u32),
             _ => batches.push(Batch {
                 rule,
-                which: Which::Border(vec![at as u32]),
+                which: BondSelection::Border(vec![at as u32]),
             }),
         }
     }

@@ -80,8 +80,8 @@ impl Region {
     /// others.
     pub fn point(&self, [u, v, w]: [f64; 3]) -> Option<[f64; 3]> {
         let Bounds { low, high } = self.bounds();
-        let share = [u, v, w];
-        let point = [0, 1, 2].map(|k| low[k] + share[k] * (high[k] - low[k]));
+        let fraction = [u, v, w];
+        let point = [0, 1, 2].map(|k| low[k] + fraction[k] * (high[k] - low[k]));
         self.contains(point).then_some(point)
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactHistory;
-use super::walls::{Push, WallContact};
+use super::walls::{WallContact, WallLoad};
 
 /// When a body falls asleep.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -70,7 +70,7 @@ pub struct FrozenWallContact {
     /// What it remembers.
     pub touch: WallContact,
     /// What the wall does to the particle.
-    pub push: Push,
+    pub push: WallLoad,
     /// J.
     pub elastic_j: f64,
 }

@@ -43,9 +43,9 @@ pub struct Wall {
     /// What touches it, by particle and then by feature.
     pub touching: Vec<WallContact>,
     /// What it does to the particles that touch it.
-    pub push: Push,
+    pub push: WallLoad,
     /// What it does to the particles that touch it and sleep, which are not among those.
-    pub slept_on: Push,
+    pub load_by_sleepers: WallLoad,
     /// Stiffness of its contacts along their normals, together, N/m.
     pub stiffness_n_m: f64,
     /// Energy that friction took so far, J.
@@ -65,7 +65,7 @@ pub struct Wall {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WallScratch {
     /// The part of its push which is damping.
-    pub damping: Push,
+    pub damping: WallLoad,
     /// Elastic energy of its contacts, J.
     pub elastic_j: f64,
     /// A particle whose centre has gone through its surface.
@@ -82,8 +82,8 @@ impl Wall {
             spins_rad_s: [[0.0; 3]; 2],
             near: Vec::new(),
             touching: Vec::new(),
-            push: Push::default(),
-            slept_on: Push::default(),
+            push: WallLoad::default(),
+            load_by_sleepers: WallLoad::default(),
             stiffness_n_m: 0.0,
             friction_j: 0.0,
             damping_j: 0.0,
@@ -113,8 +113,8 @@ impl Wall {
 
     /// Force, N, and torque about the pivot, N m, on all particles that touch it, be they awake or
     /// asleep.
-    pub fn whole_push(&self) -> [[f64; 3]; 2] {
-        let (awake, asleep) = (&self.push, &self.slept_on);
+    pub fn total_load(&self) -> [[f64; 3]; 2] {
+        let (awake, asleep) = (&self.push, &self.load_by_sleepers);
         let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
         [
             sum(&awake.force_n, &asleep.force_n),
@@ -143,7 +143,7 @@ pub struct WallContact {
 
 /// What a wall does to the particles that touch it, together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Push {
+pub struct WallLoad {
     /// N.
     pub force_n: [f64; 3],
     /// About the wall's pivot, N m.
@@ -152,7 +152,7 @@ pub struct Push {
     pub belt_w: f64,
 }
 
-impl Push {
+impl WallLoad {
     /// Adds a force, N, a torque about the pivot, N m, and a power of the belt, W.
     pub fn add(&mut self, force_n: [f64; 3], torque_n_m: [f64; 3], belt_w: f64) {
         for k in 0..3 {

@@ -9,14 +9,14 @@ pub struct Watch {
     /// What it is of.
     pub quantity: Quantity,
     /// Whose forces and contacts.
-    pub of: Watched,
+    pub of: WatchTarget,
     /// What it has seen.
     pub seen: Seen,
 }
 
 /// Whose forces and contacts are followed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Watched {
+pub enum WatchTarget {
     /// A wall, by number, with all that touches it.
     Wall(usize),
     /// Particles, for each of the state whether it is one of them, with all else.
@@ -73,7 +73,7 @@ impl History {
     }
 }
 
-impl Watched {
+impl WatchTarget {
     /// Bytes of its arrays.
     pub fn bytes(&self) -> usize {
         match self {

@@ -6,7 +6,7 @@ use dem_io::{Body, Result};
 
 use super::impact::Impact;
 use super::limit_map::block;
-use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
 
 /// kg/m3
@@ -95,7 +95,7 @@ measures.smallest_kinetic_energy = {{ quantity = \"kinetic_energy\", statistic =
             bodies: vec![("block.vtp", body)],
             ..Trial::of(scene)
         },
-        way: Way::Run,
+        way: ObservationMethod::Run,
         prediction,
     }
 }
@@ -154,7 +154,7 @@ measures.turned = {{ of = \"last\", quantity = \"rotation_z\" }}
     members.push(Member {
         what: "three loose spheres".to_owned(),
         trial: Trial::of(scene),
-        way: Way::Run,
+        way: ObservationMethod::Run,
         prediction: Prediction::Ends(vec![
             Shown::measure("along", "m", 0.0, rounding * 3e-3),
             Shown::measure("across", "m", 3e-3, rounding * 3e-3),

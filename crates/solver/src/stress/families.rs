@@ -22,7 +22,7 @@ pub fn stiffness_ratios() -> Result<Vec<Member>> {
             radii_m: vec![1e-3; 3],
             distances_m: vec![2e-3; 2],
             bond_radii_m: vec![1e-3, 1e-3 / ratio.sqrt()],
-            share: 0.35,
+            fraction: 0.35,
             ..Row::pair()
         };
         row.member(format!("ratio {ratio:e}"), TIMOSHENKO)
@@ -145,13 +145,13 @@ pub fn short_bonds() -> Result<Vec<Member>> {
         (BondModel::ElasticSolid, "elastic-solid"),
     ];
     let mut members = Vec::new();
-    for share in [1e-2, 1e-6, 1e-9] {
+    for fraction in [1e-2, 1e-6, 1e-9] {
         for model in models {
             let row = Row {
-                distances_m: vec![share * 1e-3],
+                distances_m: vec![fraction * 1e-3],
                 ..Row::pair()
             };
-            let member = row.member(format!("{}, {share:e} of a radius", model.1), model)?;
+            let member = row.member(format!("{}, {fraction:e} of a radius", model.1), model)?;
             let mut trial = member.trial.clone();
             // So little that a thousandfold amplitude is still linear.
             for (_, body) in &mut trial.bodies {

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, Prediction, Shown, Way};
+use super::prediction::{Member, ObservationMethod, Prediction, Shown};
 use super::trial::Trial;
 
 /// Duration of an elastic impact times speed over largest overlap: 2 sqrt(pi) Gamma(7/5) /
@@ -78,7 +78,7 @@ impl Impact {
 
     /// Fraction of the relative velocity that each of the two loses and gains, times (1 + e): m*
     /// over the mass of the first, and over that of the second.
-    fn shares(&self) -> [f64; 2] {
+    fn fractions(&self) -> [f64; 2] {
         match self.target {
             Target::Plane | Target::Sheet => [1.0, 0.0],
             Target::Sphere(other_m) => {
@@ -97,7 +97,7 @@ impl Impact {
     /// Largest overlap without damping, m.
     pub fn overlap_m(&self) -> f64 {
         let mass_kg = self.density_kg_m3 * 4.0 / 3.0 * PI * self.radius_m.powi(3);
-        let reduced_kg = self.shares()[0] * mass_kg;
+        let reduced_kg = self.fractions()[0] * mass_kg;
         let reduced_m = match self.target {
             Target::Plane | Target::Sheet => self.radius_m,
             Target::Sphere(other_m) => self.radius_m * other_m / (self.radius_m + other_m),
@@ -178,13 +178,13 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
     /// and from a wall at rest from the depth of Hertz.
     pub fn member(&self, what: String) -> Member {
         let closing = self.closing_m_s();
-        let shares = self.shares();
+        let fractions = self.fractions();
         let speed = if self.restitution == 1.0 {
             ELASTIC_SPEED
         } else {
             SPEED
         };
-        let gain = shares.map(|share| (1.0 + self.restitution) * share * closing);
+        let gain = fractions.map(|fraction| (1.0 + self.restitution) * fraction * closing);
         let (before, after) = (-self.speed_m_s, gain[0] - self.speed_m_s);
         let mut shown = vec![Shown::measure("rebound", "m/s", after, speed * closing)];
         if let Target::Sphere(_) = self.target {
@@ -208,7 +208,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         if self.restitution == 1.0 {
             // While the two touch, their common centre of mass goes on.
             let (touched_s, together_s) = (self.touched_s(), self.duration_s());
-            let centre = before + shares[0] * closing;
+            let centre = before + fractions[0] * closing;
             let start = self.at_m + (1.0 + self.gap) * self.radius_m;
             let apart_s = self.end_s() - touched_s - together_s;
             let place = start + before * touched_s + centre * together_s + after * apart_s;
@@ -218,7 +218,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         Member {
             what,
             trial: self.trial("\"auto\""),
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Ends(shown),
         }
     }
@@ -230,7 +230,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         Member {
             what,
             trial,
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: if is_refused {
                 Prediction::Refused(words)
             } else {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::{Body, Diagnostic, Result};
 
-use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
 use crate::stages::totals::{elastic_energy, kinetic_energy};
 use crate::state::State;
@@ -41,7 +41,7 @@ pub fn largest_step_s(trial: &Trial, interrupted: &AtomicBool) -> Result<f64> {
     let (_, plan, _) = trial.planned()?;
     let predicted_s = plan.step.limit.step_s;
     let mut bracket = [0.5 * predicted_s, 2.0 * predicted_s];
-    let nearby = [0.995, 1.005].map(|share| share * predicted_s);
+    let nearby = [0.995, 1.005].map(|fraction| fraction * predicted_s);
     let grows = |step_s: f64| grows(&plan.state, step_s, interrupted);
     // Most are near: two runs instead of a dozen.
     for near_s in nearby {
@@ -168,7 +168,7 @@ pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
     Ok(Member {
         what,
         trial,
-        way: Way::LargestStep,
+        way: ObservationMethod::LargestStep,
         prediction: Prediction::Ends(vec![Shown {
             quantity: Quantity::LargestStep,
             unit: "s",
@@ -247,21 +247,21 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"larges
         let (_, plan, _) = trial("\"auto\"", 1.0, false)?.planned()?;
         let limit_s = plan.step.limit.step_s;
         let start_j = elastic_energy(&plan.state).total();
-        let share = 0.98;
+        let fraction = 0.98;
         let end_s = STEPS as f64 * limit_s;
         // What leapfrog keeps of a mode is its energy less (w dt / 2)^2 of the elastic part.
-        let most_j = start_j / (1.0 - share * share);
+        let most_j = start_j / (1.0 - fraction * fraction);
         members.push(Member {
             what: format!("0.98, damping {eta}"),
-            trial: trial(&format!("{:e}", share * limit_s), end_s, false)?,
-            way: Way::Run,
+            trial: trial(&format!("{:e}", fraction * limit_s), end_s, false)?,
+            way: ObservationMethod::Run,
             prediction: Prediction::Ends(vec![Shown::measure("elastic_energy", "J", 0.0, most_j)]),
         });
         let above = format!("{:e}", 1.02 * limit_s);
         members.push(Member {
             what: format!("1.02, damping {eta}"),
             trial: trial(&above, end_s, false)?,
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Refused(vec![format!(
                 "is above the largest stable step of {limit_s:.4e} s"
             )]),
@@ -269,7 +269,7 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"larges
         members.push(Member {
             what: format!("1.02 by force, damping {eta}"),
             trial: trial(&above, end_s, true)?,
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Stopped(vec![
                 "of energy were created".to_owned(),
                 "began at 1.020 of the largest stable one".to_owned(),

@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use dem_io::Result;
 
-use super::prediction::{Member, Prediction, Quantity, Shown, Way};
+use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::{Outcome, Trial};
-use crate::physics::bond::damping::{DampingModel, Reduced};
+use crate::physics::bond::damping::{DampingModel, ReducedInertia};
 use crate::physics::bond::damping_models::Chen;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -51,7 +51,7 @@ pub fn spin() -> Result<Vec<Member>> {
         stretch_m = 0.5 * mass_kg * spin.powi(2) * (length_m + stretch_m) / answer.normal;
     }
     let strain = stretch_m / length_m;
-    let reduced = Reduced {
+    let reduced = ReducedInertia {
         mass_kg: 0.5 * mass_kg,
         inertia_kg_m2: 0.5 * own_kg_m2,
     };
@@ -100,7 +100,7 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
         Member {
             what: if eta > 0.0 { "damped" } else { "undamped" }.to_owned(),
             trial: Trial::of(scene),
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Ends(vec![
                 stored,
                 // Each step rounds.
@@ -146,7 +146,7 @@ measures.way = {{ quantity = \"position_x\" }}
     let mut members = vec![Member {
         what: "a sphere".to_owned(),
         trial: Trial::of(scene(DAY, &format!("[0, 0, {}]", -g), &ball)),
-        way: Way::Run,
+        way: ObservationMethod::Run,
         prediction: Prediction::Ends(vec![
             Shown::measure("height", "m", radius_m - overlap_m, rounding_m),
             Shown::measure("way", "m", 0.0, 0.0),
@@ -191,7 +191,7 @@ start_as = \"{start_as}\"
         members.push(Member {
             what: format!("a tetrahedron on a slope of 15 degrees, {start_as}"),
             trial: Trial::of(scene(DAY, &slope, &body)),
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Ends(vec![of("height"), of("way")]),
         });
     }

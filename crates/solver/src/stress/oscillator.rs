@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use dem_io::{Body, Result};
 
-use super::prediction::{Member, Prediction, Shown, Way};
+use super::prediction::{Member, ObservationMethod, Prediction, Shown};
 use super::trial::Trial;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -32,9 +32,9 @@ pub struct Row {
     /// How far the last bond is stretched over its length at rest.
     pub strain: f64,
     /// Step over that of the bond's two particles alone, of the fastest bond.
-    pub share: f64,
+    pub fraction: f64,
     /// Swings of the slowest mode. A quarter more shows best how long they take.
-    pub swings: f64,
+    pub oscillations: f64,
 }
 
 impl Row {
@@ -48,8 +48,8 @@ impl Row {
             density_kg_m3: 2500.0,
             at_m: 0.0,
             strain: 1e-3,
-            share: 0.5,
-            swings: 10.25,
+            fraction: 0.5,
+            oscillations: 10.25,
         }
     }
 
@@ -85,7 +85,7 @@ impl Row {
             frequencies(&answer, inverse, inertia).critical_step_s()
         };
         let bonds = 0..self.distances_m.len();
-        self.share * bonds.map(of_bond).fold(f64::INFINITY, f64::min)
+        self.fraction * bonds.map(of_bond).fold(f64::INFINITY, f64::min)
     }
 
     /// Modes of the rule_runs of the bonds: square of the circular frequency, 1/s2, and what the
@@ -124,7 +124,7 @@ impl Row {
         let angle = |square: f64| 2.0 * (0.5 * square.sqrt() * step_s).asin();
         let slowest = modes.iter().map(|(square, _)| angle(*square));
         let slowest = slowest.fold(f64::INFINITY, f64::min);
-        let steps = (self.swings * 2.0 * PI / slowest).round();
+        let steps = (self.oscillations * 2.0 * PI / slowest).round();
         let stretched_m = self.distances_m.last().copied().unwrap_or(0.0)
             - self.length_m(self.distances_m.len() - 1);
         let gained_m: Vec<f64> = (0..self.distances_m.len())
@@ -147,7 +147,7 @@ impl Row {
         Ok(Member {
             what,
             trial: self.trial(name, step_s, steps)?,
-            way: Way::Run,
+            way: ObservationMethod::Run,
             prediction: Prediction::Ends(shown),
         })
     }

@@ -13,14 +13,14 @@ pub struct Member {
     /// The scene.
     pub trial: Trial,
     /// What is observed of it.
-    pub way: Way,
+    pub way: ObservationMethod,
     /// What will come of it.
     pub prediction: Prediction,
 }
 
 /// How a scene is observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum ObservationMethod {
     /// It is run, once.
     Run,
     /// It is stepped with larger and smaller steps, see [`limit_map`](super::limit_map).

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::cases::Case;
 use super::limit_map::largest_step_s;
-use super::prediction::{Member, Prediction, Way};
+use super::prediction::{Member, ObservationMethod, Prediction};
 use super::trial::Outcome;
 
 /// What was seen of a scene.
@@ -65,7 +65,7 @@ impl CaseResult {
 ///
 /// # Errors
 /// Interrupted, or files that cannot be written. A member that goes wrong is no error.
-pub fn try_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
+pub fn run_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
     let clock = Instant::now();
     let members = case.members(interrupted)?;
     let judged = members.par_iter().map(|member| judge(member, interrupted));
@@ -80,10 +80,10 @@ pub fn try_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
 /// Runs a member and compares.
 ///
 /// # Errors
-/// As [`try_case`].
+/// As [`run_case`].
 pub fn judge(member: &Member, interrupted: &AtomicBool) -> Result<Judged> {
     let observed = match member.way {
-        Way::Run => match member.trial.run(interrupted)? {
+        ObservationMethod::Run => match member.trial.run(interrupted)? {
             Outcome::Ended(summary) => Observation::Ended(match &member.prediction {
                 Prediction::Ends(all) => all.iter().map(|one| one.quantity.of(&summary)).collect(),
                 _ => Vec::new(),
@@ -91,7 +91,9 @@ pub fn judge(member: &Member, interrupted: &AtomicBool) -> Result<Judged> {
             Outcome::Refused(said) => Observation::Refused(said),
             Outcome::Stopped(said) => Observation::Stopped(said),
         },
-        Way::LargestStep => Observation::Ended(vec![largest_step_s(&member.trial, interrupted)?]),
+        ObservationMethod::LargestStep => {
+            Observation::Ended(vec![largest_step_s(&member.trial, interrupted)?])
+        }
     };
     let (deviation, wrong) = compare(&member.prediction, &observed);
     Ok(Judged {

@@ -3,7 +3,8 @@
 
 use super::vector;
 use dem_run::physics::bond::damping::{
-    DampingCoefficients, DampingForces, DampingModel, EndMotion, Reduced, damping_forces, reduced,
+    DampingCoefficients, DampingForces, DampingModel, EndMotion, ReducedInertia, damping_forces,
+    reduced,
 };
 use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
@@ -105,7 +106,7 @@ fn steel(model: BondModel) -> Stiffness {
     stiffness(model, &shape, YOUNG_PA, 0.3)
 }
 
-fn pair_of_steel() -> Reduced {
+fn pair_of_steel() -> ReducedInertia {
     reduced([1.0 / MASS_KG; 2], [1.0 / INERTIA_KG_M2; 2])
 }
 

@@ -8,10 +8,10 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 const NONE: Criteria = Criteria {
-    tension_pa: f64::INFINITY,
-    compression_pa: f64::INFINITY,
-    shear_pa: f64::INFINITY,
-    von_mises_pa: f64::INFINITY,
+    tensile_strength_pa: f64::INFINITY,
+    compressive_strength_pa: f64::INFINITY,
+    shear_strength_pa: f64::INFINITY,
+    von_mises_strength_pa: f64::INFINITY,
 };
 const ONE: Factors = Factors {
     scatter: 1.0,
@@ -73,26 +73,26 @@ fn stresses_are_those_of_a_round_bar() {
 fn of_no_strength_any_load_is_too_much() {
     for zero in [
         Criteria {
-            tension_pa: 0.0,
+            tensile_strength_pa: 0.0,
             ..NONE
         },
         Criteria {
-            compression_pa: 0.0,
+            compressive_strength_pa: 0.0,
             ..NONE
         },
         Criteria {
-            shear_pa: 0.0,
+            shear_strength_pa: 0.0,
             ..NONE
         },
         Criteria {
-            von_mises_pa: 0.0,
+            von_mises_strength_pa: 0.0,
             ..NONE
         },
         Criteria {
-            tension_pa: 0.0,
-            compression_pa: 0.0,
-            shear_pa: 0.0,
-            von_mises_pa: 0.0,
+            tensile_strength_pa: 0.0,
+            compressive_strength_pa: 0.0,
+            shear_strength_pa: 0.0,
+            von_mises_strength_pa: 0.0,
         },
     ] {
         let screen = Screen::new(&zero);
@@ -100,7 +100,7 @@ fn of_no_strength_any_load_is_too_much() {
             let factors = Factors::scattered(factor);
             assert_eq!(utilisation(&zero, &Stresses::default(), factors), 0.0);
         }
-        let [used, factor] = screen.used_and_factor(&BondLoad::default(), RADIUS_M);
+        let [used, factor] = screen.utilisation_and_factor(&BondLoad::default(), RADIUS_M);
         assert!(used == 0.0 && factor > 0.0);
         let tiny = BondLoad {
             normal_n: 1e-30,
@@ -112,7 +112,7 @@ fn of_no_strength_any_load_is_too_much() {
             utilisation(&zero, &stresses(&tiny, RADIUS_M), Factors::scattered(2.0)),
             f64::INFINITY
         );
-        let [used, factor] = screen.used_and_factor(&tiny, RADIUS_M);
+        let [used, factor] = screen.utilisation_and_factor(&tiny, RADIUS_M);
         assert!(used > factor);
     }
 }
@@ -123,7 +123,7 @@ fn each_mode_uses_its_share_of_each_strength() {
     let cases = [
         (
             Criteria {
-                tension_pa: 2e6,
+                tensile_strength_pa: 2e6,
                 ..NONE
             },
             [0.5, 0.5, 0.0, 0.0],
@@ -131,7 +131,7 @@ fn each_mode_uses_its_share_of_each_strength() {
         ),
         (
             Criteria {
-                compression_pa: 4e6,
+                compressive_strength_pa: 4e6,
                 ..NONE
             },
             [0.0, 0.25, 0.0, 0.0],
@@ -139,7 +139,7 @@ fn each_mode_uses_its_share_of_each_strength() {
         ),
         (
             Criteria {
-                shear_pa: 4e6,
+                shear_strength_pa: 4e6,
                 ..NONE
             },
             [0.0, 0.0, 0.25, 0.25],
@@ -147,21 +147,21 @@ fn each_mode_uses_its_share_of_each_strength() {
         ),
         (
             Criteria {
-                von_mises_pa: 2e6,
+                von_mises_strength_pa: 2e6,
                 ..NONE
             },
             [0.5, 0.5, 0.5 * 3.0_f64.sqrt(), 0.5 * 3.0_f64.sqrt()],
             Cause::VonMises,
         ),
     ];
-    for (criteria, shares, by) in cases {
-        for (stresses, share) in MODES.iter().zip(shares) {
+    for (criteria, fractions, by) in cases {
+        for (stresses, fraction) in MODES.iter().zip(fractions) {
             let found = utilisation(&criteria, stresses, ONE);
             assert!(
-                (found - share).abs() < 1e-15,
+                (found - fraction).abs() < 1e-15,
                 "{criteria:?}, {stresses:?}: {found}"
             );
-            if share > 0.0 {
+            if fraction > 0.0 {
                 assert_eq!(cause(&criteria, stresses, ONE), by);
             }
         }
@@ -171,10 +171,10 @@ fn each_mode_uses_its_share_of_each_strength() {
 #[test]
 fn criteria_act_together_and_the_worst_one_is_the_cause() {
     let criteria = Criteria {
-        tension_pa: 1.0,
-        compression_pa: 2.0,
-        shear_pa: 1.0,
-        von_mises_pa: 4.0,
+        tensile_strength_pa: 1.0,
+        compressive_strength_pa: 2.0,
+        shear_strength_pa: 1.0,
+        von_mises_strength_pa: 4.0,
     };
     let at = |axial_pa, shear_pa| {
         let stresses = Stresses {
@@ -192,7 +192,7 @@ fn criteria_act_together_and_the_worst_one_is_the_cause() {
     assert_eq!(at(-1.5, 0.8), (0.8, Cause::Shear));
     assert_eq!(at(0.7, 0.8), (0.8, Cause::Shear));
     let criteria = Criteria {
-        von_mises_pa: 1.0,
+        von_mises_strength_pa: 1.0,
         ..criteria
     };
     let stresses = Stresses {
@@ -213,16 +213,16 @@ fn criteria_act_together_and_the_worst_one_is_the_cause() {
 #[test]
 fn each_edge_has_a_strength_of_its_own() {
     let tension = Criteria {
-        tension_pa: 2.0,
+        tensile_strength_pa: 2.0,
         ..NONE
     };
     let compression = Criteria {
-        compression_pa: 5.0,
+        compressive_strength_pa: 5.0,
         ..NONE
     };
     let both = Criteria {
-        tension_pa: 2.0,
-        compression_pa: 5.0,
+        tensile_strength_pa: 2.0,
+        compressive_strength_pa: 5.0,
         ..NONE
     };
     let by_tension = Some(Cause::Tension);
@@ -280,9 +280,9 @@ fn each_edge_has_a_strength_of_its_own() {
             bending_pa,
             ..Stresses::default()
         };
-        for (criteria, (share, by)) in [tension, compression, both].iter().zip(wanted) {
+        for (criteria, (fraction, by)) in [tension, compression, both].iter().zip(wanted) {
             let what = format!("{axial_pa} and {bending_pa}, {criteria:?}");
-            assert_eq!(utilisation(criteria, &stresses, ONE), share, "{what}");
+            assert_eq!(utilisation(criteria, &stresses, ONE), fraction, "{what}");
             if let Some(by) = by {
                 assert_eq!(cause(criteria, &stresses, ONE), by, "{what}");
             }
@@ -290,7 +290,7 @@ fn each_edge_has_a_strength_of_its_own() {
     }
     // The equivalent stress leaves out the axial part only.
     let platzer = Criteria {
-        von_mises_pa: 2.0,
+        von_mises_strength_pa: 2.0,
         ..NONE
     };
     let bent = |axial_pa| Stresses {
@@ -306,10 +306,10 @@ fn each_edge_has_a_strength_of_its_own() {
 fn nothing_breaks_without_a_criterion_or_a_load() {
     assert_eq!(utilisation(&NONE, &MODES[0], ONE), 0.0);
     let strong = Criteria {
-        tension_pa: 1.0,
-        compression_pa: 1.0,
-        shear_pa: 1.0,
-        von_mises_pa: 1.0,
+        tensile_strength_pa: 1.0,
+        compressive_strength_pa: 1.0,
+        shear_strength_pa: 1.0,
+        von_mises_strength_pa: 1.0,
     };
     assert_eq!(utilisation(&strong, &Stresses::default(), ONE), 0.0);
     // Factors make all strengths larger.
@@ -323,15 +323,15 @@ fn nothing_breaks_without_a_criterion_or_a_load() {
 #[test]
 fn compression_is_not_strengthened_by_the_rate() {
     let criteria = Criteria {
-        tension_pa: 1.0,
-        compression_pa: 2.0,
+        tensile_strength_pa: 1.0,
+        compressive_strength_pa: 2.0,
         ..NONE
     };
     let bent = Stresses {
         bending_pa: 3.0,
         ..Stresses::default()
     };
-    for (scatter, rate, share, by) in [
+    for (scatter, rate, fraction, by) in [
         (1.0, 1.0, 3.0, Cause::Tension),
         (1.0, 1.5, 2.0, Cause::Tension),
         (1.0, 2.5, 1.5, Cause::Compression),
@@ -339,7 +339,7 @@ fn compression_is_not_strengthened_by_the_rate() {
         (3.0, 6.0, 0.5, Cause::Compression),
     ] {
         let factors = Factors { scatter, rate };
-        assert_near(utilisation(&criteria, &bent, factors), share);
+        assert_near(utilisation(&criteria, &bent, factors), fraction);
         assert_eq!(cause(&criteria, &bent, factors), by, "{factors:?}");
     }
 }
@@ -387,13 +387,17 @@ fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
 
 fn some_criteria() -> impl Strategy<Value = Criteria> {
     prop::array::uniform4(prop::option::of(1e-3..1e9)).prop_map(|strengths| {
-        let [tension_pa, compression_pa, shear_pa, von_mises_pa] =
-            strengths.map(|s| s.unwrap_or(f64::INFINITY));
+        let [
+            tensile_strength_pa,
+            compressive_strength_pa,
+            shear_strength_pa,
+            von_mises_strength_pa,
+        ] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
         Criteria {
-            tension_pa,
-            compression_pa,
-            shear_pa,
-            von_mises_pa,
+            tensile_strength_pa,
+            compressive_strength_pa,
+            shear_strength_pa,
+            von_mises_strength_pa,
         }
     })
 }
@@ -408,9 +412,9 @@ proptest! {
     ) {
         let of_load = stresses(&load, radius_m);
         let exact = utilisation(&criteria, &of_load, ONE);
-        let [used, factor] = Screen::new(&criteria).used_and_factor(&load, radius_m);
+        let [used, factor] = Screen::new(&criteria).utilisation_and_factor(&load, radius_m);
         let screened = (used / factor).sqrt();
-        let least = criteria.tension_pa.min(criteria.compression_pa);
+        let least = criteria.tensile_strength_pa.min(criteria.compressive_strength_pa);
         let cancelled = (of_load.axial_pa.abs() + of_load.bending_pa) / least;
         let error = (screened - exact).abs();
         prop_assert!(error <= 1e-12 * exact + 2e-14 * cancelled, "{screened} {exact}");
@@ -430,13 +434,13 @@ proptest! {
         // Strengths at which this load is just enough, by one rounding more or less.
         let scale = reached * (1.0 - beyond.unwrap_or(0.0));
         let scaled = Criteria {
-            tension_pa: criteria.tension_pa * scale,
-            compression_pa: criteria.compression_pa * scale,
-            shear_pa: criteria.shear_pa * scale,
-            von_mises_pa: criteria.von_mises_pa * scale,
+            tensile_strength_pa: criteria.tensile_strength_pa * scale,
+            compressive_strength_pa: criteria.compressive_strength_pa * scale,
+            shear_strength_pa: criteria.shear_strength_pa * scale,
+            von_mises_strength_pa: criteria.von_mises_strength_pa * scale,
         };
         if exact(&scaled) >= 1.0 {
-            let [used, factor] = Screen::new(&scaled).used_and_factor(&load, radius_m);
+            let [used, factor] = Screen::new(&scaled).utilisation_and_factor(&load, radius_m);
             prop_assert!(used >= (1.0 - 1e-9) * factor, "{} {}", used / factor, exact(&scaled));
         }
     }

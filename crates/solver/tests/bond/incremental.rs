@@ -365,9 +365,15 @@ fn a_tumbling_bar_keeps_its_energy_as_well_as_in_the_total_formulation() {
 
 #[test]
 fn energy_errors_fall_with_the_square_of_the_step() {
-    let shares = [0.1, 0.05, 0.025];
-    let errors = shares
-        .map(|share| energy_errors(Formulation::Incremental, share, (1000.0 / share) as u32))
+    let fractions = [0.1, 0.05, 0.025];
+    let errors = fractions
+        .map(|fraction| {
+            energy_errors(
+                Formulation::Incremental,
+                fraction,
+                (1000.0 / fraction) as u32,
+            )
+        })
         .map(|[a, b]| a.max(b));
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();

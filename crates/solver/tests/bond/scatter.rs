@@ -18,10 +18,10 @@ fn misfit(mut values: Vec<f64>, share_below: impl Fn(f64) -> f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let count = values.len() as f64;
     let distance = values.iter().enumerate().map(|(i, &value)| {
-        let share = share_below(value);
-        (share - i as f64 / count)
+        let fraction = share_below(value);
+        (fraction - i as f64 / count)
             .abs()
-            .max(((i + 1) as f64 / count - share).abs())
+            .max(((i + 1) as f64 / count - fraction).abs())
     });
     distance.fold(0.0, f64::max) * count.sqrt()
 }

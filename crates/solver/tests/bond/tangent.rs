@@ -1,7 +1,7 @@
 //! The tangent of a bond against differences of its forces, and where it is not symmetric.
 
 use super::total::{bond, largest};
-use dem_run::physics::bond::tangent::{FREEDOMS, bond_tangent};
+use dem_run::physics::bond::tangent::{DEGREES_OF_FREEDOM, bond_tangent};
 use dem_run::physics::bond::total::{End, bond_forces};
 use dem_run::physics::dual::Dual;
 use dem_run::physics::number::Number;
@@ -29,7 +29,7 @@ proptest! {
             let found = bond_forces(&k, &direction, ends);
             let [a, b] = found.torques;
             let parts = [-found.force_on_b, a, found.force_on_b, b];
-            let mut all = [0.0; FREEDOMS];
+            let mut all = [0.0; DEGREES_OF_FREEDOM];
             for (n, part) in parts.iter().enumerate() {
                 all[3 * n..3 * n + 3].copy_from_slice(part.as_slice());
             }
@@ -38,7 +38,7 @@ proptest! {
         let tangent = bond_tangent(&k, &direction, &ends);
         let stiffest = tangent.iter().flatten().fold(0.0_f64, |s, entry| s.max(entry.abs()));
         let h = 3e-4;
-        for j in 0..FREEDOMS {
+        for j in 0..DEGREES_OF_FREEDOM {
             let [near, far] = [h, 2.0 * h].map(|h| {
                 let (more, less) = (forces(&moved(&ends, j, h)), forces(&moved(&ends, j, -h)));
                 let pairs = more.into_iter().zip(less);
@@ -58,7 +58,7 @@ proptest! {
         let tangent = bond_tangent(&k, &direction, &ends);
         let forces = bond_forces(&k, &direction, &ends);
         let stiffest = tangent.iter().flatten().fold(largest(&forces), |s, entry| s.max(entry.abs()));
-        let pairs = (0..FREEDOMS).flat_map(|i| (0..FREEDOMS).map(move |j| (i, j)));
+        let pairs = (0..DEGREES_OF_FREEDOM).flat_map(|i| (0..DEGREES_OF_FREEDOM).map(move |j| (i, j)));
         for (i, j) in pairs {
             let end = i / 6;
             let turns_of_one_end = i % 6 >= 3 && j % 6 >= 3 && j / 6 == end;

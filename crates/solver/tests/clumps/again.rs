@@ -48,7 +48,7 @@ pub(crate) fn same(a: &State, b: &State) -> bool {
     };
     let contacts = |s: &State| {
         let c = s.contacts.as_ref().unwrap();
-        (c.lost_j.clone(), c.lost_by_gone_j, c.materials.clone())
+        (c.lost_j.clone(), c.lost_by_removed_j, c.materials.clone())
     };
     let walls = |s: &State| {
         let all = s.walls.iter();
@@ -79,7 +79,7 @@ pub(crate) fn same(a: &State, b: &State) -> bool {
         && a.bonds.blocks == b.bonds.blocks
         && a.bonds.strength_factors == b.bonds.strength_factors
         && a.broken_count == b.broken_count
-        && a.broken_gone == b.broken_gone
+        && a.broken_removed == b.broken_removed
         && rules(a) == rules(b)
         && contacts(a) == contacts(b)
         && walls(a) == walls(b)

@@ -221,5 +221,8 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     let (come, gone) = (state.population.inlets[0], state.population.outlets[0]);
     assert!(((inside + gone.mass_kg) / come.mass_kg - 1.0).abs() < 1e-12);
     let there = (0..state.bonds.len()).filter(|at| state.bonds.is_broken(*at));
-    assert_eq!(state.broken_count - state.broken_gone, there.count() as u64);
+    assert_eq!(
+        state.broken_count - state.broken_removed,
+        there.count() as u64
+    );
 }

@@ -38,8 +38,8 @@ fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, h
     let Bounds { low, high } = region.bounds();
     let (mut sum, mut squares, mut count) = (Vector3::zeros(), Vector3::zeros(), 0.0);
     for _ in 0..20_000 {
-        let share = [0; 3].map(|_| random.within(0.0, 1.0));
-        if let Some(point) = region.point(share) {
+        let fraction = [0; 3].map(|_| random.within(0.0, 1.0));
+        if let Some(point) = region.point(fraction) {
             assert!(region.contains(point));
             assert!((0..3).all(|k| (low[k]..=high[k]).contains(&point[k])));
             assert_ne!(is_inside(&point.into()), Some(false));

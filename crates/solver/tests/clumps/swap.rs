@@ -56,18 +56,18 @@ fn swapped(far_m: f64, seed: u64) {
     let whole = Whole::of(&state.particles, 0..count, &about);
     // What stands far away is rounded: places are right to `eps * far`, which is a share of arms
     // that are no longer than the reach.
-    let share = 1e-12 + 2.0 * f64::EPSILON * about.norm() / template.reach_m;
+    let fraction = 1e-12 + 2.0 * f64::EPSILON * about.norm() / template.reach_m;
     let spin = before.spin_rad_s(&template);
     let speed = Vector3::from(before.velocity_m_s).norm() + spin.norm() * template.reach_m;
     let mass = template.mass_kg;
     let momentum = Vector3::from(before.velocity_m_s) * mass;
     let kinetic = before.kinetic_j(&template);
     assert!((whole.mass_kg / mass - 1.0).abs() < 1e-13);
-    assert!((whole.centre - about).norm() < share * template.reach_m);
-    assert!((whole.momentum - momentum).norm() < share * mass * speed);
+    assert!((whole.centre - about).norm() < fraction * template.reach_m);
+    assert!((whole.momentum - momentum).norm() < fraction * mass * speed);
     let angular = whole.angular_momentum - Vector3::from(before.angular_momentum);
-    assert!(angular.norm() < share * mass * speed * template.reach_m);
-    assert!((whole.kinetic_j - kinetic).abs() < share * mass * speed * speed);
+    assert!(angular.norm() < fraction * mass * speed * template.reach_m);
+    assert!((whole.kinetic_j - kinetic).abs() < fraction * mass * speed * speed);
     if far_m <= 1.0 {
         assert!((whole.kinetic_j / kinetic - 1.0).abs() < 1e-12);
         // About the origin as well.
@@ -90,8 +90,8 @@ fn swapped(far_m: f64, seed: u64) {
     };
     assert_eq!((*cause, *place_m), ("time", before.place_m));
     assert!((mass_kg[0] / mass_kg[1] - 1.0).abs() < 1e-13);
-    assert!((momentum_n_s[0] - momentum_n_s[1]).abs() < share * mass * speed);
-    assert!((kinetic_j[0] - kinetic_j[1]).abs() < share * mass * speed * speed);
+    assert!((momentum_n_s[0] - momentum_n_s[1]).abs() < fraction * mass * speed);
+    assert!((kinetic_j[0] - kinetic_j[1]).abs() < fraction * mass * speed * speed);
 }
 
 proptest! {

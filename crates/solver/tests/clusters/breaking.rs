@@ -74,7 +74,7 @@ fn assert_consistent(clusters: &Clusters) {
             Some(ended_s) => {
                 assert!(counts.len() > 1);
                 assert_eq!(counts.iter().sum::<u32>(), cluster.particles);
-                assert!(children.clone().all(|c| c.born_s == ended_s));
+                assert!(children.clone().all(|c| c.created_s == ended_s));
                 assert!(clusters.members(id as u32).is_empty());
             }
         }
@@ -119,7 +119,7 @@ fn break_and_compare(
         assert_eq!(of_children, before.members(split.parent));
         for child in &split.children {
             assert_eq!(clusters.history[*child as usize].parent, Some(split.parent));
-            assert_eq!(clusters.history[*child as usize].born_s, time_s);
+            assert_eq!(clusters.history[*child as usize].created_s, time_s);
             assert!(*child as usize >= before.history.len());
         }
     }
@@ -255,7 +255,7 @@ fn bodies_that_come_later_are_clusters_of_their_own() {
     assert_consistent(&clusters);
     assert_eq!(clusters.of_particle, [1, 1, 2, 2, 3, 3, 3, 4, 5, 5]);
     assert_eq!(
-        (clusters.history[3].born_s, clusters.history[3].parent),
+        (clusters.history[3].created_s, clusters.history[3].parent),
         (2.0, None)
     );
     assert_eq!(clusters.visited, 4 + 4 + 6);

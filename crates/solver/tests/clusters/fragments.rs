@@ -91,17 +91,17 @@ proptest! {
         let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
         prop_assert!((mass_fraction_of_largest(&fragments) - largest / mass).abs() < 1e-13);
         let distribution = size_distribution(&fragments);
-        prop_assert!(distribution.is_sorted_by(|a, b| a.size_m < b.size_m && a.mass_fraction < b.mass_fraction));
+        prop_assert!(distribution.is_sorted_by(|a, b| a.equivalent_diameter_m < b.equivalent_diameter_m && a.mass_fraction < b.mass_fraction));
         prop_assert_eq!(distribution.last().unwrap().mass_fraction, 1.0);
         for fragment in &fragments {
             if fragment.particles == 1 {
-                let at = clusters.members(fragment.id)[0] as usize;
+                let at = clusters.members(fragment.fragment_id)[0] as usize;
                 let (place, velocity, spin, force, radius) = spheres[at];
                 prop_assert_eq!(fragment.centre_m, place);
                 prop_assert!((Vector::from(fragment.velocity_m_s) - Vector::from(velocity)).norm() < 1e-14);
                 prop_assert_eq!((fragment.angular_velocity_rad_s, fragment.force_n), (spin, force));
-                prop_assert!((fragment.size_m - 2.0 * radius).abs() < 1e-14);
-                prop_assert!((fragment.extent_m - 2.0 * radius * 3.0_f64.sqrt()).abs() < 1e-13);
+                prop_assert!((fragment.equivalent_diameter_m - 2.0 * radius).abs() < 1e-14);
+                prop_assert!((fragment.box_diagonal_m - 2.0 * radius * 3.0_f64.sqrt()).abs() < 1e-13);
             }
         }
     }
@@ -149,7 +149,7 @@ fn sizes_of_equal_fragments_are_one_point() {
     // Masses 1, 1, 2, 8 of 12.
     let found: Vec<[f64; 2]> = size_distribution(&fragments)
         .iter()
-        .map(|p| [p.size_m, 12.0 * p.mass_fraction])
+        .map(|p| [p.equivalent_diameter_m, 12.0 * p.mass_fraction])
         .collect();
     let wanted = [[2.0, 2.0], [2.0 * 2.0_f64.cbrt(), 4.0], [4.0, 12.0]];
     for (found, wanted) in found.iter().flatten().zip(wanted.as_flattened()) {
@@ -158,7 +158,7 @@ fn sizes_of_equal_fragments_are_one_point() {
     assert_eq!(found.len(), 3);
     assert!((mass_fraction_of_largest(&fragments) - 8.0 / 12.0).abs() < 1e-13);
     // From 9 to 13 in length, 2 across.
-    assert!((fragments[2].extent_m - 24.0_f64.sqrt()).abs() < 1e-13);
+    assert!((fragments[2].box_diagonal_m - 24.0_f64.sqrt()).abs() < 1e-13);
     assert_eq!(mass_fraction_of_largest(&[]), 0.0);
     assert!(size_distribution(&[]).is_empty());
 }

@@ -37,9 +37,9 @@ fn impact_within<L: NormalLaw<f64>>(
     law: L,
     (duration, overlap): (f64, f64),
     steps: f64,
-    share: f64,
+    fraction: f64,
 ) -> Impact {
-    let above = SPEED * share * duration / steps;
+    let above = SPEED * fraction * duration / steps;
     let b = Body::sphere(RADIUS, 4000.0, Vec3(0.0, 0.0, RADIUS + above));
     let mut world = World::new(law, NoRolling, [Body::floor(), b], duration / steps);
     let found = central_impact(&mut world, SPEED);
@@ -159,7 +159,7 @@ fn a_wanted_restitution_comes_out_of_both_laws() {
 fn over_moments<L: NormalLaw<f64> + Copy>(law: L, elastic: (f64, f64), steps: f64) -> [f64; 3] {
     let moments = (0..50).map(|n| (f64::from(n) + 0.5) / 50.0);
     let found: Vec<f64> = moments
-        .map(|share| impact_within(law, elastic, steps, share).e)
+        .map(|fraction| impact_within(law, elastic, steps, fraction).e)
         .collect();
     let least = found.iter().copied().fold(f64::INFINITY, f64::min);
     let most = found.iter().copied().fold(0.0, f64::max);

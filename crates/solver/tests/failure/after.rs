@@ -154,8 +154,8 @@ fn taking_bonds_from_an_unloaded_body_breaks_nothing() {
             }
             let mut weak = ALL;
             let strength = 1e-8 * YOUNG_PA;
-            (weak.tension_pa, weak.compression_pa) = (strength, strength);
-            (weak.shear_pa, weak.von_mises_pa) = (strength, strength);
+            (weak.tensile_strength_pa, weak.compressive_strength_pa) = (strength, strength);
+            (weak.shear_strength_pa, weak.von_mises_strength_pa) = (strength, strength);
             let mut state = bonded(particles, &pairs, weak, incremental);
             let start = state.particles.poses.clone();
             for at in (0..pairs.len()).step_by(2) {

@@ -10,10 +10,10 @@ use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 use dem_run::physics::bond::total::direction;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
-use dem_run::state::loads::SetLoad;
+use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Particles, Wrench};
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
 /// Radius of spheres and bonds, m.
@@ -30,37 +30,37 @@ pub(crate) const YOUNG_PA: f64 = 1e13;
 
 /// Strengths that do not matter.
 pub(crate) const NONE: Criteria = Criteria {
-    tension_pa: f64::INFINITY,
-    compression_pa: f64::INFINITY,
-    shear_pa: f64::INFINITY,
-    von_mises_pa: f64::INFINITY,
+    tensile_strength_pa: f64::INFINITY,
+    compressive_strength_pa: f64::INFINITY,
+    shear_strength_pa: f64::INFINITY,
+    von_mises_strength_pa: f64::INFINITY,
 };
 /// Strength at the tensile edge.
 pub(crate) const NORMAL: Criteria = Criteria {
-    tension_pa: STRENGTH_PA,
+    tensile_strength_pa: STRENGTH_PA,
     ..NONE
 };
 /// Strength at the pressed edge.
 pub(crate) const PRESSED: Criteria = Criteria {
-    compression_pa: 1.3 * STRENGTH_PA,
+    compressive_strength_pa: 1.3 * STRENGTH_PA,
     ..NONE
 };
 /// MUSEN's shear strength.
 pub(crate) const SHEAR: Criteria = Criteria {
-    shear_pa: 0.6 * STRENGTH_PA,
+    shear_strength_pa: 0.6 * STRENGTH_PA,
     ..NONE
 };
 /// The equivalent stress of Platzer 2022, eq. 13.
 pub(crate) const VON_MISES: Criteria = Criteria {
-    von_mises_pa: 1.1 * STRENGTH_PA,
+    von_mises_strength_pa: 1.1 * STRENGTH_PA,
     ..NONE
 };
 /// All four.
 pub(crate) const ALL: Criteria = Criteria {
-    tension_pa: NORMAL.tension_pa,
-    compression_pa: PRESSED.compression_pa,
-    shear_pa: SHEAR.shear_pa,
-    von_mises_pa: VON_MISES.von_mises_pa,
+    tensile_strength_pa: NORMAL.tensile_strength_pa,
+    compressive_strength_pa: PRESSED.compressive_strength_pa,
+    shear_strength_pa: SHEAR.shear_strength_pa,
+    von_mises_strength_pa: VON_MISES.von_mises_strength_pa,
 };
 
 /// Cross-section of a bond, m2.
@@ -92,7 +92,7 @@ pub(crate) fn bonded(
             damped: false,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
-            rate_of: dem_scene::StrainRateMeasure::Elongation,
+            strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
         }]),
         ..Bonds::default()
     };
@@ -118,11 +118,11 @@ pub(crate) fn bonded(
 pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, speed_m_s: f64) {
     let mut holds = [Some(Hold::Fixed); 6];
     holds[0] = Some(Hold::Velocity(speed_m_s));
-    let held = |particle| Held {
+    let held = |particle| HeldParticle {
         particle,
-        ..Held::default()
+        ..HeldParticle::default()
     };
-    state.supports.push(SetSupport {
+    state.supports.push(GroupSupport {
         end_s: f64::INFINITY,
         holds,
         factor: Factor::One,
@@ -149,7 +149,7 @@ pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n
     };
     let points =
         (0..=3 * SOFT_STEPS).map(|step| [f64::from(step) * state.time_step_s, factor(step)]);
-    state.loads.push(SetLoad {
+    state.loads.push(GroupLoad {
         end_s: f64::INFINITY,
         particles: vec![particle],
         force_n,

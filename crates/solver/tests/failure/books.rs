@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
-use dem_run::state::loads::SetLoad;
+use dem_run::state::loads::GroupLoad;
 use dem_run::step::{advance, interact};
 use dem_scene::Factor;
 
@@ -26,7 +26,7 @@ enum Besides {
 /// A rod that is shaken so that its bonds break one after another, or is torn.
 fn shaken(incremental: bool, besides: Besides) -> State {
     let both_edges = Criteria {
-        compression_pa: STRENGTH_PA,
+        compressive_strength_pa: STRENGTH_PA,
         ..NORMAL
     };
     let mut state = rod(6, both_edges, incremental);
@@ -44,7 +44,7 @@ fn shaken(incremental: bool, besides: Besides) -> State {
     }
     match besides {
         Besides::Nothing => {}
-        Besides::Load => state.loads.push(SetLoad {
+        Besides::Load => state.loads.push(GroupLoad {
             end_s: f64::INFINITY,
             particles: vec![6],
             force_n: [

@@ -40,10 +40,10 @@ fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64
     let pulled = axial.max(0.0) + bending;
     let sheared = shear + torsion;
     [
-        (bending + axial).max(0.0) / criteria.tension_pa,
-        (bending - axial).max(0.0) / criteria.compression_pa,
-        sheared / criteria.shear_pa,
-        pulled.hypot(3.0_f64.sqrt() * sheared) / criteria.von_mises_pa,
+        (bending + axial).max(0.0) / criteria.tensile_strength_pa,
+        (bending - axial).max(0.0) / criteria.compressive_strength_pa,
+        sheared / criteria.shear_strength_pa,
+        pulled.hypot(3.0_f64.sqrt() * sheared) / criteria.von_mises_strength_pa,
     ]
 }
 
@@ -63,7 +63,7 @@ fn beyond(state: &State) -> f64 {
 /// Runs until the first break: how far beyond the whole load, in steps of the load, which bond, and
 /// the cause. The bond has not reached its criterion the step before, and has at the break.
 fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
-    let share = |state: &State, at: usize| {
+    let fraction = |state: &State, at: usize| {
         let forces = state.bonds.forces(at, &state.particles.poses);
         let criteria = state.bonds.rules[0].criteria.unwrap();
         let stresses = stresses(&forces.load, state.bonds.radius_m(at));
@@ -79,14 +79,14 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
             let bonds = std::mem::replace(&mut state.bonds, whole);
             // Increments are those of this step, which the bonds had before they broke.
             if bonds.histories.is_empty() {
-                assert!(share(state, at) >= 1.0, "{at} broke before its strength");
+                assert!(fraction(state, at) >= 1.0, "{at} broke before its strength");
             }
             assert!(before[at] < 1.0, "{at} broke after its strength");
             state.bonds = bonds;
             return Some((beyond(state), at, first.cause));
         }
         for (at, before) in before.iter_mut().enumerate() {
-            *before = share(state, at);
+            *before = fraction(state, at);
             assert!(*before < 1.0, "{at} is beyond its strength");
         }
         advance(state);
@@ -142,17 +142,20 @@ fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
             let factors: Vec<f64> = (0..bonds)
                 .map(|at| if at == weakest { 0.9 } else { 1.2 })
                 .collect();
-            let shares: Vec<f64> = (0..bonds)
+            let fractions: Vec<f64> = (0..bonds)
                 .map(|at| {
                     let stresses = closed_form(&end, length - LENGTH_M * (at as f64 + 0.5));
                     used(&criteria, stresses).into_iter().fold(0.0, f64::max) / factors[at]
                 })
                 .collect();
-            let largest = shares.iter().copied().fold(0.0, f64::max);
+            let largest = fractions.iter().copied().fold(0.0, f64::max);
             if largest < 1e-6 {
                 continue;
             }
-            let wanted_bond = shares.iter().position(|&share| share == largest).unwrap();
+            let wanted_bond = fractions
+                .iter()
+                .position(|&fraction| fraction == largest)
+                .unwrap();
             let critical = End {
                 force: end.force.map(|f| f / largest),
                 torque: end.torque.map(|t| t / largest),
@@ -167,15 +170,15 @@ fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
                 assert!((-0.1..1.1).contains(&late), "{what}: {late} steps late");
                 assert_eq!(bond, wanted_bond, "{what}");
                 let stresses = closed_form(&end, length - LENGTH_M * (bond as f64 + 0.5));
-                let shares = used(&criteria, stresses);
-                let largest = shares.iter().copied().fold(0.0, f64::max);
+                let fractions = used(&criteria, stresses);
+                let largest = fractions.iter().copied().fold(0.0, f64::max);
                 let causes = [
                     Cause::Tension,
                     Cause::Compression,
                     Cause::Shear,
                     Cause::VonMises,
                 ];
-                let worst = shares.iter().position(|&share| share == largest);
+                let worst = fractions.iter().position(|&fraction| fraction == largest);
                 assert_eq!(Some(cause), worst.map(|worst| causes[worst]), "{what}");
                 rods += 1;
             }
@@ -207,13 +210,13 @@ fn each_edge_breaks_at_its_own_strength() {
         torque: [0.0, bending * moment, 0.0],
     };
     let of = |tension, compression| Criteria {
-        tension_pa: tension * STRENGTH_PA,
-        compression_pa: compression * STRENGTH_PA,
+        tensile_strength_pa: tension * STRENGTH_PA,
+        compressive_strength_pa: compression * STRENGTH_PA,
         ..NONE
     };
     let never = f64::INFINITY;
     let equivalent = Criteria {
-        von_mises_pa: STRENGTH_PA,
+        von_mises_strength_pa: STRENGTH_PA,
         ..NONE
     };
     let pulled = end("pulled", 1.0, 0.0);

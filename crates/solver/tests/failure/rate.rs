@@ -36,11 +36,11 @@ fn pulled_by(
     criteria: Criteria,
     from_1_s: Option<f64>,
     incremental: bool,
-    rate_of: StrainRateMeasure,
+    strain_rate_measure: StrainRateMeasure,
 ) -> Option<(f64, Cause)> {
     let mut state = rod(1, criteria, incremental);
     Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = from_1_s;
-    Arc::make_mut(&mut state.bonds.rules)[0].rate_of = rate_of;
+    Arc::make_mut(&mut state.bonds.rules)[0].strain_rate_measure = strain_rate_measure;
     let half = 0.5 * rate_1_s * LENGTH_M;
     hold(&mut state, std::iter::once(0), -half);
     hold(&mut state, std::iter::once(1), half);
@@ -119,13 +119,14 @@ fn below_the_rate_that_is_set_nothing_is_strengthened() {
 fn pressed_bonds_are_not_strengthened() {
     on_one_thread(|| {
         for rate in [-1e-3, -1.0, -10.0] {
-            for rate_of in [
+            for strain_rate_measure in [
                 StrainRateMeasure::Elongation,
                 StrainRateMeasure::RelativeVelocity,
             ] {
                 for incremental in [false, true] {
-                    let found = pulled_by(rate, PRESSED, Some(0.0), incremental, rate_of);
-                    let what = format!("{rate}/s, {rate_of:?}");
+                    let found =
+                        pulled_by(rate, PRESSED, Some(0.0), incremental, strain_rate_measure);
+                    let what = format!("{rate}/s, {strain_rate_measure:?}");
                     assert_breaks_at(found, 1.3, Cause::Compression, &what);
                 }
             }
@@ -162,10 +163,10 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
 #[test]
 fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {
-        let breaks = |rate_of: StrainRateMeasure| {
+        let breaks = |strain_rate_measure: StrainRateMeasure| {
             let mut state = rod(1, NORMAL, false);
             Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(1.0);
-            Arc::make_mut(&mut state.bonds.rules)[0].rate_of = rate_of;
+            Arc::make_mut(&mut state.bonds.rules)[0].strain_rate_measure = strain_rate_measure;
             // 40/s: a factor of 5.46; the turning pulls at twice the strength.
             let spin_1_s = 40.0;
             let half_m = 0.5 * LENGTH_M;
@@ -177,7 +178,7 @@ fn turning_strengthens_by_the_printed_rate_alone() {
                 .criteria
                 .as_mut()
                 .unwrap();
-            criteria.tension_pa = strength_pa;
+            criteria.tensile_strength_pa = strength_pa;
             for (motion, side) in state.particles.motions.iter_mut().zip([-1.0, 1.0]) {
                 motion.velocity_m_s = [0.0, side * half_m * spin_1_s, 0.0];
                 motion.spin_rad_s = [0.0, 0.0, spin_1_s];

@@ -108,11 +108,11 @@ fn strengths_are_those_of_weibull() {
         .iter()
         .enumerate()
         .fold(0.0, |largest: f64, (i, strength)| {
-            let share = 1.0 - (-strength.powf(MODULUS)).exp();
+            let fraction = 1.0 - (-strength.powf(MODULUS)).exp();
             let (before, after) = (i as f64 / COUNT as f64, (i + 1) as f64 / COUNT as f64);
             largest
-                .max((share - before).abs())
-                .max((share - after).abs())
+                .max((fraction - before).abs())
+                .max((fraction - after).abs())
         });
     assert!(largest < 1.63 / (COUNT as f64).sqrt(), "off by {largest}");
 }
@@ -188,7 +188,7 @@ fn planned_strengths(text: &str, body: &Body) -> BTreeMap<[u32; 2], f64> {
     }
     interact(&mut state);
     exchange(&mut state);
-    let body = PlacedBody::born(&state.scratch.events.renumberings[0].born[0]);
+    let body = PlacedBody::created(&state.scratch.events.renumberings[0].created[0]);
     strengths(&state, &body)
 }
 

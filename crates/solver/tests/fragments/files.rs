@@ -15,15 +15,15 @@ use super::{PARTICLES, burst, bursting, planned, run_into, table};
 /// A row of fragments.csv.
 struct Row {
     id: u32,
-    parent: Option<u32>,
+    parent_id: Option<u32>,
     particles: u32,
     mass_kg: f64,
     centre: Vector3<f64>,
     velocity: Vector3<f64>,
     spin: Vector3<f64>,
     force: Vector3<f64>,
-    size_m: f64,
-    extent_m: f64,
+    equivalent_diameter_m: f64,
+    box_diagonal_m: f64,
 }
 
 /// The moments of fragments.csv, each with its fragments.
@@ -36,15 +36,15 @@ fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
         let vector = |at: usize| Vector3::new(number(at), number(at + 1), number(at + 2));
         let fragment = Row {
             id: row[1].parse().unwrap(),
-            parent: (!row[2].is_empty()).then(|| row[2].parse().unwrap()),
+            parent_id: (!row[2].is_empty()).then(|| row[2].parse().unwrap()),
             particles: row[3].parse().unwrap(),
             mass_kg: number(4),
             centre: vector(5),
             velocity: vector(8),
             spin: vector(11),
             force: vector(14),
-            size_m: number(17),
-            extent_m: number(18),
+            equivalent_diameter_m: number(17),
+            box_diagonal_m: number(18),
         };
         match moments.last_mut() {
             Some((time_s, of_moment)) if *time_s == number(0) => of_moment.push(fragment),
@@ -106,8 +106,8 @@ fn fragments_of_every_moment_make_up_the_whole() {
         assert!((carried - momentum).norm() < 1e-9 * scale, "at {time_s}");
         for fragment in fragments {
             let cubes = 3.0 * fragment.mass_kg / (4.0 * std::f64::consts::PI * 2050.0);
-            assert!((fragment.size_m / (2.0 * cubes.cbrt()) - 1.0).abs() < 1e-9);
-            assert!(fragment.extent_m > fragment.size_m);
+            assert!((fragment.equivalent_diameter_m / (2.0 * cubes.cbrt()) - 1.0).abs() < 1e-9);
+            assert!(fragment.box_diagonal_m > fragment.equivalent_diameter_m);
         }
     }
     // Before anything has happened: two bodies, the first by name the pair.
@@ -116,7 +116,7 @@ fn fragments_of_every_moment_make_up_the_whole() {
     assert_eq!(first.len(), 2);
     assert_eq!(first[0].particles, 2);
     assert_eq!(first[1].particles as usize, PARTICLES);
-    assert!(first.iter().all(|f| f.parent.is_none()));
+    assert!(first.iter().all(|f| f.parent_id.is_none()));
     assert!((first[1].spin - Vector3::new(0.0, 0.0, 2500.0)).norm() < 1e-6);
     assert!((first[1].centre - Vector3::new(0.059, 0.0, 0.0)).norm() < 1e-12);
     assert!((first[0].velocity - Vector3::new(3.0, 0.0, 1.0)).norm() < 1e-12);
@@ -169,10 +169,10 @@ fn the_tree_tells_who_broke_off_whom() {
             children.entry(parent).or_default().push(row);
         }
     }
-    for (number, (id, parent, born_s, ended_s, particles)) in (0..).zip(&tree) {
+    for (number, (id, parent, created_s, ended_s, particles)) in (0..).zip(&tree) {
         assert_eq!(*id, number);
         assert_eq!(parent.is_none(), number < 2);
-        assert_eq!(parent.is_none(), *born_s == 0.0);
+        assert_eq!(parent.is_none(), *created_s == 0.0);
         match ended_s {
             None => assert!(!children.contains_key(id)),
             Some(ended_s) => {
@@ -191,7 +191,10 @@ fn the_tree_tells_who_broke_off_whom() {
     // Fragments of the table have the parents and particles of the tree.
     for fragment in moments(&folder).iter().flat_map(|moment| &moment.1) {
         let (_, parent, _, _, particles) = tree[fragment.id as usize];
-        assert_eq!((fragment.parent, fragment.particles), (parent, particles));
+        assert_eq!(
+            (fragment.parent_id, fragment.particles),
+            (parent, particles)
+        );
     }
 }
 
@@ -223,7 +226,7 @@ fn every_split_is_an_event() {
 fn the_text_of_a_split_is_short_however_many_pieces_there_are() {
     let cluster = |particles: u32| Cluster {
         parent: None,
-        born_s: 0.0,
+        created_s: 0.0,
         ended_s: None,
         particles,
     };

@@ -8,9 +8,9 @@ use dem_run::state::clusters::{Cluster, Fragment};
 use super::burst;
 
 fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
-    let cluster = |&(born_s, ended_s): &(f64, Option<f64>)| Cluster {
+    let cluster = |&(created_s, ended_s): &(f64, Option<f64>)| Cluster {
         parent: None,
-        born_s,
+        created_s,
         ended_s,
         particles: 1,
     };
@@ -47,9 +47,9 @@ fn numbers_step_when_clusters_split() {
 
 #[test]
 fn shares_step_at_every_size_up_to_all_of_the_mass() {
-    let fragment = |id: u32, mass_kg: f64, size_m: f64| Fragment {
-        id,
-        parent: None,
+    let fragment = |id: u32, mass_kg: f64, equivalent_diameter_m: f64| Fragment {
+        fragment_id: id,
+        parent_id: None,
         particles: 1,
         mass_kg,
         centre_m: [0.0; 3],
@@ -57,8 +57,8 @@ fn shares_step_at_every_size_up_to_all_of_the_mass() {
         angular_velocity_rad_s: [0.0; 3],
         angular_momentum_kg_m2_s: [0.0; 3],
         force_n: [0.0; 3],
-        size_m,
-        extent_m: size_m,
+        equivalent_diameter_m,
+        box_diagonal_m: equivalent_diameter_m,
     };
     let all = [
         fragment(0, 5.0, 0.5),

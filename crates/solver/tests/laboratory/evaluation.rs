@@ -62,16 +62,16 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
 /// load travels further by what gives way at it.
 pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
     let rows = (0..=1100).map(|i| {
-        let share = f64::from(i) / 1000.0;
-        let force_n = if share <= 1.0 {
-            share * largest
+        let fraction = f64::from(i) / 1000.0;
+        let force_n = if fraction <= 1.0 {
+            fraction * largest
         } else {
             0.1 * largest
         };
-        let deflection_m = share * largest / stiffness;
+        let deflection_m = fraction * largest / stiffness;
         Row {
-            time_s: share,
-            travel_m: PLAY + deflection_m + SOFT * share * largest,
+            time_s: fraction,
+            travel_m: PLAY + deflection_m + SOFT * fraction * largest,
             force_n,
             reaction_n: force_n,
             deflection_m,
@@ -196,7 +196,7 @@ fn a_beam_by_its_force_and_way() {
     assert_near(Some(crack.offset_m), 0.035);
     assert_near(Some(crack.spread_m), 0.025);
     assert!(crack.is_within);
-    assert_near(Some(crack.share_within), 0.5);
+    assert_near(Some(crack.fraction_within), 0.5);
     assert!(result.doubts().is_empty());
 }
 
@@ -278,18 +278,18 @@ fn a_body_that_holds_has_no_strength() {
     let [broken_bonds, all_bonds] = result.broken_bonds;
     assert_eq!((broken_bonds, all_bonds), (record.broken.len(), ALL_BONDS));
     let text = result.to_string();
-    let share = format!(
+    let fraction = format!(
         "the load did not fall to half of its largest; {broken_bonds} of {ALL_BONDS} bonds broke"
     );
-    assert!(text.contains(&share), "{text}");
+    assert!(text.contains(&fraction), "{text}");
     let doubts = result.doubts();
     assert_eq!(doubts.len(), 1, "{doubts:?}");
     let said =
         "the load did not fall to half of its largest within the stroke, so there is no strength";
     assert!(doubts[0].starts_with(said), "{doubts:?}");
-    let share = 100.0 * broken_bonds as f64 / ALL_BONDS as f64;
+    let fraction = 100.0 * broken_bonds as f64 / ALL_BONDS as f64;
     assert!(
-        doubts[0].contains(&format!("although {share:.0} % of the bonds are broken")),
+        doubts[0].contains(&format!("although {fraction:.0} % of the bonds are broken")),
         "{doubts:?}"
     );
     // Whoever asks for a stiffness alone has it.

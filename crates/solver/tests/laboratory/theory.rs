@@ -92,7 +92,7 @@ fn four_point_bending_is_that_of_the_reference() {
         read.input.sigma / modulus,
         read.outer_fibre_strain_at_failure,
     );
-    for (kappa, shear, both, share) in [
+    for (kappa, shear, both, fraction) in [
         (
             KAPPA,
             read.shear_deflection_at_pin.five_sixths,
@@ -107,7 +107,7 @@ fn four_point_bending_is_that_of_the_reference() {
         ),
     ] {
         assert_same(beam.shear_deflection_m(force, modulus, nu, kappa), shear);
-        assert_same(beam.shear_over_bending(nu, kappa), share);
+        assert_same(beam.shear_over_bending(nu, kappa), fraction);
         assert_same(force / beam.stiffness_n_m(modulus, nu, kappa), both);
     }
 }

@@ -60,7 +60,7 @@ fn vector(values: &BTreeMap<String, f64>, what: &str) -> Vector3<f64> {
 }
 
 /// Size of what is compared: 1 m, 1 m/s, 1 rad, 100 rad/s.
-fn assert_same(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>, share: f64) {
+fn assert_same(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>, fraction: f64) {
     for (name, value) in one {
         let size = if name.starts_with("angular") {
             100.0
@@ -68,7 +68,11 @@ fn assert_same(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>, share
             1.0
         };
         let off = (value - other[name]).abs();
-        assert!(off <= share * size, "{name}: {value} and {}", other[name]);
+        assert!(
+            off <= fraction * size,
+            "{name}: {value} and {}",
+            other[name]
+        );
     }
 }
 

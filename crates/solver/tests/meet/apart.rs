@@ -114,13 +114,13 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
     while state.time_s < end_s {
         // Weaker and weaker, or nothing at all from a moment on.
         let gone = state.time_s / end_s;
-        let tension_pa = match at_once {
-            true if gone < 0.1 => strong.tension_pa,
+        let tensile_strength_pa = match at_once {
+            true if gone < 0.1 => strong.tensile_strength_pa,
             true => 1e-9,
             false => 1e6 * (-20.0 * gone).exp(),
         };
         let weaker = Criteria {
-            tension_pa,
+            tensile_strength_pa,
             ..strong
         };
         Arc::make_mut(&mut state.bonds.rules)[0].criteria = Some(weaker);

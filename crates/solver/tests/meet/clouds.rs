@@ -65,7 +65,7 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
 
 /// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common
 /// centre.
-pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
+pub(crate) fn cloud(skin_m: f64, partitions: usize, time_step_s: f64) -> State {
     let mut any = scattered();
     let mut particles = Particles::default();
     for n in 0..512_u32 {
@@ -93,7 +93,7 @@ pub(crate) fn cloud(skin_m: f64, shares: usize, time_step_s: f64) -> State {
         lost_j: vec![[0.0; 2]; count],
         ..Contacts::default()
     };
-    contacts.divide(count, shares);
+    contacts.divide(count, partitions);
     state.model.contacts = Some(Arc::clone(&contacts.model));
     state.contacts = Some(contacts);
     state.clusters = Some(Clusters::new(count, &state.bonds));
@@ -161,8 +161,8 @@ fn to_look_at_all_pairs_in_each_step_changes_no_bit() {
 
 #[test]
 fn shares_and_skins_change_no_bit() {
-    let run = |skin_m: f64, shares: usize| {
-        let mut state = cloud(skin_m, shares, 2e-7);
+    let run = |skin_m: f64, partitions: usize| {
+        let mut state = cloud(skin_m, partitions, 2e-7);
         for _ in 0..4000 {
             step(&mut state);
         }
@@ -174,9 +174,9 @@ fn shares_and_skins_change_no_bit() {
         )
     };
     let one = run(0.1e-3, 1);
-    for (skin_m, shares) in [(0.1e-3, 2), (0.1e-3, 5), (0.02e-3, 3), (0.5e-3, 1)] {
-        let other = run(skin_m, shares);
-        assert!(one == other, "skin {skin_m}, {shares} shares");
+    for (skin_m, partitions) in [(0.1e-3, 2), (0.1e-3, 5), (0.02e-3, 3), (0.5e-3, 1)] {
+        let other = run(skin_m, partitions);
+        assert!(one == other, "skin {skin_m}, {partitions} partitions");
     }
 }
 

@@ -224,14 +224,14 @@ fn half_the_safety_halves_the_step_of_impacts() {
             "an impact decides"
         );
         let speed_m_s = usual.step.impact_speed_m_s;
-        for share in [0.5, 0.1] {
-            let found = with(0.9 * share);
+        for fraction in [0.5, 0.1] {
+            let found = with(0.9 * fraction);
             // The end time is met.
             let ratio = found.step.step_s / usual.step.step_s;
-            assert!((ratio / share - 1.0).abs() < 1e-3, "{share}: {ratio}");
+            assert!((ratio / fraction - 1.0).abs() < 1e-3, "{fraction}: {ratio}");
             let in_run =
-                [0.9 * share, 0.9].map(|safety| impact_step_s(&found.state, speed_m_s, safety));
-            assert!((in_run[0] / in_run[1] / share - 1.0).abs() < 1e-14);
+                [0.9 * fraction, 0.9].map(|safety| impact_step_s(&found.state, speed_m_s, safety));
+            assert!((in_run[0] / in_run[1] / fraction - 1.0).abs() < 1e-14);
         }
     }
 }

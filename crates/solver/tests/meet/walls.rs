@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use dem_run::check::limit::{Bound, limit};
-use dem_run::check::linear::{Matters, contact_rates, largest_contact_rate_1_s2};
+use dem_run::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
@@ -110,29 +110,31 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
         step_s: f64::INFINITY,
         is_damped: false,
     };
-    let mut shares = Vec::new();
+    let mut fractions = Vec::new();
     while state.time_s < 4e-3 {
         interact(&mut state);
         if state.steps.is_multiple_of(200) {
             let exact_s = limit(&mut state).step_s;
             let bound_s = free.with_more(contact_rates(&state));
             if exact_s.is_finite() {
-                shares.push(bound_s / exact_s);
+                fractions.push(bound_s / exact_s);
             }
         }
         advance(&mut state);
     }
-    let smallest = shares
+    let smallest = fractions
         .iter()
-        .fold(f64::INFINITY, |least, share| least.min(*share));
-    let largest = shares.iter().fold(0.0_f64, |most, share| most.max(*share));
+        .fold(f64::INFINITY, |least, fraction| least.min(*fraction));
+    let largest = fractions
+        .iter()
+        .fold(0.0_f64, |most, fraction| most.max(*fraction));
     eprintln!(
         "{} limits, bounds {smallest:.3} to {largest:.3} of them",
-        shares.len()
+        fractions.len()
     );
     assert!(
-        shares.len() > 30 && smallest > 0.3 && largest < 1.0 + 1e-4,
-        "{shares:?}"
+        fractions.len() > 30 && smallest > 0.3 && largest < 1.0 + 1e-4,
+        "{fractions:?}"
     );
 }
 
@@ -154,18 +156,18 @@ fn the_stiffest_contact_is_found_among_those_that_matter() {
     while state.time_s < 4e-3 {
         interact(&mut state);
         if state.steps.is_multiple_of(100) {
-            let largest = largest_contact_rate_1_s2(&state, Matters::ALL);
+            let largest = largest_contact_rate_1_s2(&state, StiffestContacts::ALL);
             looks += usize::from(largest > 0.0);
-            for share in [0.0, 0.3, 0.9, 0.999, 1.001, 3.0] {
-                let matters = Matters {
-                    above_1_s2: share * largest,
+            for fraction in [0.0, 0.3, 0.9, 0.999, 1.001, 3.0] {
+                let matters = StiffestContacts {
+                    above_1_s2: fraction * largest,
                     extremes: Some([radius_m, inverse_kg]),
                 };
                 let found = largest_contact_rate_1_s2(&state, matters);
-                if share < 1.0 {
-                    assert_eq!(found, largest, "above {share} of it");
+                if fraction < 1.0 {
+                    assert_eq!(found, largest, "above {fraction} of it");
                 } else {
-                    assert!(found <= largest, "above {share} of it");
+                    assert!(found <= largest, "above {fraction} of it");
                 }
             }
         }

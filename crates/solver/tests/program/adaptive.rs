@@ -232,6 +232,6 @@ fn who_is_near_is_asked_anew_when_the_step_rises() {
     // How deep they press each other, and how much that takes.
     let apart_m = measure(&following, "zz") - measure(&falling, "zz");
     assert!(apart_m.abs() < 2e-5, "{apart_m:e}");
-    let share = measure(&following, "e") / measure(&falling, "e");
-    assert!((share - 1.0).abs() < 0.01, "{share}");
+    let fraction = measure(&following, "e") / measure(&falling, "e");
+    assert!((fraction - 1.0).abs() < 0.01, "{fraction}");
 }

@@ -223,15 +223,15 @@ fn what_buckles_is_unstable() {
     let said = bench.bad(&scene, &options, 3);
     assert!(said.contains("% of the loads and displacements and no stable one for more: a pivot of the stiffness is not positive there, so the body buckles or snaps through"), "{said}");
     // Euler's load of the slender column is 38.8 MN, 19.4 %.
-    let share = said
+    let fraction = said
         .split_once("found for ")
         .unwrap()
         .1
         .split_once(" %")
         .unwrap()
         .0;
-    let share: f64 = share.parse().unwrap();
-    assert!((17.0..20.0).contains(&share), "{said}");
+    let fraction: f64 = fraction.parse().unwrap();
+    assert!((17.0..20.0).contains(&fraction), "{said}");
     let left = summary(&std::fs::read_to_string(bench.path("out/summary.json")).unwrap());
     assert_eq!(left["ended_by"], "failure");
     assert_eq!(

@@ -44,7 +44,7 @@ fn same(a: &State, b: &State) -> bool {
             (
                 w.touching.clone(),
                 w.push,
-                w.slept_on,
+                w.load_by_sleepers,
                 w.friction_j,
                 w.damping_j,
             )

@@ -52,7 +52,7 @@ fn the_ground_still_feels_those_who_sleep() {
     let mut state = planned(&format!("{}{SLEEP}", falling()));
     go_until_asleep(&mut state, 3);
     interact(&mut state);
-    let [force_n, torque_n_m] = state.walls[0].whole_push();
+    let [force_n, torque_n_m] = state.walls[0].total_load();
     let weight_n = 2.25 * slab_kg() * super::GRAVITY_M_S2;
     assert_eq!(state.walls[0].push.force_n, [0.0; 3]);
     // They still swung a little, by at most `speed` times the frequency over gravity.

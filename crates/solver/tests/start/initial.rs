@@ -81,7 +81,7 @@ fn sets_are_picked_before_anything_is_displaced() {
          initial.two = {{ group = \"left\", displacement = [0, 1e-3, 0] }}\n"
     );
     let plan = planned(&text);
-    assert_eq!(plan.sets["left"], [0]);
+    assert_eq!(plan.groups["left"], [0]);
     assert!((place(&plan.state, 0).x - 5e-3).abs() < 1e-18);
     assert!((place(&plan.state, 0).y - 1e-3).abs() < 1e-18);
 }

@@ -86,9 +86,9 @@ fn a_random_body_with_weight_and_torque() {
         high = high.max(pose.position_m[0]);
     }
     let among = |from: f64, to: f64| -> Vec<u32> {
-        let share = |i: u32| (poses[i as usize].position_m[0] - low) / (high - low);
+        let fraction = |i: u32| (poses[i as usize].position_m[0] - low) / (high - low);
         (0..poses.len() as u32)
-            .filter(|i| (from..=to).contains(&share(*i)))
+            .filter(|i| (from..=to).contains(&fraction(*i)))
             .collect()
     };
     let (left, right) = (among(0.0, 0.1), among(0.9, 1.0));

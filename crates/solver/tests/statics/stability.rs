@@ -50,7 +50,7 @@ fn a_column_buckles_above_eulers_load() {
         assert_eq!(problem.cause, Cause::Pivot);
         // The load is stepped down to a thousandth; shorter bonds would be nearer by (pi/2n)^2 /
         // 12.
-        assert_near(over * problem.share, 1.0, 5e-3, "Euler's load");
+        assert_near(over * problem.fraction, 1.0, 5e-3, "Euler's load");
     }
 }
 
@@ -78,15 +78,15 @@ fn it_stops_when_told() {
     let (mut state, critical_n) = column();
     load(&mut state, &[BONDS], [0.0, critical_n, 0.0], [0.0; 3]);
     let asked = Cell::new(0);
-    let goes_on = |share: f64| {
-        assert!((0.0..=1.0).contains(&share));
+    let goes_on = |fraction: f64| {
+        assert!((0.0..=1.0).contains(&fraction));
         asked.set(asked.get() + 1);
         asked.get() < 3
     };
     let before = state.particles.poses.clone();
     let problem = equilibrium(&mut state, END_S, &goes_on).unwrap_err();
     assert_eq!(problem.cause, Cause::Interrupted);
-    assert_eq!(problem.share, 0.0);
+    assert_eq!(problem.fraction, 0.0);
     assert_eq!(asked.get(), 3);
     assert_eq!(state.particles.poses, before);
 }

@@ -9,14 +9,14 @@ use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::bonds::BondRule;
 
-fn breaking(tension_pa: f64, incremental: bool) -> BondRule {
+fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
     BondRule {
         incremental,
         criteria: Some(Criteria {
-            tension_pa,
-            compression_pa: f64::INFINITY,
-            shear_pa: f64::INFINITY,
-            von_mises_pa: f64::INFINITY,
+            tensile_strength_pa,
+            compressive_strength_pa: f64::INFINITY,
+            shear_strength_pa: f64::INFINITY,
+            von_mises_strength_pa: f64::INFINITY,
         }),
         ..ELASTIC
     }

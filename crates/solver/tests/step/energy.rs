@@ -77,8 +77,8 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
                 let mut state = tumbling(rule, finer);
                 let third = 100 * u64::from(finer);
                 let mut energy = 0.0_f64;
-                for (share, steps) in [(1.0, third), (4.0 / 3.0, third), (2.0 / 3.0, third)] {
-                    state.time_step_s = share * step_s;
+                for (fraction, steps) in [(1.0, third), (4.0 / 3.0, third), (2.0 / 3.0, third)] {
+                    state.time_step_s = fraction * step_s;
                     let errors = run(&mut state, steps, 1);
                     energy = energy.max(errors.energy);
                     assert!(errors.momentum < 1e-12 && errors.angular_momentum < 1e-12);

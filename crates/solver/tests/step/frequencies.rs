@@ -4,8 +4,8 @@ use crate::bars::{Bonding, ELASTIC, bar, body, steel, with_threads};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::particles::{Motion, Particles};
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_run::step::step;
 use dem_scene::{Factor, Hold};
 use serde::Deserialize;
@@ -218,11 +218,11 @@ fn a_chain_rings_with_the_modes_of_the_reference() {
             ] {
                 let mut state = bar(model(&name), ELASTIC, step_s);
                 if clamped {
-                    state.supports = vec![SetSupport {
+                    state.supports = vec![GroupSupport {
                         end_s: f64::INFINITY,
                         holds: [Some(Hold::Fixed); 6],
                         factor: Factor::One,
-                        held: vec![Held::default()],
+                        held: vec![HeldParticle::default()],
                     }];
                 }
                 let velocities = rung(state, 60_000, every);

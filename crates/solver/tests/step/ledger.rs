@@ -6,16 +6,16 @@ use crate::bars::{
 };
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
-use dem_run::state::loads::SetLoad;
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::loads::GroupLoad;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
 /// Steps of the limit over this that a run lasts, and of which times are made that all steps meet.
 const LENGTH: f64 = 300.0 * BAR_LIMIT_S;
 
-fn load(particle: u32, factor: Factor) -> SetLoad {
-    SetLoad {
+fn load(particle: u32, factor: Factor) -> GroupLoad {
+    GroupLoad {
         end_s: f64::INFINITY,
         particles: vec![particle, 7],
         force_n: [3e5, -2e6, 1e6],
@@ -24,14 +24,14 @@ fn load(particle: u32, factor: Factor) -> SetLoad {
     }
 }
 
-fn support(particle: u32, holds: [Option<Hold>; 6], factor: Factor) -> SetSupport {
-    SetSupport {
+fn support(particle: u32, holds: [Option<Hold>; 6], factor: Factor) -> GroupSupport {
+    GroupSupport {
         end_s: f64::INFINITY,
         holds,
         factor,
-        held: vec![Held {
+        held: vec![HeldParticle {
             particle,
-            ..Held::default()
+            ..HeldParticle::default()
         }],
     }
 }
@@ -42,7 +42,7 @@ const UNTIL: Factor = Factor::Ramp {
 };
 
 fn table() -> Factor {
-    let at = |share: f64, factor: f64| [share * LENGTH, factor];
+    let at = |fraction: f64, factor: f64| [fraction * LENGTH, factor];
     Factor::Table(vec![
         at(0.1, 0.2),
         at(0.4, 1.0),

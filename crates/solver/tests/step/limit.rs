@@ -53,17 +53,17 @@ fn undamped_limits_are_those_of_the_reference() {
 #[test]
 fn damped_limits_are_those_of_the_reference() {
     for (name, model, body, reference) in all() {
-        for (eta, shares) in [
+        for (eta, fractions) in [
             (BondDamping::Chen as fn(f64) -> BondDamping, &reference.chen),
             (BondDamping::ChenByMode, &reference.chen_by_mode),
         ] {
-            for (value, share) in shares {
+            for (value, fraction) in fractions {
                 let mut state = body(model, ELASTIC, 1e-9);
                 damp(&mut state, eta(value.parse().unwrap()));
                 let found = limit(&mut state);
-                let ratio = found.step_s / (reference.step_s * share);
+                let ratio = found.step_s / (reference.step_s * fraction);
                 let k = found.omega_rad_s * found.omega_rad_s;
-                let safe = safe_step(k, found.damping_1_s) / (reference.step_s * share);
+                let safe = safe_step(k, found.damping_1_s) / (reference.step_s * fraction);
                 eprintln!("{name} {value}: {ratio:.5}; from two eigenvalues {safe:.5}");
                 assert!(
                     (1.0 - 1e-3..1.0 + 1e-6).contains(&ratio),
@@ -87,14 +87,14 @@ fn a_bound_tells_whether_a_step_is_stable() {
                 damp_particles(&mut state, 0.2);
             }
             let limit_s = limit(&mut state).step_s;
-            for share in [0.3, 0.9, 0.99, 1.01, 1.5, 10.0] {
-                let bound = bound_near(&mut state, share * limit_s);
+            for fraction in [0.3, 0.9, 0.99, 1.01, 1.5, 10.0] {
+                let bound = bound_near(&mut state, fraction * limit_s);
                 let found = bound.step_s / limit_s;
                 assert_eq!(bound.is_damped, damping > 0.0);
                 // A damped limit is found too small by up to 1e-3.
                 assert!(
-                    found < 1.0 + 1e-3 && (share > 1.0 || found > share * (1.0 - 1e-5)),
-                    "{name}, damping {damping}, {share} of the limit: {found}"
+                    found < 1.0 + 1e-3 && (fraction > 1.0 || found > fraction * (1.0 - 1e-5)),
+                    "{name}, damping {damping}, {fraction} of the limit: {found}"
                 );
             }
         }

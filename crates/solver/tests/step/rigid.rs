@@ -5,7 +5,7 @@ use crate::bars::{
 };
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::state::State;
-use dem_run::state::loads::SetLoad;
+use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::Particles;
 use dem_run::step::step;
 use dem_scene::Factor;
@@ -75,7 +75,7 @@ fn scene(
     let mut state = body(particles, pairs, &bonding, 1e-6);
     damp(&mut state, BondDamping::ChenByMode(0.05));
     state.model.gravity_m_s2 = gravity.into();
-    state.loads = vec![SetLoad {
+    state.loads = vec![GroupLoad {
         end_s: f64::INFINITY,
         particles: vec![pulled],
         force_n: by[0].into(),

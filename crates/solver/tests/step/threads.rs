@@ -11,27 +11,27 @@ use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
 use dem_run::state::events::Break;
-use dem_run::state::loads::SetLoad;
+use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Motion, Pose};
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
 const BREAKING: BondRule = BondRule {
     incremental: false,
     damped: false,
     criteria: Some(Criteria {
-        tension_pa: 0.1e6,
-        compression_pa: 0.1e6,
-        shear_pa: 0.2e6,
-        von_mises_pa: 0.12e6,
+        tensile_strength_pa: 0.1e6,
+        compressive_strength_pa: 0.1e6,
+        shear_strength_pa: 0.2e6,
+        von_mises_strength_pa: 0.12e6,
     }),
     strengthening_from_1_s: Some(1.1),
-    rate_of: dem_scene::StrainRateMeasure::Elongation,
+    strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
 };
 
 /// Three random bodies side by side: incremental, total, incremental; all break.
-fn scene(shares: usize) -> State {
+fn scene(partitions: usize) -> State {
     let (mut particles, pairs) = random_spheres();
     let one = particles.clone();
     for shift in [0.01, 0.02] {
@@ -62,18 +62,18 @@ fn scene(shares: usize) -> State {
     bonds.strength_factors = (0..bonds.len())
         .map(|at| 0.8 + 0.01 * (at % 50) as f64)
         .collect();
-    let mut state = State::new(particles, bonds, 5e-7, shares);
+    let mut state = State::new(particles, bonds, 5e-7, partitions);
     damp(&mut state, BondDamping::Chen(0.05));
     damp_particles(&mut state, 0.1);
     state.model.gravity_m_s2 = [1.0, 2.0, -9.81];
-    state.loads = vec![SetLoad {
+    state.loads = vec![GroupLoad {
         end_s: f64::INFINITY,
         particles: (100..1400).step_by(7).collect(),
         force_n: [1e-3, 2e-3, 0.0],
         torque_n_m: [0.0, 1e-7, 0.0],
         factor: Factor::Ramp { until_s: 1e-4 },
     }];
-    state.supports = vec![SetSupport {
+    state.supports = vec![GroupSupport {
         end_s: f64::INFINITY,
         holds: [
             Some(Hold::Fixed),
@@ -86,9 +86,9 @@ fn scene(shares: usize) -> State {
         factor: Factor::One,
         held: (0..1500)
             .step_by(31)
-            .map(|particle| Held {
+            .map(|particle| HeldParticle {
                 particle,
-                ..Held::default()
+                ..HeldParticle::default()
             })
             .collect(),
     }];
@@ -116,9 +116,9 @@ struct Left {
     broken: Vec<Break>,
 }
 
-fn left(shares: usize, threads: usize) -> Left {
+fn left(partitions: usize, threads: usize) -> Left {
     with_threads(threads, || {
-        let mut state = scene(shares);
+        let mut state = scene(partitions);
         let limit = limit(&mut state);
         let (mut balances, mut broken) = (Vec::new(), Vec::new());
         for _ in 0..150 {
@@ -149,10 +149,10 @@ fn shares_and_threads_do_not_change_a_bit() {
         .collect();
     eprintln!("broken {per_body:?}, {:?}", one.balances.last().unwrap());
     assert!(per_body.iter().all(|&count| count > 10), "{per_body:?}");
-    for (shares, threads) in [(2, 2), (3, 1), (3, 4), (7, 2), (7, 4), (1, 4)] {
+    for (partitions, threads) in [(2, 2), (3, 1), (3, 4), (7, 2), (7, 4), (1, 4)] {
         assert!(
-            left(shares, threads) == one,
-            "{shares} shares, {threads} threads"
+            left(partitions, threads) == one,
+            "{partitions} partitions, {threads} threads"
         );
     }
 }

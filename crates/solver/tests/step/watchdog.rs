@@ -45,9 +45,9 @@ fn try_all(name: &str, body: impl Fn() -> State, speed_m_s: f64, steps: u64) {
         }
         let limit_s = limit(&mut state).step_s;
         shake(&mut state, speed_m_s);
-        let [stable, unstable] = [0.98, 1.02].map(|share| {
+        let [stable, unstable] = [0.98, 1.02].map(|fraction| {
             let mut state = state.clone();
-            state.time_step_s = share * limit_s;
+            state.time_step_s = fraction * limit_s;
             stopped_at(&mut state, steps)
         });
         eprintln!("{name} {bonds:?} {particles}: {stable:?} {unstable:?}");

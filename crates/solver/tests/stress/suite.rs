@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use dem_run::stress::cases::{CASES, chosen};
 use dem_run::stress::limit_map::{largest_step_s, program_limit};
-use dem_run::stress::prediction::{Prediction, Way};
+use dem_run::stress::prediction::{ObservationMethod, Prediction};
 use dem_run::stress::text::row;
-use dem_run::stress::verdict::try_case;
+use dem_run::stress::verdict::run_case;
 
 use super::{member, members};
 
@@ -15,7 +15,7 @@ use super::{member, members};
 fn every_case_does_as_predicted() {
     let mut wrong = Vec::new();
     for case in CASES {
-        let result = try_case(&case, &AtomicBool::new(false)).unwrap();
+        let result = run_case(&case, &AtomicBool::new(false)).unwrap();
         eprintln!("{:.2} s {}", result.wall_s, row(&result));
         wrong.extend(
             result
@@ -63,7 +63,10 @@ fn nothing_is_missing() {
         assert_eq!(found, wanted, "{case}");
     }
     let map = members("damping");
-    assert!(map.iter().all(|member| member.way == Way::LargestStep));
+    assert!(
+        map.iter()
+            .all(|member| member.way == ObservationMethod::LargestStep)
+    );
     let shatter = members("shatter");
     let bonds = shatter[0].trial.bodies[0].1.bonds.len();
     assert!(bonds > 100_000, "{bonds}");
@@ -83,7 +86,7 @@ fn results_are_the_same_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
             let cases = chosen(&cases).unwrap().into_iter();
-            let tried = cases.map(|case| try_case(&case, &AtomicBool::new(false)).unwrap().members);
+            let tried = cases.map(|case| run_case(&case, &AtomicBool::new(false)).unwrap().members);
             tried.collect::<Vec<_>>()
         })
     };
@@ -96,8 +99,8 @@ fn results_are_the_same_for_any_number_of_threads() {
 /// observed stands on its own, whatever the program predicts.
 #[test]
 fn the_observed_limit_is_the_closed_form() {
-    for share in [1e-2, 1e-9] {
-        let what = format!("timoshenko, {share:e} of a radius, its limit");
+    for fraction in [1e-2, 1e-9] {
+        let what = format!("timoshenko, {fraction:e} of a radius, its limit");
         let pair = member("short-bonds", &what);
         let observed_s = largest_step_s(&pair.trial, &AtomicBool::new(false)).unwrap();
         // Equal spheres of radius R: stretch 2 k_n / m is faster than bending 2 k_b / I, with k_b =
@@ -105,7 +108,7 @@ fn the_observed_limit_is_the_closed_form() {
         // short turns nothing.
         let radius_m = 1e-3_f64;
         let mass_kg = 2500.0 * 4.0 / 3.0 * PI * radius_m.powi(3);
-        let normal_n_m = 1e9 * PI * radius_m.powi(2) / (share * radius_m);
+        let normal_n_m = 1e9 * PI * radius_m.powi(2) / (fraction * radius_m);
         let closed_s = 2.0 / (2.0 * normal_n_m / mass_kg).sqrt();
         let observed = observed_s / closed_s - 1.0;
         let member = program_limit(String::new(), pair.trial).unwrap();

@@ -38,15 +38,15 @@ fn everything(
     edges.dedup();
     for [a, b] in &edges {
         let (p, q) = (at(*a), at(*b));
-        let share = (c - p).dot(&(q - p)) / (q - p).norm_squared();
-        let to_ends_m = [share, 1.0 - share].map(|s| s.abs() * (q - p).norm());
+        let fraction = (c - p).dot(&(q - p)) / (q - p).norm_squared();
+        let to_ends_m = [fraction, 1.0 - fraction].map(|s| s.abs() * (q - p).norm());
         if to_ends_m[0].min(to_ends_m[1]) < 4e-9 * reach {
             return None;
         }
-        if share <= 0.0 || share >= 1.0 {
+        if fraction <= 0.0 || fraction >= 1.0 {
             continue;
         }
-        let foot = p.lerp(&q, share);
+        let foot = p.lerp(&q, fraction);
         let leads_away = triangles
             .iter()
             .filter(|t| t.contains(a) && t.contains(b))

@@ -9,10 +9,10 @@ use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffne
 use dem_run::physics::rigid::rotation_vector;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
-use dem_run::state::loads::SetLoad;
+use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Particles, Wrench};
-use dem_run::state::supports::Held;
-use dem_run::state::supports::SetSupport;
+use dem_run::state::supports::GroupSupport;
+use dem_run::state::supports::HeldParticle;
 use dem_run::step::{advance, interact};
 use dem_scene::{Factor, Hold};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -109,7 +109,7 @@ impl Bar {
                 damped: false,
                 criteria: None,
                 strengthening_from_1_s: None,
-                rate_of: dem_scene::StrainRateMeasure::Elongation,
+                strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
             }]),
             ..Bonds::default()
         };
@@ -127,18 +127,18 @@ impl Bar {
             bonds.histories = vec![Default::default(); self.bonds()];
         }
         let mut state = State::new(particles, bonds, 1e-9, 1);
-        state.loads.push(SetLoad {
+        state.loads.push(GroupLoad {
             end_s: f64::INFINITY,
             particles: vec![count as u32 - 1],
             force_n: (self.turned * Vector3::new(0.0, load_n, 0.0)).into(),
             torque_n_m: [0.0; 3],
             factor: Factor::Ramp { until_s: ramp_s },
         });
-        state.supports.push(SetSupport {
+        state.supports.push(GroupSupport {
             end_s: f64::INFINITY,
             holds: [Some(Hold::Fixed); 6],
             factor: Factor::One,
-            held: vec![Held::default()],
+            held: vec![HeldParticle::default()],
         });
         state.model.particle_damping = DAMPING;
         state.scratch.particle_resistance = vec![Wrench::default(); count];

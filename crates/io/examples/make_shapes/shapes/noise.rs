@@ -43,18 +43,18 @@ pub(crate) fn noise(seed: u64, point: [f64; 3]) -> f64 {
     for corner in 0..8_usize {
         let at: [f64; 3] = std::array::from_fn(|k| (corner >> k & 1) as f64);
         let mut hash = seed;
-        let mut share = 1.0;
+        let mut fraction = 1.0;
         for k in 0..3 {
             hash = scramble(
                 hash ^ ((cell[k] + at[k]) as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15),
             );
-            share *= if at[k] > 0.0 {
+            fraction *= if at[k] > 0.0 {
                 weight[k]
             } else {
                 1.0 - weight[k]
             };
         }
-        sum += share * slope(hash, std::array::from_fn(|k| within[k] - at[k]));
+        sum += fraction * slope(hash, std::array::from_fn(|k| within[k] - at[k]));
     }
     sum
 }

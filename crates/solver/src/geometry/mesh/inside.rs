@@ -75,15 +75,15 @@ impl Mesh {
 fn crossing(triangle: &Triangle, p: &Vector3<f64>) -> i32 {
     let [a, b, c] = triangle.corners.map(|corner| corner - p);
     let across = |u: &Vector3<f64>, v: &Vector3<f64>| u.x * v.y - u.y * v.x;
-    let shares = [across(&b, &c), across(&c, &a), across(&a, &b)];
-    let way = if shares.iter().all(|share| *share > 0.0) {
+    let fractions = [across(&b, &c), across(&c, &a), across(&a, &b)];
+    let way = if fractions.iter().all(|fraction| *fraction > 0.0) {
         1
-    } else if shares.iter().all(|share| *share < 0.0) {
+    } else if fractions.iter().all(|fraction| *fraction < 0.0) {
         -1
     } else {
         return 0;
     };
-    let height = shares[0] * a.z + shares[1] * b.z + shares[2] * c.z;
+    let height = fractions[0] * a.z + fractions[1] * b.z + fractions[2] * c.z;
     if height * f64::from(way) > 0.0 {
         way
     } else {

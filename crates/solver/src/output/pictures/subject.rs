@@ -129,7 +129,7 @@ mod tests {
     fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
         Cluster {
             parent,
-            born_s: 0.0,
+            created_s: 0.0,
             ended_s: None,
             particles,
         }

@@ -36,7 +36,7 @@ impl Add for DampingCoefficients {
 
 /// Reduced mass and moment of inertia of the two ends of a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reduced {
+pub struct ReducedInertia {
     /// m_a m_b / (m_a + m_b), kg.
     pub mass_kg: f64,
     /// I_a I_b / (I_a + I_b), kg m^2.
@@ -46,9 +46,9 @@ pub struct Reduced {
 /// Reduced mass and inertia of two ends, from one over mass and one over moment of inertia: 0 for
 /// an end that is held. Between two held ends both are 0, so nothing is damped.
 #[inline(always)]
-pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced {
+pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> ReducedInertia {
     let reduced = |[a, b]: [f64; 2]| if a + b > 0.0 { 1.0 / (a + b) } else { 0.0 };
-    Reduced {
+    ReducedInertia {
         mass_kg: reduced(inverse_masses),
         inertia_kg_m2: reduced(inverse_inertias),
     }
@@ -57,7 +57,7 @@ pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> Reduced 
 /// A rule for how much a bond is damped.
 pub trait DampingModel {
     /// Coefficients of a bond of this stiffness between ends of these reduced masses.
-    fn coefficients(&self, stiffness: &Stiffness, reduced: &Reduced) -> DampingCoefficients;
+    fn coefficients(&self, stiffness: &Stiffness, reduced: &ReducedInertia) -> DampingCoefficients;
 }
 
 /// How an end of a bond moves.

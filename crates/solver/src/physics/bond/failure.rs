@@ -105,7 +105,7 @@ impl Screen {
     /// Square of the utilisation, but for the factor (pi r^3)^2 that is given beside it: stresses
     /// times pi r^3 are F r + 4 M and S r + 2 T.
     #[inline(always)]
-    pub fn used_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
+    pub fn utilisation_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
         let squared = squared(&Stresses {
             axial_pa: load.normal_n * radius_m,
             bending_pa: load.bending_n_m.scale(4.0 * CANCELLATION),

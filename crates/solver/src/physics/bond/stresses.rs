@@ -15,13 +15,13 @@ use crate::physics::number::Number;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Criteria {
     /// Largest stress at the tensile edge: F_n / A + M_ben r / I, tension positive, Pa.
-    pub tension_pa: f64,
+    pub tensile_strength_pa: f64,
     /// Largest stress at the pressed edge: -F_n / A + M_ben r / I, Pa.
-    pub compression_pa: f64,
+    pub compressive_strength_pa: f64,
     /// MUSEN's shear strength: largest shear stress of shear force and torsion, Pa.
-    pub shear_pa: f64,
+    pub shear_strength_pa: f64,
     /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only while it pulls, Pa.
-    pub von_mises_pa: f64,
+    pub von_mises_strength_pa: f64,
 }
 
 /// Largest stresses in the section of a bond, each from one mode.

@@ -10,12 +10,12 @@ use crate::physics::number::{Rotation, Vec3};
 
 /// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z
 /// of the first (3..6), then those of the second.
-pub const FREEDOMS: usize = 12;
+pub const DEGREES_OF_FREEDOM: usize = 12;
 
 /// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns,
 /// rad. Its entries are what a small move or turn takes: minus the derivatives of what the bond
 /// exerts.
-pub type BondTangent = [[f64; FREEDOMS]; FREEDOMS];
+pub type BondTangent = [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
 
 /// Variables: where the second end stands from the first, the turns of the first and those of the
 /// second.
@@ -56,7 +56,7 @@ pub fn bond_tangent(
         rows(bond_response.force_on_b),
         bond_response.torques.map(rows),
     );
-    let mut tangent = [[0.0; FREEDOMS]; FREEDOMS];
+    let mut tangent = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
     for k in 0..3 {
         let on_b = spread(&force_on_b[k], -1.0);
         tangent[k] = on_b.map(|entry| -entry);
@@ -86,8 +86,8 @@ fn turning(end: &End, first: usize) -> Rotation<Number> {
 }
 
 /// A row of the tangent from derivatives by the nine variables, times a factor.
-fn spread(slopes: &[f64; 9], factor: f64) -> [f64; FREEDOMS] {
-    let mut row = [0.0; FREEDOMS];
+fn spread(slopes: &[f64; 9], factor: f64) -> [f64; DEGREES_OF_FREEDOM] {
+    let mut row = [0.0; DEGREES_OF_FREEDOM];
     for k in 0..3 {
         row[k] = -factor * slopes[k];
         row[3 + k] = factor * slopes[3 + k];

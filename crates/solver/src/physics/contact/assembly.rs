@@ -9,7 +9,7 @@ use crate::physics::number::{Number, Vec3};
 
 /// What is remembered of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Remembered<T = f64> {
+pub struct StoredContact<T = f64> {
     /// Its springs.
     pub springs: ContactSprings<T>,
     /// What its damping did to the second end.
@@ -22,7 +22,7 @@ pub struct Remembered<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assembled<T = f64> {
     /// To be remembered.
-    pub remembered: Remembered<T>,
+    pub remembered: StoredContact<T>,
     /// Overlap of its law, m.
     pub overlap_m: T,
     /// What it does and stores.
@@ -42,7 +42,7 @@ pub fn assemble<T: Number>(
     law: &impl NormalLaw<T>,
     rolling: &impl RollingFriction<T>,
     touch: &ContactKinematics<T>,
-    before: &Remembered<T>,
+    before: &StoredContact<T>,
     least_overlap: f64,
     dt: f64,
 ) -> Assembled<T> {
@@ -55,7 +55,7 @@ pub fn assemble<T: Number>(
     let response = response(law, rolling, &touch, &before.springs, dt);
     let damped = response.damping.total();
     Assembled {
-        remembered: Remembered {
+        remembered: StoredContact {
             springs: response.springs,
             damped,
             origin_m: relaxed.origin_m,

@@ -1,7 +1,7 @@
 //! The contact laws and rolling frictions that a pair of materials can have: the one place that
 //! lists them. `doc/adding-a-model.md` tells how another one is added.
 
-use super::assembly::{Assembled, Remembered, assemble};
+use super::assembly::{Assembled, StoredContact, assemble};
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
 use super::linear::Linear;
@@ -116,11 +116,11 @@ impl ContactKind {
     pub fn assemble(
         &self,
         touch: &ContactKinematics,
-        before: &Remembered,
+        before: &StoredContact,
         least_overlap: f64,
         dt: f64,
     ) -> Assembled {
-        struct Assemble<'a>(&'a ContactKinematics, &'a Remembered, f64, f64);
+        struct Assemble<'a>(&'a ContactKinematics, &'a StoredContact, f64, f64);
         impl ContactWork<f64> for Assemble<'_> {
             type Output = Assembled;
 

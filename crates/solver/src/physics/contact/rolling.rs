@@ -68,7 +68,7 @@ impl ConstantMoment {
     /// Slow rolling loses this share of itself in a step, reckoned with the inertia about the
     /// contact point. That is 3.5 times a sphere's inertia about its centre: a dozen contacts with
     /// equal spheres, each with half of it, still take no more than all of its spin.
-    pub const SHARE: f64 = 1.0 / 21.0;
+    pub const FRACTION: f64 = 1.0 / 21.0;
 }
 
 impl ConstantMoment {
@@ -132,7 +132,8 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
         let limit = self.friction * touch.effective_radius_m * pressed;
         let rolling = rolling(touch);
         let speed = rolling.square().sqrt();
-        let slow = limit.scale(dt / ConstantMoment::SHARE) / touch.effective_rolling_inertia_kg_m2;
+        let slow =
+            limit.scale(dt / ConstantMoment::FRACTION) / touch.effective_rolling_inertia_kg_m2;
         let coefficient = speed.if_positive(limit.if_positive(limit / speed.maximum(slow)));
         damped(carry.to_end(rolling * coefficient))
     }

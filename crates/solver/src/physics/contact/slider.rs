@@ -56,13 +56,13 @@ pub fn coulomb_return_map<T: Number>(
     let slack = limit * limit - force.square();
     let room = slack.if_positive(slack);
     let q = (along * along + square * room).sqrt() - along;
-    let share = q.if_positive(q / q.maximum(square));
+    let fraction = q.if_positive(q / q.maximum(square));
 
     let at_end = carry.to_end(spring);
     TangentialStep {
         spring: at_end,
         force: at_end * stiffness,
-        damping: carry.to_end(damping * share),
+        damping: carry.to_end(damping * fraction),
         stored_j: force.dot(spring).scale(0.5),
         lost_j: (given - taken).scale(0.5),
     }

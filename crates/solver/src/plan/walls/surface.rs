@@ -53,7 +53,7 @@ pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
 }
 
 /// What is odd about a surface, and what that changes.
-pub(super) fn oddities(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item = String> {
+pub(super) fn surface_warnings(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item = String> {
     let content = &mesh.content;
     let mut odd = Vec::new();
     let mut tell = |count: usize, [one, more]: [&str; 2]| match count {

@@ -1,12 +1,12 @@
 //! The tangent of a whole scene as a sparse matrix, by columns: what its bonds answer to small
 //! moves and turns of the unknowns.
 
-use crate::physics::bond::tangent::{BondTangent, FREEDOMS};
+use crate::physics::bond::tangent::{BondTangent, DEGREES_OF_FREEDOM};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::Pose;
 
-use super::freedoms::{Freedoms, HELD};
+use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
 /// A square matrix over the unknowns. Its pattern stays while its entries change.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Matrix {
 impl Matrix {
     /// The pattern of a state: every particle with itself and with those that bonds join it to. All
     /// entries are 0.
-    pub fn pattern(state: &State, freedoms: &Freedoms, symmetric: bool) -> Self {
+    pub fn pattern(state: &State, degrees_of_freedom: &DegreesOfFreedom, symmetric: bool) -> Self {
         let mut neighbours: Vec<Vec<u32>> =
             (0..state.particles.len() as u32).map(|i| vec![i]).collect();
         for (at, &[a, b]) in state.bonds.ends.iter().enumerate() {
@@ -34,13 +34,13 @@ impl Matrix {
             }
         }
         let (mut starts, mut rows) = (vec![0], Vec::new());
-        for (own, neighbours) in freedoms.unknown.iter().zip(&mut neighbours) {
+        for (own, neighbours) in degrees_of_freedom.unknown.iter().zip(&mut neighbours) {
             neighbours.sort_unstable();
             neighbours.dedup();
             for column in own.iter().filter(|n| **n != HELD) {
                 let of_neighbours = neighbours
                     .iter()
-                    .flat_map(|j| freedoms.unknown[*j as usize]);
+                    .flat_map(|j| degrees_of_freedom.unknown[*j as usize]);
                 rows.extend(
                     of_neighbours.filter(|row| *row != HELD && (!symmetric || row >= column)),
                 );
@@ -56,21 +56,26 @@ impl Matrix {
     }
 
     /// Sets the entries to the tangents of all bonds at these poses, in the order of the bonds.
-    pub fn assemble(&mut self, bonds: &Bonds, freedoms: &Freedoms, poses: &[Pose]) {
+    pub fn assemble(
+        &mut self,
+        bonds: &Bonds,
+        degrees_of_freedom: &DegreesOfFreedom,
+        poses: &[Pose],
+    ) {
         self.values.fill(0.0);
         for at in (0..bonds.len()).filter(|at| !bonds.is_broken(*at)) {
-            let unknowns = of_ends(bonds, freedoms, at);
+            let unknowns = of_ends(bonds, degrees_of_freedom, at);
             self.add(&unknowns, &bonds.tangent(at, poses));
         }
     }
 
-    fn add(&mut self, unknowns: &[usize; FREEDOMS], tangent: &BondTangent) {
+    fn add(&mut self, unknowns: &[usize; DEGREES_OF_FREEDOM], tangent: &BondTangent) {
         for (j, &column) in unknowns.iter().enumerate() {
             if column == HELD {
                 continue;
             }
             let entries = self.starts[column]..self.starts[column + 1];
-            for end in [0..6, 6..FREEDOMS] {
+            for end in [0..6, 6..DEGREES_OF_FREEDOM] {
                 // The rows of a particle stand together.
                 let mut place = None;
                 for i in end {
@@ -94,40 +99,48 @@ impl Matrix {
     }
 }
 
-/// What acts on the unknowns because supports move by these ways, m and rad, before the others
-/// follow: minus the tangent times the ways, N and N m.
+/// What acts on the unknowns because supports move by these displacements, m and rad, before the others
+/// follow: minus the tangent times the displacements, N and N m.
 pub fn pulled_by_supports(
     bonds: &Bonds,
-    freedoms: &Freedoms,
+    degrees_of_freedom: &DegreesOfFreedom,
     poses: &[Pose],
-    ways: &[(u32, [f64; 6])],
+    displacements: &[(u32, [f64; 6])],
 ) -> Vec<f64> {
-    let mut pulled = vec![0.0; freedoms.count];
-    let way_of = |particle: u32| {
-        let found = ways.binary_search_by_key(&particle, |(moved, _)| *moved);
-        found.ok().map(|n| ways[n].1)
+    let mut pulled = vec![0.0; degrees_of_freedom.count];
+    let displacement_of = |particle: u32| {
+        let found = displacements.binary_search_by_key(&particle, |(moved, _)| *moved);
+        found.ok().map(|n| displacements[n].1)
     };
     for at in (0..bonds.len()).filter(|at| !bonds.is_broken(*at)) {
-        let ways = bonds.ends[at].map(way_of);
-        if ways == [None; 2] {
+        let displacements = bonds.ends[at].map(displacement_of);
+        if displacements == [None; 2] {
             continue;
         }
-        let [a, b] = ways.map(Option::unwrap_or_default);
+        let [a, b] = displacements.map(Option::unwrap_or_default);
         let tangent = bonds.tangent(at, poses);
-        for (&unknown, row) in of_ends(bonds, freedoms, at).iter().zip(&tangent) {
+        for (&unknown, row) in of_ends(bonds, degrees_of_freedom, at).iter().zip(&tangent) {
             if unknown != HELD {
-                let ways = a.iter().chain(&b);
-                pulled[unknown] -= row.iter().zip(ways).map(|(k, way)| k * way).sum::<f64>();
+                let displacements = a.iter().chain(&b);
+                pulled[unknown] -= row
+                    .iter()
+                    .zip(displacements)
+                    .map(|(k, way)| k * way)
+                    .sum::<f64>();
             }
         }
     }
     pulled
 }
 
-/// The numbers of the freedoms of both ends of bond `at`.
-fn of_ends(bonds: &Bonds, freedoms: &Freedoms, at: usize) -> [usize; FREEDOMS] {
-    let [a, b] = bonds.ends[at].map(|end| freedoms.unknown[end as usize]);
-    let mut both = [HELD; FREEDOMS];
+/// The numbers of the degrees_of_freedom of both ends of bond `at`.
+fn of_ends(
+    bonds: &Bonds,
+    degrees_of_freedom: &DegreesOfFreedom,
+    at: usize,
+) -> [usize; DEGREES_OF_FREEDOM] {
+    let [a, b] = bonds.ends[at].map(|end| degrees_of_freedom.unknown[end as usize]);
+    let mut both = [HELD; DEGREES_OF_FREEDOM];
     both[..6].copy_from_slice(&a);
     both[6..].copy_from_slice(&b);
     both

@@ -1,6 +1,6 @@
 //! Newton's method to an equilibrium, with the exact tangent of the bonds' energy.
 //!
-//! The residual is what acts on the freedoms that are not held: bonds, loads and gravity. A step
+//! The residual is what acts on the degrees_of_freedom that are not held: bonds, loads and gravity. A step
 //! solves for the moves and turns that take it to 0. Supports that move take their first step with
 //! the tangent as well, so that the body follows them as a whole.
 //!
@@ -12,7 +12,7 @@
 //!
 //! Off equilibrium the tangent is not symmetric: where a torque acts on a particle, by the cross
 //! product with it. In equilibrium these torques are those of loads and supports. Where none can be
-//! (see [`Freedoms::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky:
+//! (see [`DegreesOfFreedom::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky:
 //! exact at the solution, so that the convergence is quadratic, and a pivot that is not positive
 //! says that the equilibrium is not stable. Elsewhere the tangent itself is factored, L U, and
 //! stability is looked at in the end.
@@ -24,10 +24,10 @@ use crate::state::particles::{Motion, Wrench};
 
 use rayon::prelude::*;
 
+use super::degrees_of_freedom::DegreesOfFreedom;
+use super::displacements::{Displacements, displace, largest_turn};
 use super::factor::{Factor, NoFactor};
-use super::freedoms::Freedoms;
 use super::matrix::{Matrix, pulled_by_supports};
-use super::moves::{Moves, displace, largest_turn};
 
 /// Newton steps in a load step, at most.
 const STEPS: usize = 20;
@@ -47,7 +47,7 @@ const STALLED: f64 = 0.5;
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
-    /// Unknown freedoms.
+    /// Unknown degrees_of_freedom.
     pub unknowns: usize,
     /// Freedoms that supports hold.
     pub held: usize,
@@ -93,7 +93,7 @@ pub struct Unsolved {
     /// Why it ended.
     pub cause: Cause,
     /// Fraction of loads and displacements for which an equilibrium was found.
-    pub share: f64,
+    pub fraction: f64,
     /// Residual over the largest bond force at the end of the last try.
     pub residual: f64,
 }
@@ -101,7 +101,7 @@ pub struct Unsolved {
 /// What it is that is to be in equilibrium.
 struct Search<'a> {
     state: &'a mut State,
-    freedoms: Freedoms,
+    degrees_of_freedom: DegreesOfFreedom,
     matrix: Matrix,
     factor: Factor,
     /// Loads and gravity at the end on every particle, N and N m. Length 6 each.
@@ -128,19 +128,19 @@ pub fn equilibrium(
     end_s: f64,
     goes_on: &dyn Fn(f64) -> bool,
 ) -> Result<Equilibrium, Unsolved> {
-    let freedoms = Freedoms::new(state, end_s);
-    let symmetric = !freedoms.has_free_torques(state);
-    let matrix = Matrix::pattern(state, &freedoms, symmetric);
+    let degrees_of_freedom = DegreesOfFreedom::new(state, end_s);
+    let symmetric = !degrees_of_freedom.has_free_torques(state);
+    let matrix = Matrix::pattern(state, &degrees_of_freedom, symmetric);
     let out_of_memory = |_| Unsolved {
         cause: Cause::Memory,
-        share: 0.0,
+        fraction: 0.0,
         residual: 1.0,
     };
     let mut search = Search {
         load: loads(state, end_s),
         rounding_n: rounding_n(state),
         factor: Factor::new(&matrix).map_err(out_of_memory)?,
-        freedoms,
+        degrees_of_freedom,
         matrix,
         state,
         newton_steps: 0,
@@ -148,24 +148,28 @@ pub fn equilibrium(
         residual_n: 0.0,
         bond_force_n: 0.0,
     };
-    let (mut share, mut by, mut load_steps) = (0.0, 1.0, 0);
-    while share < 1.0 {
-        let to = if share + by > 1.0 { 1.0 } else { share + by };
+    let (mut fraction, mut by, mut load_steps) = (0.0, 1.0, 0);
+    while fraction < 1.0 {
+        let to = if fraction + by > 1.0 {
+            1.0
+        } else {
+            fraction + by
+        };
         let before = search.state.particles.poses.clone();
-        match search.follow(share, to, goes_on) {
+        match search.follow(fraction, to, goes_on) {
             Ok(()) => {
-                share = to;
+                fraction = to;
                 by *= 2.0;
                 load_steps += 1;
             }
             Err(cause) => {
                 search.state.particles.poses = before;
-                by = 0.5 * (to - share);
+                by = 0.5 * (to - fraction);
                 let is_hopeless = matches!(cause, Cause::Memory | Cause::Interrupted);
                 if is_hopeless || by < SMALLEST {
                     return Err(Unsolved {
                         cause,
-                        share,
+                        fraction,
                         residual: search.residuals.last().copied().unwrap_or(1.0),
                     });
                 }
@@ -174,8 +178,8 @@ pub fn equilibrium(
     }
     let stable = symmetric || search.is_stable();
     Ok(Equilibrium {
-        unknowns: search.freedoms.count,
-        held: search.freedoms.held(),
+        unknowns: search.degrees_of_freedom.count,
+        held: search.degrees_of_freedom.held(),
         newton_steps: search.newton_steps,
         load_steps,
         residuals: search.residuals,
@@ -188,11 +192,11 @@ pub fn equilibrium(
 impl Search<'_> {
     /// From the equilibrium at one share of all loads and displacements to that at another.
     fn follow(&mut self, from: f64, to: f64, goes_on: &dyn Fn(f64) -> bool) -> Result<(), Cause> {
-        let moved = self.freedoms.moved.iter();
-        let ways: Vec<(u32, [f64; 6])> = moved
+        let moved = self.degrees_of_freedom.moved.iter();
+        let displacements: Vec<(u32, [f64; 6])> = moved
             .map(|(particle, way)| (*particle, way.map(|w| (to - from) * w)))
             .collect();
-        let mut pulls = !ways.is_empty();
+        let mut pulls = !displacements.is_empty();
         // The residual before the last step, whether the factors are near the equilibrium, and
         // whether that step was theirs alone.
         let (mut before_n, mut is_near, mut is_fresh) = (f64::INFINITY, false, false);
@@ -240,20 +244,25 @@ impl Search<'_> {
             poses.clone_from(&self.state.particles.poses);
             let mut by = net;
             if pulls {
-                let pulled = pulled_by_supports(&self.state.bonds, &self.freedoms, &poses, &ways);
+                let pulled = pulled_by_supports(
+                    &self.state.bonds,
+                    &self.degrees_of_freedom,
+                    &poses,
+                    &displacements,
+                );
                 by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
             }
             self.factor.solve(&mut by);
             self.newton_steps += 1;
-            let moves = Moves {
+            let moves = Displacements {
                 by: &by,
-                ways: if pulls { &ways } else { &[] },
+                displacements: if pulls { &displacements } else { &[] },
             };
-            if largest_turn(&moves, &self.freedoms) > TURN {
+            if largest_turn(&moves, &self.degrees_of_freedom) > TURN {
                 return Err(Cause::NoConvergence);
             }
             let new = &mut self.state.particles.poses;
-            displace(new, &poses, &self.freedoms, &moves);
+            displace(new, &poses, &self.degrees_of_freedom, &moves);
             before_n = if pulls { f64::INFINITY } else { residual_n };
             pulls = false;
         }
@@ -266,7 +275,7 @@ impl Search<'_> {
             bonds, particles, ..
         } = &*self.state;
         self.matrix
-            .assemble(bonds, &self.freedoms, &particles.poses);
+            .assemble(bonds, &self.degrees_of_freedom, &particles.poses);
         self.factor.compute(&self.matrix).map_err(|why| match why {
             NoFactor::Pivot => Cause::Pivot,
             NoFactor::Memory => Cause::Memory,
@@ -274,7 +283,7 @@ impl Search<'_> {
     }
 
     /// What acts on the unknowns at this share of the loads, N and N m.
-    fn net(&mut self, share: f64) -> Vec<f64> {
+    fn net(&mut self, fraction: f64) -> Vec<f64> {
         let State {
             bonds,
             particles,
@@ -283,16 +292,16 @@ impl Search<'_> {
         } = &mut *self.state;
         let partitions = &mut scratch.partitions;
         bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
-        let unknowns = self.freedoms.unknowns();
+        let unknowns = self.degrees_of_freedom.unknowns();
         unknowns
-            .map(|(i, k)| six(&particles.wrenches[i])[k] + share * self.load[i][k])
+            .map(|(i, k)| six(&particles.wrenches[i])[k] + fraction * self.load[i][k])
             .collect()
     }
 
     /// The largest of forces, N, torques over the radii of the particles.
     fn largest(&self, net: &[f64]) -> f64 {
         let poses = &self.state.particles.poses;
-        let unknowns = self.freedoms.unknowns().zip(net);
+        let unknowns = self.degrees_of_freedom.unknowns().zip(net);
         let sizes = unknowns.map(|((i, k), net)| match k {
             0..3 => net.abs(),
             _ => net.abs() / poses[i].radius_m(),
@@ -325,9 +334,9 @@ impl Search<'_> {
 
     /// Whether the symmetric part of the tangent is positive definite.
     fn is_stable(&mut self) -> bool {
-        let mut matrix = Matrix::pattern(self.state, &self.freedoms, true);
+        let mut matrix = Matrix::pattern(self.state, &self.degrees_of_freedom, true);
         let poses = &self.state.particles.poses;
-        matrix.assemble(&self.state.bonds, &self.freedoms, poses);
+        matrix.assemble(&self.state.bonds, &self.degrees_of_freedom, poses);
         let factor = Factor::new(&matrix);
         factor.is_ok_and(|mut factor| factor.compute(&matrix).is_ok())
     }

@@ -106,6 +106,6 @@ impl ContactWork<f64> for StoredEnergy<'_> {
 /// Energy that friction and that damping took so far, J.
 pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
     let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
-    let [gone_friction, gone_damping] = contacts.lost_by_gone_j;
+    let [gone_friction, gone_damping] = contacts.lost_by_removed_j;
     [friction + gone_friction, damping + gone_damping]
 }

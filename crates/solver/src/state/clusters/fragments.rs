@@ -11,9 +11,9 @@ use crate::state::particles::{Motion, Particles};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Fragment {
     /// Its number in [`Clusters::history`].
-    pub id: u32,
+    pub fragment_id: u32,
     /// The cluster that it broke off.
-    pub parent: Option<u32>,
+    pub parent_id: Option<u32>,
     /// Number of its particles.
     pub particles: u32,
     /// Sum over its particles, kg.
@@ -30,9 +30,9 @@ pub struct Fragment {
     /// Sum of what acts on its particles, N: bonds within it cancel. Length 3.
     pub force_n: [f64; 3],
     /// Diameter of the sphere with the volume of its particles, where overlaps count twice, m.
-    pub size_m: f64,
+    pub equivalent_diameter_m: f64,
     /// Diagonal of the box around its spheres, along the axes of space, m.
-    pub extent_m: f64,
+    pub box_diagonal_m: f64,
 }
 
 /// All clusters that are whole, in the order of their numbers. `now`: motions of particles and
@@ -49,7 +49,9 @@ pub fn fragments(
         .map(|id| fragment(id, clusters, particles, motions))
         .collect();
     for clump in moving {
-        if let Ok(at) = fragments.binary_search_by_key(&clump.cluster, |fragment| fragment.id) {
+        if let Ok(at) =
+            fragments.binary_search_by_key(&clump.cluster, |fragment| fragment.fragment_id)
+        {
             fragments[at] = as_fragment(clump, clumps.template(clump), &fragments[at]);
         }
     }
@@ -67,7 +69,7 @@ fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment
         angular_velocity_rad_s: clump.spin_rad_s(template).into(),
         angular_momentum_kg_m2_s: clump.angular_momentum,
         force_n: clump.force_n,
-        size_m: 2.0 * cubes.cbrt(),
+        equivalent_diameter_m: 2.0 * cubes.cbrt(),
         ..*outer
     }
 }
@@ -132,8 +134,8 @@ pub fn fragment(
             .map_or(Vector3::zeros(), |c| c.solve(&angular_momentum)),
     };
     Fragment {
-        id,
-        parent: clusters.history[id as usize].parent,
+        fragment_id: id,
+        parent_id: clusters.history[id as usize].parent,
         particles: members.len() as u32,
         mass_kg,
         centre_m: centre.into(),
@@ -141,8 +143,8 @@ pub fn fragment(
         angular_velocity_rad_s: angular_velocity.into(),
         angular_momentum_kg_m2_s: angular_momentum.into(),
         force_n: force.into(),
-        size_m: 2.0 * cubes.cbrt(),
-        extent_m: (high - low).norm(),
+        equivalent_diameter_m: 2.0 * cubes.cbrt(),
+        box_diagonal_m: (high - low).norm(),
     }
 }
 
@@ -155,28 +157,30 @@ pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
 
 /// A point of a size distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Passing {
+pub struct SizePoint {
     /// Size of a fragment, m.
-    pub size_m: f64,
+    pub equivalent_diameter_m: f64,
     /// Fraction of all mass in fragments of this size and smaller ones.
     pub mass_fraction: f64,
 }
 
 /// The cumulative size distribution by mass: one point for each size that there is, from the
 /// smallest, up to a mass fraction of 1.
-pub fn size_distribution(fragments: &[Fragment]) -> Vec<Passing> {
+pub fn size_distribution(fragments: &[Fragment]) -> Vec<SizePoint> {
     let mut sorted: Vec<&Fragment> = fragments.iter().collect();
-    sorted.sort_by(|a, b| a.size_m.total_cmp(&b.size_m));
-    let mut distribution: Vec<Passing> = Vec::new();
+    sorted.sort_by(|a, b| a.equivalent_diameter_m.total_cmp(&b.equivalent_diameter_m));
+    let mut distribution: Vec<SizePoint> = Vec::new();
     let mut sum = 0.0;
     for fragment in sorted {
         sum += fragment.mass_kg;
-        let point = Passing {
-            size_m: fragment.size_m,
+        let point = SizePoint {
+            equivalent_diameter_m: fragment.equivalent_diameter_m,
             mass_fraction: sum,
         };
         match distribution.last_mut() {
-            Some(last) if last.size_m == point.size_m => *last = point,
+            Some(last) if last.equivalent_diameter_m == point.equivalent_diameter_m => {
+                *last = point
+            }
             _ => distribution.push(point),
         }
     }

@@ -41,12 +41,12 @@ fn distributions_of_masses_are_compared() {
     let (own, other) = (masses(1), masses(3));
     assert!(own.len() > 3 && other.len() > 3 && own != other);
     // At every value, and just below it, what share of each is not above.
-    let share =
+    let fraction =
         |all: &[f64], x: f64| all.iter().filter(|m| **m <= x).count() as f64 / all.len() as f64;
     let apart = own
         .iter()
         .chain(&other)
-        .map(|x| (share(&own, *x) - share(&other, *x)).abs());
+        .map(|x| (fraction(&own, *x) - fraction(&other, *x)).abs());
     let wanted = apart.fold(0.0, f64::max);
     let table = json(&bench);
     let of = |run: usize, measure: usize| &table["runs"][run]["results"][measure];

@@ -11,7 +11,7 @@ impl FailureCriterion for Compression {
     const RISES_WITH_RATE: bool = false;
 
     fn strength_pa(criteria: &Criteria) -> f64 {
-        criteria.compression_pa
+        criteria.compressive_strength_pa
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ impl FailureCriterion for Shear {
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {
-        criteria.shear_pa
+        criteria.shear_strength_pa
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ impl FailureCriterion for Tension {
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {
-        criteria.tension_pa
+        criteria.tensile_strength_pa
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ impl FailureCriterion for VonMises {
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {
-        criteria.von_mises_pa
+        criteria.von_mises_strength_pa
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Damping by a damping ratio (Chen et al. 2022, eqs. 9 and 10).
 
-use crate::physics::bond::damping::{DampingCoefficients, DampingModel, Reduced};
+use crate::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia};
 use crate::physics::bond::stiffness::Stiffness;
 
 /// Chen et al. 2022, eqs. 9 and 10: 2 eta sqrt(k_n m_red) along and across the bond, 2 eta sqrt(2
@@ -13,7 +13,7 @@ pub struct Chen {
 
 impl DampingModel for Chen {
     #[inline(always)]
-    fn coefficients(&self, stiffness: &Stiffness, reduced: &Reduced) -> DampingCoefficients {
+    fn coefficients(&self, stiffness: &Stiffness, reduced: &ReducedInertia) -> DampingCoefficients {
         let eta = self.damping_ratio;
         let force = 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt();
         let moment = 2.0 * eta * (2.0 * stiffness.torsion * reduced.inertia_kg_m2).sqrt();
@@ -37,7 +37,7 @@ pub struct ChenByMode {
 
 impl DampingModel for ChenByMode {
     #[inline(always)]
-    fn coefficients(&self, stiffness: &Stiffness, reduced: &Reduced) -> DampingCoefficients {
+    fn coefficients(&self, stiffness: &Stiffness, reduced: &ReducedInertia) -> DampingCoefficients {
         let eta = self.damping_ratio;
         DampingCoefficients {
             normal: 2.0 * eta * (stiffness.normal * reduced.mass_kg).sqrt(),

@@ -1,6 +1,6 @@
 //! Damping by a coefficient (Platzer 2022, eqs. 7 and 9).
 
-use crate::physics::bond::damping::{DampingCoefficients, DampingModel, Reduced};
+use crate::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia};
 use crate::physics::bond::stiffness::Stiffness;
 
 /// Platzer 2022, eqs. 7 and 9: a coefficient times the whole relative velocity, and a factor times
@@ -17,7 +17,7 @@ pub struct Platzer {
 
 impl DampingModel for Platzer {
     #[inline(always)]
-    fn coefficients(&self, stiffness: &Stiffness, reduced: &Reduced) -> DampingCoefficients {
+    fn coefficients(&self, stiffness: &Stiffness, reduced: &ReducedInertia) -> DampingCoefficients {
         DampingCoefficients {
             normal: self.coefficient_n_s_m,
             shear: self.coefficient_n_s_m,

@@ -11,7 +11,7 @@ pub const HELD: usize = usize::MAX;
 
 /// The freedoms of all particles: moves along x, y, z, then turns about x, y, z.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Freedoms {
+pub struct DegreesOfFreedom {
     /// For each particle the numbers of its freedoms among the unknowns, rising; or [`HELD`].
     /// Length 6 each.
     pub unknown: Vec<[usize; 6]>,
@@ -22,7 +22,7 @@ pub struct Freedoms {
     pub moved: Vec<(u32, [f64; 6])>,
 }
 
-impl Freedoms {
+impl DegreesOfFreedom {
     /// Of a state that stands at its start, under what its supports prescribe until `end_s`.
     pub fn new(state: &State, end_s: f64) -> Self {
         let mut held = vec![[false; 6]; state.particles.len()];
@@ -77,7 +77,7 @@ impl Freedoms {
         self.unknown.iter().enumerate().flat_map(six)
     }
 
-    /// Whether a torque may act on a particle at rest that is free to turn in more ways than one:
+    /// Whether a torque may act on a particle at rest that is free to turn in more displacements than one:
     /// then the tangent is not symmetric, even in equilibrium. The torque is that of a load, or of
     /// a support that holds one of its three turns.
     pub fn has_free_torques(&self, state: &State) -> bool {

@@ -3,27 +3,30 @@
 use crate::physics::rigid::turn;
 use crate::state::particles::Pose;
 
-use super::freedoms::{Freedoms, HELD};
+use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
 /// Moves, m, and turns, rad: rotation vectors in space, applied after the present rotation.
 #[derive(Debug, Clone, Copy)]
-pub struct Moves<'a> {
+pub struct Displacements<'a> {
     /// Of the unknowns.
     pub by: &'a [f64],
     /// Of particles that supports move, by their numbers, rising. Length 6 each.
-    pub ways: &'a [(u32, [f64; 6])],
+    pub displacements: &'a [(u32, [f64; 6])],
 }
 
-impl Moves<'_> {
+impl Displacements<'_> {
     /// Those of all particles, six for each.
-    fn of_all<'a>(&'a self, freedoms: &'a Freedoms) -> impl Iterator<Item = [f64; 6]> + 'a {
-        let mut ways = self.ways.iter().peekable();
-        freedoms
+    fn of_all<'a>(
+        &'a self,
+        degrees_of_freedom: &'a DegreesOfFreedom,
+    ) -> impl Iterator<Item = [f64; 6]> + 'a {
+        let mut displacements = self.displacements.iter().peekable();
+        degrees_of_freedom
             .unknown
             .iter()
             .enumerate()
             .map(move |(i, unknown)| {
-                let way = ways.next_if(|(moved, _)| *moved as usize == i);
+                let way = displacements.next_if(|(moved, _)| *moved as usize == i);
                 let mut six = way.map_or([0.0; 6], |(_, way)| *way);
                 for (one, &unknown) in six.iter_mut().zip(unknown) {
                     if unknown != HELD {
@@ -36,8 +39,13 @@ impl Moves<'_> {
 }
 
 /// Puts `poses` where `from` comes to by the moves.
-pub fn displace(poses: &mut [Pose], from: &[Pose], freedoms: &Freedoms, moves: &Moves<'_>) {
-    let all = moves.of_all(freedoms);
+pub fn displace(
+    poses: &mut [Pose],
+    from: &[Pose],
+    degrees_of_freedom: &DegreesOfFreedom,
+    moves: &Displacements<'_>,
+) {
+    let all = moves.of_all(degrees_of_freedom);
     for ((pose, from), [x, y, z, rx, ry, rz]) in poses.iter_mut().zip(from).zip(all) {
         let [px, py, pz, radius_m] = from.position_m;
         pose.position_m = [px + x, py + y, pz + z, radius_m];
@@ -46,9 +54,9 @@ pub fn displace(poses: &mut [Pose], from: &[Pose], freedoms: &Freedoms, moves: &
 }
 
 /// The largest turn of a particle, rad.
-pub fn largest_turn(moves: &Moves<'_>, freedoms: &Freedoms) -> f64 {
+pub fn largest_turn(moves: &Displacements<'_>, degrees_of_freedom: &DegreesOfFreedom) -> f64 {
     let turns = moves
-        .of_all(freedoms)
+        .of_all(degrees_of_freedom)
         .map(|[.., x, y, z]| x.hypot(y).hypot(z));
     turns.fold(0.0, f64::max)
 }

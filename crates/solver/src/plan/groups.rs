@@ -7,23 +7,23 @@ use dem_scene::{Pick, Scene};
 
 use crate::state::bodies::PlacedBody;
 use crate::state::particles::Particles;
-use crate::state::supports::SetSupport;
+use crate::state::supports::GroupSupport;
 
 /// Particles (numbers in the state, rising) of every set, every body and `all`.
 ///
 /// # Errors
 /// A set that picks nothing, or a number that the body does not have.
-pub fn resolve_sets(
+pub fn resolve_groups(
     scene: &Scene,
     bodies: &[PlacedBody],
     particles: &Particles,
 ) -> Result<BTreeMap<String, Vec<u32>>> {
-    let mut sets = BTreeMap::new();
-    sets.insert("all".to_owned(), (0..particles.len() as u32).collect());
+    let mut groups = BTreeMap::new();
+    groups.insert("all".to_owned(), (0..particles.len() as u32).collect());
     for body in bodies {
         let mut numbers = body.particles.clone();
         numbers.sort_unstable();
-        sets.insert(body.name.clone(), numbers);
+        groups.insert(body.name.clone(), numbers);
     }
     for (name, set) in &scene.groups {
         let place = format!("{}: [groups.{name}]", scene.source);
@@ -31,7 +31,7 @@ pub fn resolve_sets(
             by_number(&place, numbers, set.body.as_deref(), bodies)?
         } else {
             let of = set.body.as_deref().unwrap_or("all");
-            let candidates = sets.get(of).map_or(&[][..], Vec::as_slice);
+            let candidates = groups.get(of).map_or(&[][..], Vec::as_slice);
             candidates
                 .iter()
                 .copied()
@@ -46,9 +46,9 @@ pub fn resolve_sets(
             ));
         }
         picked.sort_unstable();
-        sets.insert(name.clone(), picked);
+        groups.insert(name.clone(), picked);
     }
-    Ok(sets)
+    Ok(groups)
 }
 
 fn by_number(
@@ -109,8 +109,8 @@ fn extent(particles: &Particles) -> String {
 }
 
 /// Which freedoms of which particles these supports hold.
-pub(super) fn held_freedoms<'a>(
-    supports: impl Iterator<Item = &'a SetSupport>,
+pub(super) fn held_degrees_of_freedom<'a>(
+    supports: impl Iterator<Item = &'a GroupSupport>,
 ) -> BTreeMap<u32, [bool; 6]> {
     let mut held: BTreeMap<u32, [bool; 6]> = BTreeMap::new();
     for support in supports {
@@ -125,6 +125,6 @@ pub(super) fn held_freedoms<'a>(
 }
 
 /// The particles of a set that the scene is known to have.
-pub(super) fn particles_of<'a>(sets: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
-    sets.get(name).map_or(&[], Vec::as_slice)
+pub(super) fn particles_of<'a>(groups: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
+    groups.get(name).map_or(&[], Vec::as_slice)
 }
