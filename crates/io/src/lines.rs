@@ -29,7 +29,7 @@ impl<'a> Lines<'a> {
     /// # Errors
     /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line
     /// break, too.
-    pub fn next(&mut self) -> Result<Option<(u64, &str)>> {
+    pub fn next_line(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
         let mut some = Read::take(&mut *self.input, LONGEST_LINE);
         let read = some.read_until(b'\n', &mut self.bytes);

@@ -113,7 +113,7 @@ pub fn read_series(path: &Path) -> Result<Series> {
 
 fn read_lines(input: &mut dyn BufRead) -> Result<Series> {
     let mut lines = Lines::new(input);
-    let (_, first) = lines.next()?.unwrap_or((1, ""));
+    let (_, first) = lines.next_line()?.unwrap_or((1, ""));
     let mut columns = fields(first);
     if columns.remove(0) != "time_s" {
         return Err(Diagnostic::input(
@@ -127,7 +127,7 @@ fn read_lines(input: &mut dyn BufRead) -> Result<Series> {
         columns,
         times_s: Vec::new(),
     };
-    while let Some((number, line)) = lines.next()? {
+    while let Some((number, line)) = lines.next_line()? {
         let on_line = |error| on_line(number, error);
         let mut words = line.split(',');
         series

@@ -68,7 +68,7 @@ pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body
 fn read_particles(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
     let mut lines = Lines::new(input);
     let columns = read_columns(&mut lines, PARTICLE_COLUMNS, 4)?;
-    while let Some((number, line)) = lines.next()? {
+    while let Some((number, line)) = lines.next_line()? {
         if line.is_empty() {
             continue;
         }
@@ -92,7 +92,7 @@ fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
     let [_, _, radius_column, length_column] = columns;
     let particles = parts.positions.len();
     let (mut radii, mut lengths) = (Vec::new(), Vec::new());
-    while let Some((number, line)) = lines.next()? {
+    while let Some((number, line)) = lines.next_line()? {
         if line.is_empty() {
             continue;
         }
@@ -130,7 +130,7 @@ fn read_columns<const N: usize>(
     names: [&str; N],
     required: usize,
 ) -> Result<[Option<usize>; N]> {
-    let (_, line) = lines.next()?.unwrap_or((1, ""));
+    let (_, line) = lines.next_line()?.unwrap_or((1, ""));
     let columns = names.map(|name| line.split(',').position(|column| column.trim() == name));
     match (0..required).find(|&k| columns[k].is_none()) {
         None => Ok(columns),

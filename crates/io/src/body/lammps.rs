@@ -89,8 +89,8 @@ pub fn read(input: &mut dyn BufRead) -> Result<Body> {
     let mut data = Data::default();
     let mut section = Section::Head;
     let mut lines = Lines::new(input);
-    lines.next()?;
-    while let Some((number, line)) = lines.next()? {
+    lines.next_line()?;
+    while let Some((number, line)) = lines.next_line()? {
         let (text, comment) = line.split_once('#').unwrap_or((line, ""));
         let text = text.trim();
         if text.is_empty() {

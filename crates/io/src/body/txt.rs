@@ -71,7 +71,7 @@ fn each_line(
     mut take: impl FnMut(&mut dyn Iterator<Item = &str>) -> Result<()>,
 ) -> Result<()> {
     let mut lines = Lines::new(input);
-    while let Some((number, line)) = lines.next()? {
+    while let Some((number, line)) = lines.next_line()? {
         if line.is_empty() || line.starts_with(['%', '#']) {
             continue;
         }

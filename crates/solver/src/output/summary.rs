@@ -67,6 +67,7 @@ pub struct Summary {
     /// Largest overlap of a contact over the radius of its smaller sphere.
     pub largest_overlap: f64,
     /// The same by what they failed by.
+    #[serde(serialize_with = "CauseCounts::serialize_by_name")]
     pub broken_by_cause: CauseCounts,
     /// What the bodies broke into, where they can.
     #[serde(skip_serializing_if = "Option::is_none")]

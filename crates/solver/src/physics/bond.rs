@@ -1,5 +1,6 @@
 //! Elastic bonds between two spheres.
 
+pub mod causes;
 pub mod criteria;
 pub mod damping;
 pub mod damping_models;

@@ -38,7 +38,7 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
                 if let Some(&first) = state.scratch.events.broken.first() {
                     assert_eq!(state.scratch.events.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
-                    assert_eq!(state.broken_by_cause.tension, 1);
+                    assert_eq!(state.broken_by_cause.of(Cause::Tension), 1);
                     // The bond as it was: with the increments of this step, which need the forces
                     // to be found once more without strength.
                     let mut whole = before;

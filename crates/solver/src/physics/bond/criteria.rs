@@ -6,7 +6,9 @@ mod shear;
 mod tension;
 mod von_mises;
 
-use super::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use serde::{Deserialize, Serialize};
+
+use super::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 use self::compression::Compression;
@@ -14,40 +16,60 @@ use self::shear::Shear;
 use self::tension::Tension;
 use self::von_mises::VonMises;
 
-/// Number of criteria.
-pub const COUNT: usize = 4;
+/// Makes the list of criteria and the causes of failure that bear their names.
+macro_rules! criteria {
+    ($($(#[$doc:meta])+ $criterion:ident,)+) => {
+        /// The criterion by which a bond failed.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Cause {
+            $($(#[$doc])+ $criterion,)+
+        }
 
-/// The squares of all criteria, in the order of [`Cause::ALL`].
-#[inline(always)]
-pub(super) fn squared<T: Number>(stresses: &Stresses<T>) -> [T; COUNT] {
-    [
-        Tension::squared(stresses),
-        Compression::squared(stresses),
-        Shear::squared(stresses),
-        VonMises::squared(stresses),
-    ]
+        /// Number of criteria.
+        pub const COUNT: usize = [$($criterion::NAME),+].len();
+
+        impl Cause {
+            /// All, in the order of the criteria.
+            pub const ALL: [Self; COUNT] = [$(Self::$criterion),+];
+
+            /// Its name in results: `von_mises`.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$criterion => $criterion::NAME,)+
+                }
+            }
+
+            /// How bonds fail by it, in words: "by equivalent stress".
+            pub fn phrase(self) -> &'static str {
+                match self {
+                    $(Self::$criterion => $criterion::PHRASE,)+
+                }
+            }
+        }
+
+        /// The squares of all criteria, in the order of [`Cause::ALL`].
+        #[inline(always)]
+        pub(super) fn squared<T: Number>(stresses: &Stresses<T>) -> [T; COUNT] {
+            [$($criterion::squared(stresses)),+]
+        }
+
+        /// The strengths of all criteria, Pa, and whether the strain rate raises them, in the order
+        /// of [`Cause::ALL`].
+        #[inline(always)]
+        pub(super) fn strengths(criteria: &Criteria) -> [(f64, bool); COUNT] {
+            [$(($criterion::strength_pa(criteria), $criterion::RISES_WITH_RATE)),+]
+        }
+    };
 }
 
-/// The strengths of all criteria, Pa, and whether the rate of strain raises them.
-#[inline(always)]
-pub(super) fn strengths(criteria: &Criteria) -> [(f64, bool); COUNT] {
-    fn of<C: FailureCriterion>(criteria: &Criteria) -> (f64, bool) {
-        (C::strength_pa(criteria), C::RISES_WITH_RATE)
-    }
-    [
-        of::<Tension>(criteria),
-        of::<Compression>(criteria),
-        of::<Shear>(criteria),
-        of::<VonMises>(criteria),
-    ]
-}
-
-impl Cause {
-    /// All, in the order of the criteria.
-    pub const ALL: [Self; COUNT] = [
-        Tension::CAUSE,
-        Compression::CAUSE,
-        Shear::CAUSE,
-        VonMises::CAUSE,
-    ];
+criteria! {
+    /// Strength at the tensile edge.
+    Tension,
+    /// Strength at the pressed edge.
+    Compression,
+    /// Shear strength.
+    Shear,
+    /// Equivalent stress.
+    VonMises,
 }

@@ -14,7 +14,9 @@ use super::BondLoad;
 use super::criteria::{COUNT, squared, strengths};
 use crate::physics::number::Number;
 
-pub use super::stresses::{Cause, CauseCounts, Criteria, Stresses, stresses};
+pub use super::causes::CauseCounts;
+pub use super::criteria::Cause;
+pub use super::stresses::{Criteria, Stresses, stresses};
 
 /// What raises strengths. None is below 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

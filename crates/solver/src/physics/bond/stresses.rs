@@ -3,9 +3,8 @@
 //! A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
 
 use std::f64::consts::PI;
-use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::BondLoad;
 use crate::physics::number::Number;
@@ -51,72 +50,6 @@ impl<T: Number> Stresses<T> {
     }
 }
 
-/// Which criterion a bond failed by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Cause {
-    /// Strength at the tensile edge.
-    Tension,
-    /// Strength at the pressed edge.
-    Compression,
-    /// Shear strength.
-    Shear,
-    /// Equivalent stress.
-    VonMises,
-}
-
-impl Cause {
-    /// Its name in results: `von_mises`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tension => "tension",
-            Self::Compression => "compression",
-            Self::Shear => "shear",
-            Self::VonMises => "von_mises",
-        }
-    }
-}
-
-/// How many bonds failed by each criterion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CauseCounts {
-    /// At the tensile edge.
-    pub tension: u64,
-    /// At the pressed edge.
-    pub compression: u64,
-    /// By shear strength.
-    pub shear: u64,
-    /// By equivalent stress.
-    pub von_mises: u64,
-}
-
-impl CauseCounts {
-    /// Counts one more bond.
-    pub fn count(&mut self, cause: Cause) {
-        *match cause {
-            Cause::Tension => &mut self.tension,
-            Cause::Compression => &mut self.compression,
-            Cause::Shear => &mut self.shear,
-            Cause::VonMises => &mut self.von_mises,
-        } += 1;
-    }
-}
-
-impl fmt::Display for CauseCounts {
-    /// Those that are not 0: `23 in tension, 2 in shear`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts = [
-            (self.tension, "in tension"),
-            (self.compression, "in compression"),
-            (self.shear, "in shear"),
-            (self.von_mises, "by equivalent stress"),
-        ];
-        let said = counts.iter().filter(|(count, _)| *count > 0);
-        let said: Vec<String> = said.map(|(count, how)| format!("{count} {how}")).collect();
-        f.write_str(&said.join(", "))
-    }
-}
-
 /// Stresses in a bond of this radius under this load.
 #[inline(always)]
 pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
@@ -133,8 +66,10 @@ pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
 
 /// A criterion: a stress that is compared with a strength.
 pub trait FailureCriterion {
-    /// Its name in results.
-    const CAUSE: Cause;
+    /// Its name in results: `von_mises`.
+    const NAME: &'static str;
+    /// How bonds fail by it, in words: "by equivalent stress".
+    const PHRASE: &'static str;
     /// Whether the rate of strain raises its strength.
     const RISES_WITH_RATE: bool;
 

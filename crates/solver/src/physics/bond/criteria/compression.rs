@@ -1,13 +1,14 @@
 //! Strength at the compressive edge.
 
-use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 /// Axial and bending stress where they press most. The rate of strain does not raise its strength.
 pub(super) struct Compression;
 
 impl FailureCriterion for Compression {
-    const CAUSE: Cause = Cause::Compression;
+    const NAME: &'static str = "compression";
+    const PHRASE: &'static str = "in compression";
     const RISES_WITH_RATE: bool = false;
 
     fn strength_pa(criteria: &Criteria) -> f64 {

@@ -1,13 +1,14 @@
 //! MUSEN's shear strength.
 
-use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 /// Shear force and torsion together.
 pub(super) struct Shear;
 
 impl FailureCriterion for Shear {
-    const CAUSE: Cause = Cause::Shear;
+    const NAME: &'static str = "shear";
+    const PHRASE: &'static str = "in shear";
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {

@@ -1,13 +1,14 @@
 //! Strength at the tensile edge (MUSEN's normal strength, with the sign of the axial force).
 
-use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 /// Axial and bending stress where they pull most.
 pub(super) struct Tension;
 
 impl FailureCriterion for Tension {
-    const CAUSE: Cause = Cause::Tension;
+    const NAME: &'static str = "tension";
+    const PHRASE: &'static str = "in tension";
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {

@@ -1,13 +1,14 @@
 //! Equivalent stress of von Mises (Platzer 2022, eqs. 11-13).
 
-use crate::physics::bond::stresses::{Cause, Criteria, FailureCriterion, Stresses};
+use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 /// Equivalent stress, whose axial part counts only while it pulls.
 pub(super) struct VonMises;
 
 impl FailureCriterion for VonMises {
-    const CAUSE: Cause = Cause::VonMises;
+    const NAME: &'static str = "von_mises";
+    const PHRASE: &'static str = "by equivalent stress";
     const RISES_WITH_RATE: bool = true;
 
     fn strength_pa(criteria: &Criteria) -> f64 {
