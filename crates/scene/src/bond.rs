@@ -86,7 +86,7 @@ pub enum StrainRateMeasure {
 }
 
 /// What breaks a bond; whichever comes first.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondFailure {
     /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's
     /// sigma_max with the sign of the force).
@@ -317,21 +317,6 @@ fn damping(table: &Table<'_>) -> Result<BondDamping> {
         return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
     }
     Ok(damping)
-}
-
-impl Default for BondFailure {
-    /// Nothing breaks.
-    fn default() -> Self {
-        Self {
-            tensile_strength_pa: None,
-            compressive_strength_pa: None,
-            shear_strength_pa: None,
-            von_mises_strength_pa: None,
-            rate_strengthening_from_1_s: None,
-            strain_rate_measure: StrainRateMeasure::default(),
-            weibull_modulus: None,
-        }
-    }
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {

@@ -17,8 +17,17 @@ use dem_io::units::STIFFNESS;
 /// Least coefficient of restitution: dampers that leave less need steps without end.
 const LEAST_RESTITUTION: f64 = 1e-3;
 
-/// Laws of contact: whether linear.
-const LAWS: [(&str, bool); 2] = [("hertz-mindlin", false), ("linear", true)];
+/// Names of contact laws.
+#[derive(Clone, Copy)]
+enum LawName {
+    HertzMindlin,
+    Linear,
+}
+
+const LAWS: [(&str, LawName); 2] = [
+    ("hertz-mindlin", LawName::HertzMindlin),
+    ("linear", LawName::Linear),
+];
 
 /// Laws of rolling: whether with a spring.
 const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
@@ -182,22 +191,24 @@ fn read(
 }
 
 fn law(table: &Table<'_>) -> Result<ContactLaw> {
-    let is_linear = table.read_by("law", |field| field.choice(&LAWS))?;
-    if is_linear != Some(true) {
-        let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
-        if let Some((_, field)) = of_linear.next() {
-            let problem = format!(
-                "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
-                field.path
-            );
-            return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
+    let name = table.read_by("law", |field| field.choice(&LAWS))?;
+    match name.unwrap_or(LawName::HertzMindlin) {
+        LawName::HertzMindlin => {
+            let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
+            if let Some((_, field)) = of_linear.next() {
+                let problem = format!(
+                    "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
+                    field.path
+                );
+                return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
+            }
+            Ok(ContactLaw::HertzMindlin)
         }
-        return Ok(ContactLaw::HertzMindlin);
+        LawName::Linear => Ok(ContactLaw::Linear {
+            normal_n_m: table.read("normal_stiffness")?,
+            tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
+        }),
     }
-    Ok(ContactLaw::Linear {
-        normal_n_m: table.read("normal_stiffness")?,
-        tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
-    })
 }
 
 /// Whether both materials say how stiff they are, as Hertz and Mindlin need it.

@@ -1,6 +1,7 @@
 //! Bodies of a scene, put where they start.
 
 use std::collections::BTreeMap;
+use std::ops::Add;
 use std::path::PathBuf;
 
 use dem_io::body::About;
@@ -8,14 +9,14 @@ use dem_io::body::files::body_files;
 use dem_io::body::mass::volume_m3;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{
-    BodyEntry, BodySource, BondKind, BondModel as SceneModel, ClumpMass, ClumpSettings,
-    Formulation, Scene, StartAs, WholeMass,
+    BodyEntry, BodySource, BondDamping, BondKind, BondModel as SceneModel, ClumpMass,
+    ClumpSettings, Formulation, Scene, StartAs, WholeMass,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::physics::bond::damping::{DampingModel, reduced};
+use crate::physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
 use crate::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
-use crate::physics::bond::failure::Criteria;
+use crate::physics::bond::failure::{Criteria, has_strength};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::{body_key, strength_factor};
@@ -399,30 +400,21 @@ fn model(model: SceneModel) -> BondModel {
 
 fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
-    let strengths = [
-        failure.tensile_strength_pa,
-        failure.compressive_strength_pa,
-        failure.shear_strength_pa,
-        failure.von_mises_strength_pa,
-    ];
-    let [
-        tensile_strength_pa,
-        compressive_strength_pa,
-        shear_strength_pa,
-        von_mises_strength_pa,
-    ] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
-    let damping = &kind.damping;
+    let strength_pa = |strength: Option<f64>| strength.unwrap_or(f64::INFINITY);
+    let criteria = Criteria {
+        tensile_strength_pa: strength_pa(failure.tensile_strength_pa),
+        compressive_strength_pa: strength_pa(failure.compressive_strength_pa),
+        shear_strength_pa: strength_pa(failure.shear_strength_pa),
+        von_mises_strength_pa: strength_pa(failure.von_mises_strength_pa),
+    };
+    let undamped = BondDamping {
+        per_mode: kind.damping.per_mode,
+        ..BondDamping::default()
+    };
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
-        damped: damping.damping_ratio > 0.0
-            || damping.damping_coefficient_n_s_m > 0.0
-            || damping.torque_factor > 0.0,
-        criteria: strengths.iter().any(Option::is_some).then_some(Criteria {
-            tensile_strength_pa,
-            compressive_strength_pa,
-            shear_strength_pa,
-            von_mises_strength_pa,
-        }),
+        damped: kind.damping != undamped,
+        criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,
     }
@@ -449,8 +441,10 @@ fn damping(
         coefficient_n_s_m: damping.damping_coefficient_n_s_m,
         moment_factor: damping.torque_factor,
     };
-    let models = [by_ratio, &by_coefficient];
-    let [one, other] = models.map(|model| model.coefficients(answer, &reduced));
-    let all = one + other;
+    let models: [&dyn DampingModel; 2] = [by_ratio, &by_coefficient];
+    let coefficients = models.map(|model| model.coefficients(answer, &reduced));
+    let all = coefficients
+        .into_iter()
+        .fold(DampingCoefficients::default(), Add::add);
     [all.normal, all.shear, all.torsion, all.bending]
 }

@@ -139,7 +139,10 @@ fn run(scene: &str, forced: bool) -> Result<i32, TestCaseError> {
     // What takes longer than a moment is stopped, and says so.
     let is_known = matches!(code, 2 | 3) || code == 130 && was_stopped;
     prop_assert!(is_known, "{}\n{}", scene, said);
-    prop_assert_eq!(code != 2, bench.path("out").exists());
+    // One that is stopped while it is still planned has no results yet.
+    if code != 130 {
+        prop_assert_eq!(code != 2, bench.path("out").exists());
+    }
     Ok(code)
 }
 

@@ -34,6 +34,12 @@ impl Factors {
     }
 }
 
+/// Whether any criterion has a strength that a stress can reach.
+pub fn has_strength(criteria: &Criteria) -> bool {
+    let mut strengths = strengths(criteria).into_iter();
+    strengths.any(|(strength_pa, _)| strength_pa.is_finite())
+}
+
 /// Largest share of a strength that is used; the bond breaks at 1.
 ///
 /// As neither the stresses nor the strengths depend on the factors, a loop over bonds may leave out
