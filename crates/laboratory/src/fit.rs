@@ -1,0 +1,59 @@
+//! Least squares.
+
+/// A straight line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Line {
+    /// Rise per unit of x.
+    pub(crate) slope: f64,
+    /// Standard error of the slope.
+    pub(crate) slope_error: f64,
+    /// Value at `x0`.
+    pub(crate) at_x0: f64,
+    /// Mean of all x.
+    pub(crate) x0: f64,
+    /// Standard deviation of the residuals.
+    pub(crate) residual: f64,
+}
+
+impl Line {
+    /// The line fitted to points; at least three, not all with the same x.
+    pub(crate) fn fitted(x: &[f64], y: &[f64]) -> Self {
+        let count = x.len() as f64;
+        let (x0, y0) = (mean(x), mean(y));
+        let pairs = || x.iter().zip(y).map(|(x, y)| (x - x0, y - y0));
+        let xx: f64 = pairs().map(|(x, _)| x * x).sum();
+        let xy: f64 = pairs().map(|(x, y)| x * y).sum();
+        let slope = xy / xx;
+        let squares: f64 = pairs().map(|(x, y)| (y - slope * x).powi(2)).sum();
+        let residual = (squares / (count - 2.0).max(1.0)).sqrt();
+        Self {
+            slope,
+            slope_error: residual / xx.sqrt(),
+            at_x0: y0,
+            x0,
+            residual,
+        }
+    }
+
+    /// Its value at x.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        self.at_x0 + self.slope * (x - self.x0)
+    }
+}
+
+/// Mean of values; at least one.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Median of values; at least one.
+pub(crate) fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let half = sorted.len() / 2;
+    if sorted.len() % 2 == 1 {
+        sorted[half]
+    } else {
+        f64::midpoint(sorted[half - 1], sorted[half])
+    }
+}

@@ -1,0 +1,5 @@
+//! All that can be tested of this crate from outside.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod files;
+mod synthetic;
