@@ -1,5 +1,5 @@
-//! Failure criteria, a file each, and the one place that lists them. `doc/adding-a-model.md` tells
-//! how another one is added.
+//! Failure criteria, one per file, and the one place that lists them. See `doc/adding-a-model.md`
+//! for how to add another.
 
 mod compression;
 mod shear;
@@ -28,7 +28,7 @@ pub(super) fn squared<T: Number>(stresses: &Stresses<T>) -> [T; COUNT] {
     ]
 }
 
-/// The strengths of all criteria, Pa, and whether the rate of strain raises them.
+/// The strengths of all criteria, Pa, and whether they increase with the strain rate.
 #[inline(always)]
 pub(super) fn strengths(criteria: &Criteria) -> [(f64, bool); COUNT] {
     fn of<C: FailureCriterion>(criteria: &Criteria) -> (f64, bool) {

@@ -17,15 +17,15 @@ pub const DEGREES_OF_FREEDOM: usize = 12;
 /// exerts.
 pub type BondTangent = [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
 
-/// Variables: where the second end stands from the first, the turns of the first and those of the
-/// second.
+/// Variables: the position of the second end relative to the first, the rotations of the first and
+/// those of the second.
 type Number = Dual<9>;
 
 /// The tangent of a bond of the total formulation.
 ///
-/// Turns are rotation vectors in space that are applied after the present rotation, q <- exp(turn)
-/// q. Where a torque acts on an end, the tangent is not symmetric in the turns of that end: K - K^T
-/// = the cross product with the torque that the bond exerts there.
+/// Rotations are rotation vectors in space, applied after the present rotation, q <- exp(turn) q.
+/// If a torque acts on an end, the tangent is not symmetric in the rotations of that end: K - K^T =
+/// the cross product with the torque that the bond exerts there.
 pub fn bond_tangent(
     stiffness: &Stiffness,
     direction: &Vector3<f64>,
@@ -67,8 +67,8 @@ pub fn bond_tangent(
     tangent
 }
 
-/// How an end is turned, with the derivatives by a further turn: half of the turn times the present
-/// rotation. Variables from `first` on.
+/// Rotation of an end, with the derivatives with respect to a further rotation: half of it times
+/// the present rotation. Variables from `first` on.
 fn turning(end: &End, first: usize) -> Rotation<Number> {
     let (v, w) = (end.turned.imag(), end.turned.w);
     let mut parts = [v.x, v.y, v.z, w].map(Number::constant);
@@ -85,7 +85,7 @@ fn turning(end: &End, first: usize) -> Rotation<Number> {
     Rotation(Vec3(x, y, z), w)
 }
 
-/// A row of the tangent from derivatives by the nine variables, times a factor.
+/// A row of the tangent from derivatives with respect to the nine variables, times a factor.
 fn spread(slopes: &[f64; 9], factor: f64) -> [f64; DEGREES_OF_FREEDOM] {
     let mut row = [0.0; DEGREES_OF_FREEDOM];
     for k in 0..3 {
