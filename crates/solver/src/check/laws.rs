@@ -40,8 +40,8 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// Predicted effects of loads, weight and impacts at this speed, m/s, beyond the validity of the
-/// laws, a sentence each. None: nothing can touch.
+/// Predicted effects of loads, weight and impacts at this speed, m/s (None: nothing can touch),
+/// beyond the validity of the laws, a sentence each.
 pub fn foreseen(
     state: &State,
     bodies: &[PlacedBody],

@@ -66,7 +66,7 @@ pub struct Template {
     pub body: String,
     /// kg.
     pub mass_kg: f64,
-    /// Principal moments of inertia, rising, kg m2. Length 3.
+    /// Principal moments of inertia, ascending, kg m2. Length 3.
     pub moments_kg_m2: [f64; 3],
     /// Rotation from the principal axes to those of the body's file: unit quaternion x, y, z, w.
     pub axes: [f64; 4],

@@ -1,5 +1,6 @@
-//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the
-//! very formulas of the forces ([`bond_response`]), differentiated exactly.
+//! The tangent of a bond: derivatives of its forces and torques with respect to displacements and
+//! rotations of its ends, by exact differentiation of the same formulas as for the forces
+//! ([`bond_response`]).
 
 use nalgebra::Vector3;
 
@@ -8,13 +9,13 @@ use super::total::{End, bond_response};
 use crate::physics::dual::Dual;
 use crate::physics::number::{Rotation, Vec3};
 
-/// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z
-/// of the first (3..6), then those of the second.
+/// Number of degrees of freedom of the two ends of a bond: translations along x, y, z of the first
+/// (0..3), rotations about x, y, z of the first (3..6), then those of the second.
 pub const DEGREES_OF_FREEDOM: usize = 12;
 
-/// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns,
-/// rad. Its entries are what a small move or turn takes: minus the derivatives of what the bond
-/// exerts.
+/// Rows: forces, N, and torques, N m, in the order of [`DEGREES_OF_FREEDOM`]. Columns:
+/// displacements, m, and rotations, rad. Its entries are the external forces for a small
+/// displacement or rotation: minus the derivatives of the bond's forces.
 pub type BondTangent = [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
 
 /// Variables: the position of the second end relative to the first, the rotations of the first and
