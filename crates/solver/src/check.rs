@@ -1,4 +1,4 @@
-//! What a run checks of itself.
+//! Checks that a run makes of itself.
 
 pub mod flight;
 pub mod laws;

@@ -1,4 +1,4 @@
-//! The command line of dem-run: arguments as typed, and what is done with them.
+//! The command line of dem-run: its arguments and their execution.
 
 mod check;
 mod fragment;
@@ -32,7 +32,7 @@ use crate::plan::{Plan, plan};
 use crate::run::snapshot::Snapshot;
 use crate::run::{Finished, Outcome, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
 
-/// Options that had another name before version 0.1, and their names.
+/// Options that had another name before version 0.1, and their new names.
 pub const RENAMED: [(&str, &str); 2] = [("--out", "--output"), ("--want", "--max-error")];
 
 /// Simulates the breakage of bonded particles with the discrete element method.
@@ -134,11 +134,11 @@ struct RunArguments {
     quiet: bool,
 }
 
-/// Does what was asked for. `interrupt` tells a run to stop.
+/// Does what was requested. `interrupt` tells a run to stop.
 ///
 /// # Errors
-/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. A
-/// reader that closes standard output early is no error.
+/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. It
+/// is not an error if a reader closes standard output early.
 pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     match &arguments.command {
         Some(Command::Check { scene }) if !scene.names_a_scene() => Err(Diagnostic::input(
@@ -196,7 +196,7 @@ fn in_pool(wanted: Option<usize>, work: impl FnOnce(usize) -> Result<()> + Send)
 }
 
 impl RunArguments {
-    /// Refuses what means nothing where no scene is run.
+    /// Refuses options that have no meaning if no scene is run.
     fn refuse_scene_options(&self) -> Result<()> {
         let given = [
             ("--output", self.output.is_some()),
@@ -227,7 +227,7 @@ impl RunArguments {
 }
 
 impl SceneArguments {
-    /// What is named, for a person.
+    /// Human-readable name of the input.
     fn place(&self) -> String {
         let named = self.file.as_ref().map(|path| path.display().to_string());
         named.unwrap_or_else(|| "--body without a scene".to_owned())
@@ -259,7 +259,7 @@ impl SceneArguments {
     }
 }
 
-/// Takes a body's file from an option `[NAME=]FILE`. The body's name.
+/// Sets a body's file from an option `[NAME=]FILE`. Returns the body's name.
 fn set_body(scene: &mut Scene, option: &str) -> Result<String> {
     let (name, file) = match option.split_once('=') {
         Some((name, file)) => (Some(name.to_owned()), file),
@@ -366,7 +366,8 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     bar.finish_and_clear();
     let outcome = outcome.inspect_err(|problem| {
         let unfinished = Unfinished::new(&scene.source, inputs, problem);
-        // The problem itself is what the user has to hear of. Bad input has run nothing.
+        // The user must see the problem itself, whatever happens here. Bad input has not run
+        // anything.
         if problem.kind != Kind::Input {
             let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
             if arguments.scene.json {
@@ -380,7 +381,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     }
 }
 
-/// Where results go, and what becomes of those that are there. None: nowhere.
+/// Folder of results, and the treatment of existing ones. None: no results are written.
 fn folder_to_open(arguments: &RunArguments, scene: &Scene) -> Result<Option<(PathBuf, Existing)>> {
     if arguments.resume && scene.run.integrator == Integrator::Static {
         return Err(Diagnostic::input(
@@ -405,11 +406,11 @@ fn folder_to_open(arguments: &RunArguments, scene: &Scene) -> Result<Option<(Pat
     }
 }
 
-/// What is run at twice the rate, to tell whether the rate matters.
+/// The run at twice the rate, which shows whether the rate matters.
 type AtTwiceTheRate = (Scene, BTreeMap<String, Body>, TestSettings);
 
-/// The scene of a laboratory test with its rate, and the same at twice the rate where that is to be
-/// checked. Other scenes as they are.
+/// The scene of a laboratory test with its rate, and the same at twice the rate if that is to be
+/// checked. Other scenes are unchanged.
 fn arranged(
     scene: Scene,
     bodies: &BTreeMap<String, Body>,
@@ -433,7 +434,7 @@ fn arranged(
     Ok((scene, Some(test), twice))
 }
 
-/// Says notes and warnings before the run. Nobody to read them is no reason to stop.
+/// Prints notes and warnings before the run. A closed output is not a reason to stop.
 fn say_beforehand(plan: &Plan) {
     let notes = plan.notes.iter().map(|note| ("note", note));
     let warnings = plan.warnings.iter().chain(&plan.forecast.warnings);
@@ -457,7 +458,7 @@ fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot<'static>> {
     Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)
 }
 
-/// Says how a run ended, as text or as JSON.
+/// Prints how a run ended, as text or as JSON.
 fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     let summary = &outcome.summary;
     if arguments.scene.json {
@@ -477,7 +478,7 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     outcome.problem.map_or(Ok(()), Err)
 }
 
-/// Says what was missing of a run that had come to its end.
+/// Prints the missing files of a run that had reached its end.
 fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
     if arguments.scene.json {
         return write_standard_output(|out| write_visible_json(out, &finished.summary));
@@ -494,7 +495,7 @@ fn say_finished(arguments: &RunArguments, finished: &Finished) -> Result<()> {
     })
 }
 
-/// Where results go, if anywhere: as said, or as the scene says, or the scene's name with `-out`.
+/// Folder of results, if any: from the option, or from the scene, or the scene's name with `-out`.
 fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
     if let Some(out) = &arguments.output {
         return Some(out.clone());

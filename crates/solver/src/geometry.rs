@@ -1,11 +1,11 @@
-//! Where a sphere touches a wall: plain geometry in the wall's own frame, m.
+//! Contact points of a sphere and a wall: plain geometry in the wall's own frame, m.
 //!
-//! A touch is a point of the wall that is nearer to the centre than all wall around it. A flat or
+//! A touch is a point of the wall that is nearer to the centre than the wall around it. A flat or
 //! convex wall has one; in a concave corner each side has one.
 //!
 //! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A
-//! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side on which the
-//! centre is, and a sphere whose centre has passed through is pushed on.
+//! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side of the centre,
+//! and a sphere whose centre has passed through is pushed on.
 
 pub mod cylinder;
 pub mod frame;
@@ -23,26 +23,26 @@ pub use mesh::Mesh;
 pub use plane::Plane;
 pub use solid_box::SolidBox;
 
-/// A place where a sphere may touch a wall. `point = centre + distance_m * normal`.
+/// A point where a sphere may touch a wall. `point = centre + distance_m * normal`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
     /// Nearest point of the wall's surface, m. Length 3.
     pub point: [f64; 3],
-    /// Unit vector into the wall: from the centre towards the point, or away from it where the
-    /// centre is inside a solid. Length 3.
+    /// Unit vector into the wall: from the centre towards the point, or away from it if the centre
+    /// is inside a solid. Length 3.
     pub normal: [f64; 3],
-    /// From the centre to the point, m; negative where the centre is inside a solid.
+    /// From the centre to the point, m; negative if the centre is inside a solid.
     pub distance_m: f64,
-    /// Which flat part, straight edge, corner, ... of the wall: stays the same while a sphere
-    /// slides over it. Its meaning is that of the shape.
+    /// Flat part, straight edge, corner, ... of the wall: stays the same while a sphere slides over
+    /// it. The numbering depends on the shape.
     pub feature: u32,
 }
 
-/// Two points nearer than this are one: a square of it is still a number.
+/// Points nearer than this coincide: its square does not underflow.
 const SMALLEST_M: f64 = 1e-100;
 
 impl Touch {
-    /// From the centre `c` to the `point`; with the normal `otherwise` where they are one.
+    /// Touch from the centre `c` to the `point`; with the normal `otherwise` if they coincide.
     fn towards(
         c: Vector3<f64>,
         point: Vector3<f64>,
@@ -64,7 +64,7 @@ impl Touch {
         }
     }
 
-    /// With the centre `c` on or under the surface, whose normal out of the wall is `outward`.
+    /// Touch for a centre `c` on or under the surface, whose normal out of the wall is `outward`.
     fn under(c: Vector3<f64>, outward: Vector3<f64>, depth_m: f64, feature: u32) -> Self {
         Self {
             point: (c + depth_m * outward).into(),
@@ -78,7 +78,7 @@ impl Touch {
 /// The shape of a wall.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Shape {
-    /// Half of space.
+    /// A half-space.
     Plane(Plane),
     /// A solid box.
     Box(SolidBox),
@@ -89,14 +89,14 @@ pub enum Shape {
 }
 
 impl Default for Shape {
-    /// A plane without direction, as a wall has before it is told its own.
+    /// A plane without direction, as a placeholder.
     fn default() -> Self {
         Self::Plane(Plane::default())
     }
 }
 
 impl Shape {
-    /// Adds all places where the wall is nearer than `reach_m` to `centre`, each once. Equal input
+    /// Adds all points where the wall is nearer than `reach_m` to `centre`, each once. Equal input
     /// gives equal order.
     pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
         let touch = match self {

@@ -1,8 +1,8 @@
-//! Ctrl-C: a run ends by itself and keeps its state; anything else ends at once.
+//! Ctrl-C: a run stops by itself and keeps its state; anything else ends at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Who listens to Ctrl-C, and whether it was heard.
+/// Requested interruption, and whether any work reacts to it.
 #[derive(Debug, Default)]
 pub struct Interrupt {
     asked: AtomicBool,
@@ -10,15 +10,15 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Asks to stop. False if the program has to be ended from outside: nothing listens, or this is
-    /// not the first time.
+    /// Requests a stop. False if the program must be ended from outside: no work reacts, or this is
+    /// not the first request.
     pub fn ask(&self) -> bool {
         let again = self.asked.swap(true, Ordering::Relaxed);
         !again && self.heeded.load(Ordering::Relaxed)
     }
 
-    /// Does work that ends by itself when the flag is set. What comes after it is soon done, and is
-    /// waited for as well.
+    /// Does work that stops by itself when the flag is set. Whatever follows it is short, and is
+    /// completed as well.
     pub fn run_interruptible<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
         self.heeded.store(true, Ordering::Relaxed);
         work(&self.asked)

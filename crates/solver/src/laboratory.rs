@@ -1,6 +1,7 @@
-//! Quasi-static laboratory tests: `[test]` of a scene. [`arrange`] says how fast what moves,
-//! [`record`] notes force and way while it is loaded, [`evaluate`] compares them with
-//! [`theory`](crate::plan::test_theory), [`page`] shows it; [`watch`] does so for a run.
+//! Quasi-static laboratory tests: `[test]` of a scene. [`arrange`] sets the loading rate,
+//! [`record`] records force and displacement during loading, [`evaluate`] compares them with
+//! [`theory`](crate::plan::test_theory), [`page`] presents the results; [`watch`] connects these to
+//! a run.
 
 pub mod arrange;
 pub mod crack;

@@ -1,5 +1,5 @@
-//! Runs scenes with bonded bodies: TOML scene -> [`plan()`] -> [`State`] -> [`step()`], step, ...
-//! -> results.
+//! Runs scenes of bonded bodies: TOML scene -> [`plan()`] -> [`State`] -> [`step()`], step, ... ->
+//! results.
 //!
 //! ```
 //! use dem_scene::{read_bodies, scene_from_text};
@@ -21,7 +21,8 @@
 //! # Ok::<(), dem_io::Diagnostic>(())
 //! ```
 //!
-//! [`run()`] does what the program does: it steps a plan to its end, watches it and writes results.
+//! [`run()`] does the same as the program: it steps a plan to its end, monitors it and writes
+//! results.
 
 pub mod check;
 pub mod cli;

@@ -1,7 +1,7 @@
-//! Which machine this is, as run times of different ones are not compared, and the time that its
-//! processors gave to this program.
+//! The machine, as run times of different ones are not compared, and the processor time of this
+//! program.
 
-/// Processor and number of cores: `AMD EPYC 7763, 16 cores`. Nodes of one kind are one machine.
+/// Processor and number of cores: `AMD EPYC 7763, 16 cores`. Identical nodes count as one machine.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -15,16 +15,14 @@ pub fn machine() -> String {
     format!("{model}, {cores} core{}", if cores == 1 { "" } else { "s" })
 }
 
-/// Time that processors have spent on this program, all its threads together, s. None: the system
-/// does not say.
+/// Processor time of this program, all threads together, s. None: the system does not provide it.
 #[cfg(unix)]
 pub fn processor_time_s() -> Option<f64> {
     let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64)
 }
 
-/// Time that processors have spent on this program, all its threads together, s. None: the system
-/// does not say.
+/// Processor time of this program, all threads together, s. None: the system does not provide it.
 #[cfg(not(unix))]
 pub fn processor_time_s() -> Option<f64> {
     None

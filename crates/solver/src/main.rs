@@ -27,7 +27,7 @@ fn main() -> ExitCode {
         }
     };
     take_size_limits_as_errors();
-    // Without the handler an interrupted run would leave no checkpoint, no more.
+    // Without the handler, the only loss is the checkpoint of an interrupted run.
     let _ = ctrlc::set_handler(at_interrupt);
     match run(&arguments, &interrupt) {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! Measures: named quantities of sets of particles, followed through a run.
+//! Measures: named quantities of particle groups, recorded during a run.
 
 mod heap;
 mod members;
@@ -29,25 +29,25 @@ use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
 pub use crate::state::watches::History;
 
-/// A measure and the particles that it is of.
+/// A measure and its particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Its name in the scene.
     pub name: String,
-    /// What is asked.
+    /// Its definition.
     pub measure: Measure,
     members: Members,
-    /// The particles that it is with, if that is no wall.
+    /// The particles of its second object, if that is not a wall.
     with: Option<Members>,
-    /// The walls that it is of and that it is with, by number.
+    /// The walls among its two objects, by number.
     walls: [Option<usize>; 2],
-    /// Where the bodies of the scene stood at the start. Empty where nobody asks.
+    /// Initial positions of the bodies of the scene. Empty if not needed.
     starts: Arc<Starts>,
-    /// Centre of mass of its particles at the start, m. No numbers where nobody asks.
+    /// Initial centre of mass of its particles, m. NaN if not needed.
     start: Vector3<f64>,
-    /// How those of its particles were turned at the start that were. Empty where nobody asks.
+    /// Initial rotations of those of its particles that were rotated. Empty if not needed.
     turned_before: BTreeMap<u32, UnitQuaternion<f64>>,
-    /// What it has shown.
+    /// Its values so far.
     pub history: History,
 }
 
@@ -57,25 +57,24 @@ pub struct Measured {
     /// Its name in the scene.
     #[serde(skip_serializing)]
     pub name: String,
-    /// In `unit`.
+    /// Value in `unit`.
     pub value: f64,
     /// SI unit, or degrees for an angle of repose; empty for plain numbers.
     pub unit: String,
-    /// What it should be.
+    /// Expected value.
     pub reference: Option<f64>,
-    /// (value - reference) / |reference|; the plain difference for a reference of 0.
+    /// (value - reference) / |reference|; the plain difference if the reference is 0.
     pub error: Option<f64>,
-    /// Largest error for the run to be called good.
+    /// Largest relative error for the run to pass.
     pub tolerance: Option<f64>,
-    /// Largest difference from the reference for the run to be called good, in `unit`.
+    /// Largest difference from the reference for the run to pass, in `unit`.
     pub absolute_tolerance: Option<f64>,
-    /// Why there is no value. None: there is one.
+    /// Reason for a missing value. None: there is a value.
     pub missing: Option<String>,
 }
 
 impl Measured {
-    /// Whether the error is within each tolerance; true without one. An error that is no number is
-    /// not.
+    /// Whether the error is within each tolerance; true without tolerances, false if it is NaN.
     pub fn is_good(&self) -> bool {
         let off = self.reference.map(|reference| self.value - reference);
         let within = |error: Option<f64>, tolerance: Option<f64>| match (error, tolerance) {
@@ -103,7 +102,7 @@ pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
     let members = |name: &str| {
         let particles = plan.groups.get(name).cloned().unwrap_or_default();
         let mut members = Members::new(name, particles);
-        // The sets of a plan know no spheres of clumps.
+        // The sets of a plan do not include spheres of clumps.
         members.renumber(&[], &plan.bodies, &plan.state);
         members
     };
@@ -127,7 +126,7 @@ pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
     scene.measures.iter().map(probe).collect()
 }
 
-/// Lets a state that is about to be stepped follow what the probes need of every step.
+/// Makes a state that is about to be stepped record what the probes need in every step.
 pub fn place_watches(probes: &[Probe], state: &mut State) {
     let watch = |probe: &Probe| {
         Some(Watch {
@@ -140,8 +139,8 @@ pub fn place_watches(probes: &[Probe], state: &mut State) {
     state.watches = watches;
 }
 
-/// Reads all probes between a kick and the drift after it, and notes what they show. One value for
-/// each.
+/// Evaluates all probes between a kick and the drift after it, and records their values. Returns
+/// one value for each.
 pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Vec<f64> {
     let needs_motions = |g: &Probe| {
         matches!(
@@ -192,7 +191,7 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
     values
 }
 
-/// Lets the probes, and what the state follows for them, count particles as they are counted now.
+/// Updates the probes, and what the state records for them, to the new numbers of particles.
 pub fn renumber(
     probes: &mut [Probe],
     by: &[Renumbering],
@@ -214,7 +213,7 @@ pub fn renumber(
 }
 
 impl Probe {
-    /// What follows from which particles it is of.
+    /// Updates everything that depends on its particles.
     fn count_anew(&mut self, bodies: &[PlacedBody], state: &State) {
         match self.measure.quantity {
             Quantity::Displacement(_) | Quantity::DisplacementMagnitude => {
@@ -227,14 +226,14 @@ impl Probe {
         }
     }
 
-    /// Whether it is read in every step.
+    /// Whether it is evaluated in every step.
     fn is_watched(&self) -> bool {
         let quantity = self.measure.quantity;
         let is_force = matches!(quantity, Quantity::Force(_) | Quantity::ForceMagnitude);
         is_force || quantity.is_of_contact()
     }
 
-    /// Whose forces and contacts it follows in every step. None: of none.
+    /// The object whose forces and contacts it records in every step. None: it has none.
     fn watched(&self, state: &State) -> Option<WatchTarget> {
         if !self.is_watched() {
             return None;
@@ -299,7 +298,7 @@ impl Probe {
                 let up = (-down).try_normalize(0.0).unwrap_or_else(Vector3::z);
                 heap::angle_of_repose_deg(members, state, up)
             }
-            // Of the particles on the wall.
+            // Torque of the particles on the wall.
             Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][at(k)]),
             Quantity::Count => {
                 let clusters = state.clusters.as_ref();
@@ -309,7 +308,7 @@ impl Probe {
             Quantity::MassFractionOfLargest => {
                 masses_kg.iter().copied().fold(0.0, f64::max) / masses_kg.iter().sum::<f64>()
             }
-            // Read in every step, where there are steps.
+            // Evaluated in every step, if there are steps.
             Quantity::Force(_)
             | Quantity::ForceMagnitude
             | Quantity::ContactForce(_)
@@ -319,7 +318,7 @@ impl Probe {
         }
     }
 
-    /// Why it has no value at the end. None: it has one.
+    /// Reason why it has no value at the end. None: it has one.
     fn missing(&self, value: f64) -> Option<String> {
         let (name, of) = (&self.name, &self.measure.of);
         let left = self.members.particles.len();
@@ -336,7 +335,7 @@ impl Probe {
         }
     }
 
-    /// Goes through the bonds that have an end in the set, with the number of ends in it.
+    /// Folds over the bonds that have an end in the set, with the number of ends in it.
     fn over_bonds(&self, state: &State, start: f64, next: impl Fn(f64, usize, f64) -> f64) -> f64 {
         let is_in = self.members.marked(state);
         let mut value = start;
@@ -349,7 +348,7 @@ impl Probe {
         value
     }
 
-    /// What it comes to at the end of a run.
+    /// Its result at the end of a run.
     pub fn result(&self) -> Measured {
         let history = &self.history;
         let last = history.last.map_or(f64::NAN, |(_, value)| value);
@@ -386,7 +385,7 @@ impl Probe {
     }
 }
 
-/// Mass of every cluster that is whole, kg.
+/// Mass of every intact cluster, kg.
 fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
@@ -395,7 +394,7 @@ fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     all.iter().map(|fragment| fragment.mass_kg).collect()
 }
 
-/// What a bond carries: nothing if it is broken.
+/// Load of a bond: zero if it is broken.
 pub fn load(state: &State, at: usize) -> BondLoad {
     if state.bonds.is_broken(at) {
         return BondLoad::default();
@@ -403,13 +402,13 @@ pub fn load(state: &State, at: usize) -> BondLoad {
     state.bonds.forces(at, &state.particles.poses).load
 }
 
-/// Stress over strength of a bond, before any strengthening by rate; 0 for one that is broken or
+/// Ratio of stress to strength of a bond, before any rate strengthening; 0 if it is broken or
 /// cannot break.
 pub fn bond_utilisation(state: &State, at: usize) -> f64 {
     utilisation_under(state, at, &load(state, at))
 }
 
-/// The same under a load that is known.
+/// The same for a given load.
 pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     let bonds = &state.bonds;
     match &bonds.rules[bonds.rule_of(at)].criteria {

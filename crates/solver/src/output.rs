@@ -1,5 +1,5 @@
-//! What a run tells: frames, pictures, time series, events, fragments, plots, and the summary at
-//! its end.
+//! Output of a run: frames, pictures, time series, events, fragments, plots, and the summary at its
+//! end.
 
 pub mod equilibrium;
 pub mod fragments;

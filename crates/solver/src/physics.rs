@@ -1,4 +1,4 @@
-//! Physics as functions of plain numbers: nothing here knows of storage, threads, files or scenes.
+//! Physics as functions of plain numbers, independent of storage, threads, files and scenes.
 
 pub mod bond;
 pub mod contact;

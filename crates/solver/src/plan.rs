@@ -1,5 +1,5 @@
-//! From a scene and its bodies to a simulation ready to step: what it holds, which stages it needs
-//! and why each other is left out.
+//! Turns a scene and its bodies into a simulation ready to step: its state, the stages it needs,
+//! and why the others are skipped.
 
 pub mod bodies;
 mod clumps;
@@ -58,38 +58,37 @@ use self::test_setup::{Setup, setup};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
 use crate::state::bodies::PlacedBody;
 
-/// Particles and bonds that are worth a thread of their own.
+/// Number of particles and bonds that justify a thread of their own.
 const WORTH_A_THREAD: usize = 5000;
 
-/// A simulation that is ready to step, and what its parts are called.
+/// A simulation that is ready to step, with names for its parts.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Before the first step.
+    /// The state before the first step.
     pub state: State,
     /// Bodies in the order of their names.
     pub bodies: Vec<PlacedBody>,
-    /// Particles (numbers in the state, rising) of every set, every body and `all`.
+    /// Particles (numbers in the state, ascending) of every set, every body and `all`.
     pub groups: BTreeMap<String, Vec<u32>>,
-    /// The time step and why.
+    /// The time step and the reason for it.
     pub step: StepChoice,
     /// Whether the step follows the limit up as well as down.
     pub is_adaptive: bool,
     /// The stages of a step.
     pub stages: Vec<PlannedStage>,
-    /// The laboratory test as it stands. None: the scene has none.
+    /// The laboratory test in its initial arrangement. None: the scene has none.
     pub test: Option<Setup>,
-    /// Bodies that stay rigid clumps all along, and how many bonds they have, which nobody uses.
+    /// Bodies that always stay rigid clumps, and the number of their bonds, which are unused.
     pub unused_bonds: Vec<(String, usize)>,
-    /// What each body weighs, by its name.
+    /// Mass of each body, by name.
     pub masses: BTreeMap<String, BodyMass>,
-    /// What is odd about the scene but harmless, a sentence each.
+    /// Harmless peculiarities of the scene, a sentence each.
     pub notes: Vec<String>,
-    /// What speaks against trusting the result, as far as it is known before the run, a sentence
-    /// each.
+    /// Reasons to doubt the result that are known before the run, a sentence each.
     pub warnings: Vec<String>,
-    /// What will happen, as far as it can be told.
+    /// Forecast of the run, as far as possible.
     pub forecast: Forecast,
-    /// What is planned, for the results.
+    /// Inputs of the plan, for the results.
     pub inputs: Inputs,
 }
 
@@ -97,11 +96,11 @@ pub struct Plan {
 /// a given time step above the limit is taken.
 ///
 /// # Errors
-/// What does not fit together: bonds without a kind, no density, a set without particles, a freedom
-/// held twice, a load on a held freedom, materials that meet without a word on how, bodies in each
-/// other or in walls, a wall's file that is no surface, a time step above the limit, a laboratory
-/// test that cannot be made; where the scene goes to its equilibrium at once, a piece that supports
-/// do not hold.
+/// Inconsistencies of the scene: bonds without a rule, no density, a set without particles, a
+/// degree of freedom held twice, a load on a held degree of freedom, materials that meet without a
+/// contact law, bodies in each other or in walls, a wall's file that is not a surface, a time step
+/// above the limit, a laboratory test that is not possible; if the scene asks for static
+/// equilibrium, a piece that supports do not hold.
 pub fn plan(
     scene: &Scene,
     read: BTreeMap<String, Body>,
@@ -199,7 +198,7 @@ pub fn plan(
     })
 }
 
-/// Clusters, contacts and walls, where the scene needs them.
+/// Clusters, contacts and walls, if the scene needs them.
 fn place_meetings(
     scene: &Scene,
     bodies: &[PlacedBody],
@@ -299,7 +298,7 @@ fn loads(
 ) -> Result<Vec<GroupLoad>> {
     let mut loads = Vec::new();
     for (name, load) in &scene.loads {
-        // What is let go before the load ends can move with it.
+        // Degrees of freedom released before the load ends can move with it.
         let end_s = load.end_s.unwrap_or(f64::INFINITY);
         let held =
             held_degrees_of_freedom(supports.iter().filter(|support| support.end_s >= end_s));

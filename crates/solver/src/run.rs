@@ -1,4 +1,4 @@
-//! A run: a plan is stepped to its end, watched, measured and written down.
+//! A run: steps a plan to its end, monitors it, measures and writes results.
 
 mod begin;
 mod end;
@@ -30,8 +30,8 @@ pub use self::outcome::Outcome;
 pub use self::progress::Progress;
 pub use self::settings::RunSettings;
 
-/// Steps a plan to its end, or brings it into its equilibrium at once, as the scene says. `tell` is
-/// called now and then with the fraction of the end time reached, in 0..1.
+/// Steps a plan to its end, or solves for its static equilibrium, as the scene says. `tell` is
+/// called from time to time with the fraction of the end time reached, in 0..1.
 ///
 /// # Errors
 /// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
@@ -45,10 +45,10 @@ pub fn run(
     outcome.problem.map_or(Ok(outcome.summary), Err)
 }
 
-/// The same. A run that goes unstable or is interrupted has a summary as well, in its folder too.
+/// The same, but a run that goes unstable or is interrupted also has a summary, in its folder too.
 ///
 /// # Errors
-/// Its files cannot be written, or there is no equilibrium to go to.
+/// Its files cannot be written, or there is no equilibrium.
 pub fn run_as_far_as_it_goes(
     plan: Plan,
     scene: &Scene,

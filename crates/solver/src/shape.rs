@@ -1,5 +1,4 @@
-//! Geometry of bodies made of spheres: mass properties, which spheres can be touched, and how a
-//! body has turned.
+//! Geometry of bodies made of spheres: mass properties, outer spheres, and rotation of a body.
 
 mod caps;
 mod cells;

@@ -1,4 +1,4 @@
-//! Physics over the state, in the order of the step.
+//! The physics of the time step, one stage per file.
 
 mod blocks;
 pub mod bonds;

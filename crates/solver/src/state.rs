@@ -1,4 +1,5 @@
-//! What moves and what joins it, as plain arrays; and all that a step needs besides.
+//! The state of a simulation as plain arrays: bodies, bonds, contacts and all other data that a
+//! step needs.
 
 pub mod bodies;
 pub mod bonds;
@@ -43,34 +44,35 @@ use self::supports::GroupSupport;
 use self::walls::Wall;
 use self::watches::Watch;
 
-/// A simulation between two steps, in three parts: what the plan fixed; what moves and is saved,
-/// which is a checkpoint as it stands; and what can be rebuilt from these two. Poses stand at
-/// `time_s`, velocities half a step before; before the first step both stand at the start.
+/// A simulation between two steps, in three parts: data fixed by the plan; data that change and are
+/// saved, which form a checkpoint as they are; and data that can be rebuilt from the other two.
+/// Poses are those of `time_s`, velocities those of half a step before; before the first step both
+/// are the initial ones.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
-    /// What the plan fixed.
+    /// Data fixed by the plan.
     #[serde(skip)]
     pub model: Model,
 
-    /// Spheres: first those that move by themselves, then those that clumps carry.
+    /// Spheres: free ones first, then those carried by clumps.
     pub particles: Particles,
     /// Rigid clumps.
     pub clumps: Clumps,
-    /// What joins particles.
+    /// Bonds between particles.
     pub bonds: Bonds,
-    /// Which particles are of one piece. None: nothing can break, and nothing can touch.
+    /// Particles grouped into connected pieces. None: nothing can break, and nothing can touch.
     pub clusters: Option<Clusters>,
-    /// Bonds that broke since pieces were looked for last.
+    /// Bonds that broke since the last search for fragments.
     pub unsearched: Vec<u32>,
-    /// Bodies that came, went and became others so far.
+    /// Bodies added, removed and replaced so far.
     pub population: Population,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
-    /// Bodies that sleep. None: none can.
+    /// Sleeping bodies. None: no body can sleep.
     pub sleep: Option<Sleep>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
-    /// Forces and contacts that measures follow in every step. Empty: none.
+    /// Forces and contacts that measures record in every step. Empty: none.
     pub watches: Vec<Watch>,
     /// Loads.
     pub loads: Vec<GroupLoad>,
@@ -80,30 +82,30 @@ pub struct State {
     pub steps: u64,
     /// Simulated time, s.
     pub time_s: f64,
-    /// The step to come, s.
+    /// The next step, s.
     pub time_step_s: f64,
-    /// The step before, s; 0 at the start.
+    /// The previous step, s; 0 at the start.
     pub previous_time_step_s: f64,
-    /// Largest speed of a particle in the step before, and where there are contacts that of a wall
-    /// on top, m/s.
+    /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
+    /// m/s.
     pub fastest_m_s: f64,
     /// Bonds broken so far.
     pub broken_count: u64,
-    /// The same by what they failed by.
+    /// The same by cause of failure.
     pub broken_by_cause: CauseCounts,
-    /// Those of them that have gone with their bodies.
+    /// Those of them that were removed with their bodies.
     pub broken_removed: u64,
-    /// Energy and momentum that went in and out.
+    /// Energy and momentum supplied and removed.
     pub ledger: EnergyLedger,
 
-    /// What can be rebuilt.
+    /// Data that can be rebuilt.
     #[serde(skip)]
     pub scratch: Scratch,
 }
 
 impl State {
     /// A simulation of these particles and bonds, without loads, supports, gravity and particle
-    /// damping. Work is divided for this many threads.
+    /// damping. Work is divided for this number of threads.
     pub fn new(particles: Particles, bonds: Bonds, time_step_s: f64, threads: usize) -> Self {
         let mut state = Self {
             model: Model {
@@ -140,12 +142,12 @@ impl State {
         state
     }
 
-    /// Whether there are clumps, or bodies can come, go or become others.
+    /// Whether there are clumps, or bodies can be added, removed or replaced.
     pub fn bodies_change(&self) -> bool {
         !(self.clumps.templates.is_empty() && self.model.rules.are_none())
     }
 
-    /// Divides the work on particles and bonds anew, and makes room for damping forces.
+    /// Divides the work on particles and bonds again, and makes room for damping forces.
     pub fn divide(&mut self) {
         let free = self.particles.free;
         let scratch = &mut self.scratch;
@@ -159,8 +161,8 @@ impl State {
         scratch.particle_resistance = vec![Wrench::default(); resistances];
     }
 
-    /// The state that comes from a checkpoint, with the model that was planned for it and all that
-    /// can be rebuilt, for this many threads. None: the two do not belong together.
+    /// The state from a checkpoint, with the model planned for it and everything that can be
+    /// rebuilt, for this number of threads. None: the two do not belong together.
     pub fn rebuilt(mut self, model: Model, threads: usize) -> Option<Self> {
         let of_fragments = self.population.fragments.iter_mut();
         for fragment in of_fragments {
@@ -202,7 +204,7 @@ impl State {
         }
     }
 
-    /// Density of particle `i`, kg/m3, be it carried by a clump or not.
+    /// Density of particle `i`, kg/m3, whether a clump carries it or not.
     pub fn density_kg_m3(&self, i: usize) -> f64 {
         match self.clumps.carrier_of(i) {
             Some(at) => {
@@ -217,7 +219,7 @@ impl State {
         }
     }
 
-    /// Radius of the largest sphere that is there or may come, m; 0 where there is none.
+    /// Radius of the largest sphere that exists or may be added, m; 0 if there is none.
     pub fn largest_radius_m(&self) -> f64 {
         let of_clumps = self.clumps.templates.iter().flat_map(|template| {
             let radii = template.spheres.iter().map(|sphere| sphere.radius_m);
@@ -226,19 +228,19 @@ impl State {
         of_clumps.fold(self.particles.largest_radius_m(), f64::max)
     }
 
-    /// Radius of the smallest sphere that is there or may come, m; infinite where there is none.
+    /// Radius of the smallest sphere that exists or may be added, m; infinite if there is none.
     pub fn smallest_radius_m(&self) -> f64 {
         let templates = self.clumps.templates.iter();
         let of_clumps = templates.flat_map(|t| t.spheres.iter().map(|sphere| sphere.radius_m));
         of_clumps.fold(self.particles.smallest_radius_m(), f64::min)
     }
 
-    /// Length of the kick of this step: half of the step before and half of the step to come, s.
+    /// Length of the kick of this step: half of the previous step and half of the next, s.
     pub fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
     }
 
-    /// The step before and the one to come, s.
+    /// The previous step and the next, s.
     pub fn steps_s(&self) -> [f64; 2] {
         [self.previous_time_step_s, self.time_step_s]
     }

@@ -1,4 +1,4 @@
-//! The time step: all that happens in it, in order.
+//! The time step: its stages, in order.
 
 use std::sync::LazyLock;
 
@@ -33,12 +33,12 @@ use crate::stages::watching::{OUTPUT, watch};
 use crate::state::State;
 use crate::state::events::Events;
 
-/// A part of the step: what is done, for which stage. Returns how many bonds, contacts, particles
-/// or bodies the stage has worked on with it.
+/// A part of the step: its stage and its function, which returns the number of bonds, contacts,
+/// particles or bodies that the stage has worked on.
 type Part = (&'static Stage, fn(&mut State) -> usize);
 
-/// First half of a step: what acts on the particles where they are, and how that changes their
-/// velocities.
+/// First half of a step: the forces on the particles at their present positions, and the velocities
+/// that follow from them.
 const INTERACT: &[Part] = &[
     (&SEARCH, renew_lists),
     (&MOTION, clear_wrenches),
@@ -68,7 +68,7 @@ const INTERACT: &[Part] = &[
     (&CHECKS, nothing),
 ];
 
-/// Second half, where velocities stand half a step later: bodies come, go and become others.
+/// Second half, with velocities half a step later: bodies are added, removed and replaced.
 const EXCHANGE: &[Part] = &[
     (&LEDGER, count_bond_steps),
     (&FLOW, apply_inlets_and_outlets),
@@ -76,7 +76,7 @@ const EXCHANGE: &[Part] = &[
     (&REPLACEMENT, replace_clumps),
 ];
 
-/// And all move on.
+/// Everything moves on.
 const DRIFT: &[Part] = &[
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
@@ -86,15 +86,15 @@ const DRIFT: &[Part] = &[
     (&LEDGER, advance_time),
 ];
 
-/// A whole step. Returns what happened in it.
+/// A complete step. Returns what happened in it.
 pub fn step(state: &mut State) -> &Events {
     interact(state);
     advance(state);
     &state.scratch.events
 }
 
-/// First half of a step. Afterwards poses stand at `time_s` and velocities half a step later: the
-/// moment at which everything can be measured.
+/// First half of a step. Afterwards poses are those of `time_s` and velocities those half a step
+/// later: the moment at which everything can be measured.
 pub fn interact(state: &mut State) {
     state.scratch.events.begin(state.steps, state.time_s);
     if !state.ledger.is_open {
@@ -103,19 +103,19 @@ pub fn interact(state: &mut State) {
     run(INTERACT, &TABLE.interact, state);
 }
 
-/// Second half of a step. Afterwards poses and time stand at the end of the step.
+/// Second half of a step. Afterwards poses and time are those at the end of the step.
 pub fn advance(state: &mut State) {
     exchange(state);
     drift(state);
 }
 
-/// Bodies come, go and become others, where poses stand at `time_s` and velocities half a step
-/// later.
+/// Adds, removes and replaces bodies, while poses are those of `time_s` and velocities those half a
+/// step later.
 pub fn exchange(state: &mut State) {
     run(EXCHANGE, &TABLE.exchange, state);
 }
 
-/// All move on to the end of the step.
+/// Moves everything on to the end of the step.
 pub fn drift(state: &mut State) {
     run(DRIFT, &TABLE.drift, state);
 }
@@ -131,12 +131,12 @@ fn run(parts: &[Part], stages: &[usize], state: &mut State) {
     }
 }
 
-/// Checks have their place in the table and are done between steps.
+/// Checks are listed in the table, but run between steps.
 fn nothing(_: &mut State) -> usize {
     0
 }
 
-/// The stages in the order in which they first stand in the step; and for each part the number of
+/// The stages in the order in which they first occur in the step, and for each part the number of
 /// its stage.
 struct Table {
     stages: Vec<&'static Stage>,
@@ -170,7 +170,7 @@ pub fn stages() -> &'static [&'static Stage] {
     &TABLE.stages
 }
 
-/// Number of a stage in [`stages`], by which the clock of a state knows it.
+/// Number of a stage in [`stages`], under which the clock of a state counts its time.
 pub fn number_of(stage: &Stage) -> usize {
     let number = TABLE.stages.iter().position(|other| *other == stage);
     number.unwrap_or(TABLE.stages.len())

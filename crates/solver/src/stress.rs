@@ -1,8 +1,8 @@
-//! The stress suite: stiff and extreme scenes, each with a prediction made before it is run.
+//! The stress suite: stiff and extreme scenes, each with a prediction made before its run.
 //!
 //! [`cases`] -> members, each a [`trial`] (a scene) with a [`prediction`] from a closed form -> the
-//! scene is read, planned and run as any other -> [`verdict`]. No scene may end wrong in silence:
-//! it ends right, or is refused before it starts, or is stopped with its cause.
+//! scene is read, planned and run like any other -> [`verdict`]. No scene may go wrong silently: it
+//! ends with the right result, is refused before it starts, or is stopped with the cause.
 
 pub mod breakage;
 pub mod cases;

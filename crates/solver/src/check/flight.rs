@@ -1,9 +1,9 @@
-//! Bodies in free flight: which wall they meet first, and when.
+//! Bodies in free flight: the wall that they meet first, and the time.
 //!
-//! A body that nothing holds, pushes or has touched yet moves on a parabola and turns evenly. The
-//! meeting is found by conservative advancement: the body moves on by the time in which no point of
-//! it could cross the gap to the wall, until the gap is closed. It is exact but for two things that
-//! are left open: walls that move, and other bodies that come near.
+//! A body without supports, loads and contacts moves on a parabola and rotates uniformly. The
+//! meeting is found by conservative advancement: the body moves on by the time in which none of its
+//! points can cross the gap to the wall, until the gap is closed. The result is exact except for
+//! two things that are left open: moving walls, and other bodies that come near.
 
 use std::collections::BTreeSet;
 
@@ -17,9 +17,9 @@ use crate::state::clumps::Clump;
 use crate::state::events::REMOVED;
 use crate::state::walls::Wall;
 
-/// A gap that is smaller than this share of the body's extent is closed.
+/// A gap smaller than this fraction of the body's extent counts as closed.
 const CLOSED: f64 = 1e-6;
-/// Moves towards a wall before it is given up: the body grazes it.
+/// Largest number of moves towards a wall: beyond it, the body grazes the wall.
 const MOVES: usize = 2000;
 
 /// A body that flies freely, as a rigid assembly of spheres.
@@ -32,27 +32,27 @@ pub struct FreeBody {
     velocity_m_s: Vector3<f64>,
     spin_rad_s: Vector3<f64>,
     gravity_m_s2: Vector3<f64>,
-    /// Centres from the centre of mass, m, and radii, m.
+    /// Centres relative to the centre of mass, m, and radii, m.
     spheres: Vec<(Vector3<f64>, f64)>,
-    /// Largest distance of a point of it from the centre of mass, m.
+    /// Largest distance of a point from the centre of mass, m.
     reach_m: f64,
 }
 
-/// What a flying body meets.
+/// First meeting of a flying body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Meeting {
-    /// A wall, after this time, s, and with this speed of its centre, m/s.
+    /// With a wall, after this time, s, at this speed of its centre, m/s.
     At {
-        /// From the present, s.
+        /// Time from the present, s.
         after_s: f64,
         /// Name of the wall.
         wall: String,
         /// m/s.
         speed_m_s: f64,
     },
-    /// Nothing, however long it flies.
+    /// None, however long it flies.
     Never,
-    /// It depends on a wall that moves or on another body.
+    /// It depends on a moving wall or another body.
     Unknown,
 }
 
@@ -62,9 +62,8 @@ pub fn can_meet(state: &State, scene: &Scene) -> bool {
     state.contacts.is_some() && (!state.walls.is_empty() || others)
 }
 
-/// The bodies of the scene that fly freely now: neither held nor loaded, nor asleep. Their
-/// velocities
-/// stand `ahead_s` after their places.
+/// The bodies of the scene in free flight: neither held nor loaded, nor asleep. Their velocities
+/// are those of `ahead_s` after their positions.
 pub fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
     let held = state.supports.iter().flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
@@ -162,7 +161,7 @@ impl FreeBody {
         self.velocity_m_s + time_s * self.gravity_m_s2
     }
 
-    /// What it meets first, of the walls and of the others.
+    /// Its first meeting with the walls and the other bodies.
     pub fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
         let mut first = Meeting::Never;
         let mut first_s = f64::INFINITY;
@@ -187,7 +186,7 @@ impl FreeBody {
         first
     }
 
-    /// What comes of it and this wall alone.
+    /// Its meeting with this wall alone.
     fn meeting(&self, wall: &Wall) -> Meeting {
         if wall.model.motion != WallMotion::Fixed {
             return Meeting::Unknown;
@@ -215,7 +214,7 @@ impl FreeBody {
         Meeting::Unknown
     }
 
-    /// Gap between its surface and a wall after a time, s, in m; at most 0 where they touch.
+    /// Gap between its surface and a wall after a time, s, in m; at most 0 if they touch.
     pub fn gap_after(&self, wall: &Wall, time_s: f64) -> f64 {
         let to_wall = wall.frame.all_to_wall();
         let centre = self.centre_after(time_s);
@@ -234,7 +233,7 @@ impl FreeBody {
         for (arm, radius_m) in &self.spheres {
             let place = centre + turned * arm;
             found.clear();
-            // Every sphere is within twice the reach of what is nearest to the centre.
+            // Every sphere is within twice the reach of the point nearest to the centre.
             let within_m = (gap_m + radius_m).min(from_centre_m.abs() + 2.0 * self.reach_m);
             wall.model
                 .shape
@@ -246,15 +245,15 @@ impl FreeBody {
         gap_m
     }
 
-    /// Time in which no point of it moves farther than this, s, from a moment on. Infinite: it does
-    /// not move.
+    /// Time in which no point of it moves farther than this, s, starting at `from_s`. Infinite: it
+    /// does not move.
     fn time_for(&self, way_m: f64, from_s: f64) -> f64 {
         let speed = self.velocity_after(from_s).norm() + self.spin_rad_s.norm() * self.reach_m;
         let gravity = self.gravity_m_s2.norm();
         2.0 * way_m / (speed + (speed * speed + 2.0 * gravity * way_m).sqrt())
     }
 
-    /// Whether it moves away from a wall from a moment on, for ever.
+    /// Whether it moves away from a wall for ever from a moment on.
     fn leaves(&self, wall: &Wall, from_s: f64) -> bool {
         let velocity = self.velocity_after(from_s);
         let centre = self.centre_after(from_s);
@@ -285,7 +284,8 @@ impl FreeBody {
         })
     }
 
-    /// When the balls around it and another body first touch, s; both fall alike. None: never.
+    /// Time at which the bounding spheres of this body and another first touch, s; both fall alike.
+    /// None: never.
     fn comes_near_after(&self, other: &Self) -> Option<f64> {
         let apart = other.centre_m - self.centre_m;
         let velocity = other.velocity_m_s - self.velocity_m_s;

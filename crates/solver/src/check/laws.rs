@@ -1,5 +1,5 @@
-//! Up to where the laws of bonds and contacts hold, and what says beforehand that a scene goes
-//! beyond.
+//! Range of validity of the bond and contact laws, and warnings before a run that a scene will
+//! exceed it.
 
 use dem_io::units::{show_length, significant};
 use dem_scene::Factor;
@@ -12,14 +12,14 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
 use crate::state::events::REMOVED;
 
-/// Strain at the edge of a bond above which linear elasticity is doubtful: an error of the same
+/// Strain at the edge of a bond above which linear elasticity is doubtful: its error is of the same
 /// order.
 pub const LARGEST_STRAIN: f64 = 0.1;
-/// Overlap over the smaller radius above which the contact laws are doubtful: the radius of Hertz's
-/// contact, which should be small, is 0.55 of the sphere's there.
+/// Ratio of overlap to the smaller radius above which the contact laws are doubtful: the radius of
+/// Hertz's contact, which should be small, is then 0.55 of the sphere's.
 pub const LARGEST_OVERLAP: f64 = 0.3;
 
-/// That bonds are strained beyond what they mean, `where_`. None: they are not.
+/// Warning that bonds are strained beyond the validity of their law, `where_`. None: they are not.
 pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_STRAIN).then(|| {
         format!(
@@ -30,7 +30,7 @@ pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// That a contact is pressed in beyond what its law means, `where_`. None: it is not.
+/// Warning that a contact overlaps beyond the validity of its law, `where_`. None: it does not.
 pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_OVERLAP).then(|| {
         format!(
@@ -40,9 +40,8 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// What loads, weight and impacts at this speed, m/s, will do beyond the laws, a sentence each.
-/// None:
-/// nothing can meet anything.
+/// Predicted effects of loads, weight and impacts at this speed, m/s (None: nothing can touch),
+/// beyond the validity of the laws, a sentence each.
 pub fn foreseen(
     state: &State,
     bodies: &[PlacedBody],
@@ -96,11 +95,11 @@ pub fn foreseen(
 /// A bonded body, or one that clumps become.
 struct Assembly<'a> {
     name: &'a str,
-    /// Of its softest bond.
+    /// Modulus of its softest bond.
     modulus_pa: f64,
-    /// Of a sphere that this bond joins.
+    /// Density of a sphere that this bond joins.
     density_kg_m3: f64,
-    /// Along gravity; of a body that may be turned any way, half its largest extent.
+    /// Height along gravity; half the largest extent for a body that may have any orientation.
     height_m: f64,
 }
 
@@ -142,7 +141,7 @@ fn assemblies<'a>(state: &'a State, bodies: &'a [PlacedBody]) -> Vec<Assembly<'a
     of_bodies.chain(of_templates).collect()
 }
 
-/// The softest bond of some that is not broken, and its Young's modulus, Pa.
+/// The softest unbroken bond in a range, and its Young's modulus, Pa.
 fn softest_bond(bonds: &Bonds, range: Range<usize>) -> Option<(f64, usize)> {
     let modulus_pa = |at: usize| {
         let radius_m = bonds.radius_m(at);
@@ -162,7 +161,7 @@ fn largest(factor: &Factor) -> f64 {
     }
 }
 
-/// Loads that alone strain the bonds of the particles that they act on beyond what is meant.
+/// Loads that by themselves strain the bonds of their particles beyond the range of validity.
 fn by_loads(state: &State) -> Option<String> {
     let mut holds_n = vec![0.0; state.particles.len()];
     for (at, ends) in state.bonds.ends.iter().enumerate() {

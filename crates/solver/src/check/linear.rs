@@ -1,5 +1,5 @@
-//! Contacts as the limit of the time step sees them: springs and dashpots at the overlap that they
-//! have, or that an impact will give them.
+//! Contacts linearised for the time step limit: springs and dashpots at their present overlap, or
+//! at that of an impact.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -15,11 +15,11 @@ use crate::state::contacts::ContactPartition;
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
 
-/// Translation and rotation of an end answer to a tangential force together: 1/m + R^2/I is so many
-/// times 1/m for a sphere.
+/// Translation and rotation of an end under a tangential force together: 1/m + R^2/I is this
+/// multiple of 1/m for a sphere.
 const WITH_ROTATION: f64 = 3.5;
 
-/// A contact that is there.
+/// A linearised contact.
 #[derive(Debug, Clone, Copy)]
 pub struct LinearContact {
     /// Its particles; None: a wall.
@@ -28,7 +28,7 @@ pub struct LinearContact {
     answer: Linearised,
 }
 
-/// All contacts of a state that touch.
+/// All touching contacts of a state.
 pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
     let mut found = Vec::new();
     let p = &state.particles;
@@ -79,8 +79,8 @@ fn at_wall(
 }
 
 /// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over
-/// mass, 1/s, of clumps: all contacts of a clump together, each pushing where the clump is turned
-/// most easily. 0 where no clump touches anything.
+/// mass, 1/s, of clumps: the sum of all contacts of a clump, each acting where it rotates the clump
+/// most easily. 0 if no clump touches anything.
 pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
     let clumps = &state.clumps;
     let mut sums = vec![[0.0; 2]; clumps.all.len()];
@@ -102,7 +102,7 @@ pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
             .fold(f64::INFINITY, f64::min);
         let easy = 1.0 / template.mass_kg + template.reach_m.powi(2) / least;
         for (rate, sum) in rates.iter_mut().zip(sum) {
-            // Two clumps may push each other: what one takes the other takes as well.
+            // Two clumps may push each other: each takes as much as the other.
             *rate = rate.max(2.0 * sum * easy);
         }
     }
@@ -110,10 +110,10 @@ pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
 }
 
 /// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of
-/// clumps: quickly found, and up to some times too large.
+/// clumps: fast to compute, but up to a few times too large.
 ///
-/// Of two ends that a spring joins, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so each end answers to
-/// twice the sum of its springs.
+/// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so the bound for each end
+/// is twice the sum of its springs.
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let contacts = linear_contacts(state);
     let p = &state.particles;
@@ -141,17 +141,17 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
     rates
 }
 
-/// Weights of the two symmetric operators of a body in a sum of them.
+/// Weights of the two symmetric operators of a body in a sum.
 #[derive(Debug, Clone, Copy)]
 pub struct Weights {
-    /// Of K, from displacements to forces.
+    /// Weight of K, from displacements to forces.
     pub stiffness: f64,
-    /// Of C, from velocities to forces.
+    /// Weight of C, from velocities to forces.
     pub damping: f64,
 }
 
-/// Sets `wrenches` to what the contacts do to particles that are displaced, or move, by `motions`;
-/// one of each for each particle.
+/// Sets `wrenches` to the contact forces on particles with the displacements, or velocities,
+/// `motions`; one of each for each particle.
 pub fn linear_wrenches(
     contacts: &[LinearContact],
     weights: Weights,
@@ -189,9 +189,9 @@ pub fn linear_wrenches(
     }
 }
 
-/// The largest stiffness of a contact over the mass that answers to it, k (1/m_a + 1/m_b), of all
-/// that touch, 1/s2: how far the limit may have fallen since this was smaller. 0 where nothing
-/// touches. Contacts that are not stiffer than `matters` says may be left out.
+/// The largest ratio of contact stiffness to effective mass, k (1/m_a + 1/m_b), of all touching
+/// contacts, 1/s2: a measure of how far the limit may have fallen since this was smaller. 0 if
+/// nothing touches. Contacts not stiffer than `matters` may be skipped.
 pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -206,7 +206,7 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
     let least_m: Vec<f64> = (contacts.model.kinds.iter())
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
-    // Whatever touches was close when pairs were looked at last.
+    // Whatever touches was close at the last check of all pairs.
     let of_partition = |partition: &ContactPartition| {
         let mut largest = 0.0_f64;
         for ((kind, [_, own]), least_m) in contacts
@@ -238,25 +238,24 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
     of_walls.fold(of_pairs, f64::max)
 }
 
-/// Which contacts matter for a step: those that are stiffer than others have been.
+/// Contacts that matter for a step: those that are stiffer than contacts have been.
 #[derive(Debug, Clone, Copy)]
 pub struct StiffestContacts {
-    /// Stiffness over mass that contacts have had, 1/s2.
+    /// Ratio of stiffness to mass that contacts have had, 1/s2.
     pub above_1_s2: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg, that there are or will be; none: nobody
-    /// knows.
+    /// Largest radius, m, and largest inverse mass, 1/kg, that exist or will exist; none: unknown.
     pub extremes: Option<[f64; 2]>,
 }
 
 impl StiffestContacts {
-    /// All do.
+    /// All contacts matter.
     pub const ALL: Self = Self {
         above_1_s2: 0.0,
         extremes: None,
     };
 
-    /// Overlap up to which no contact of a law matters, m: not even that of two of the largest,
-    /// were they as light as the lightest.
+    /// Overlap up to which no contact of a law matters, m: not even one between two particles with
+    /// the largest radius and the smallest mass.
     fn least_overlap_m(&self, law: &Law) -> f64 {
         let Some([radius_m, inverse_kg]) = self.extremes else {
             return 0.0;
@@ -267,10 +266,10 @@ impl StiffestContacts {
     }
 }
 
-/// What the first impact at a speed, m/s, will add to the largest eigenvalues of stiffness and
-/// damping over mass, 1/s2 and 1/s, if a particle meets a wall or another of its size by itself;
-/// and its [rate](largest_contact_rate_1_s2), 1/s2. A particle that a body pushes from behind may
-/// go deeper.
+/// Contribution of the first impact at a speed, m/s, to the largest eigenvalues of stiffness and
+/// damping over mass, 1/s2 and 1/s, if a single particle meets a wall or another of its size; and
+/// its [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
+/// more.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
@@ -320,11 +319,9 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     largest
 }
 
-/// Largest overlap over the radius that an impact at a speed, m/s, gives a single sphere that meets
-/// a
-/// wall or another of its size, by itself: what a body pushes from behind goes deeper. One sphere
-/// of
-/// each material stands for all, as the share of the radius does not depend on it with Hertz's law.
+/// Largest ratio of overlap to radius in an impact at a speed, m/s, of a single sphere with a wall
+/// or another of its size: a particle pushed by a body behind it overlaps more. One sphere of each
+/// material represents all, as the ratio does not depend on the radius with Hertz's law.
 pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -355,9 +352,9 @@ pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     largest
 }
 
-/// Those on which impacts are fastest, with the inverse of the mass that each moves, 1/kg: of
-/// particles that move by themselves the smallest of each material; of the clumps of each template
-/// a largest sphere, as if it stood at the end of the longest lever.
+/// The particles with the fastest impacts, and the inverse of the mass that each moves, 1/kg: of
+/// free particles the smallest of each material; of the clumps of each template a largest sphere,
+/// as if it were at the end of the longest lever.
 fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();

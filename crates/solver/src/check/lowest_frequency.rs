@@ -1,4 +1,4 @@
-//! The lowest frequency of a free body, by the method of Rayleigh and Ritz on its real forces.
+//! The lowest frequency of a free body, by the Rayleigh-Ritz method with its actual forces.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ const DEGREE: usize = 4;
 const MONOMIALS: usize = 35;
 /// Fields: each monomial as a displacement along x, y and z.
 const FIELDS: usize = 3 * MONOMIALS;
-/// Fields that differ from others by less than this share of the largest mass are left out: all
-/// there are in a flat or thin body.
+/// Fields whose independent part is below this fraction of the largest mass are dropped: a flat or
+/// thin body has such fields.
 const DEPENDENT: f64 = 1e-10;
-/// Ways to move without strain.
+/// Number of rigid motions.
 const RIGID: usize = 6;
-/// An eigenvalue below this share of the largest is rounding: that of a body without bonds.
+/// An eigenvalue below this fraction of the largest is rounding: that of a body without bonds.
 const NOTHING: f64 = 1e-12;
 /// Particles handled by one task.
 const CHUNK: usize = 1024;
@@ -26,11 +26,11 @@ const CHUNK: usize = 1024;
 /// None: nothing vibrates.
 ///
 /// Displacements are polynomials of up to the fourth degree in x, y and z about the centre, and
-/// each particle turns by half the curl. The smallest of their frequencies is never below the true
-/// one. It is 0.3 % above that of the first bending mode of a slender beam (22.45 instead of 22.37
-/// in the formula omega = 22.37 sqrt(EI/(rho A L^4))), and more above that of a packing, whose
-/// particles follow no polynomial. Pieces that no bond joins count as if the polynomials held them
-/// together.
+/// each particle rotates by half the curl. The smallest of their frequencies is never below the
+/// true one. It is 0.3 % above that of the first bending mode of a slender beam (22.45 instead of
+/// 22.37 in the formula omega = 22.37 sqrt(EI/(rho A L^4))), and more above that of a packing,
+/// whose particles do not follow polynomials. Pieces that are not bonded count as if the
+/// polynomials held them together.
 ///
 /// The wrenches of the state are overwritten.
 pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {
@@ -58,7 +58,8 @@ pub fn lowest_frequency_hz(state: &mut State) -> Option<f64> {
     Some(squared.sqrt() / std::f64::consts::TAU)
 }
 
-/// Smallest eigenvalue of `stiffness` over `mass` on what is left without the columns of `rigid`.
+/// Smallest eigenvalue of `stiffness` over `mass` on the space orthogonal to the columns of
+/// `rigid`.
 fn lowest_elastic(
     stiffness: &DMatrix<f64>,
     mass: &DMatrix<f64>,
@@ -131,7 +132,7 @@ impl Basis {
         })
     }
 
-    /// Value and gradient, 1/m, of every monomial where particle `i` is.
+    /// Value and gradient, 1/m, of every monomial at particle `i`.
     fn monomials(&self, state: &State, i: usize) -> [(f64, Vector3<f64>); MONOMIALS] {
         let place = state.particles.poses[i].position_m;
         let mut powers = [[1.0; DEGREE + 1]; 3];
@@ -194,7 +195,7 @@ impl Basis {
         sums.iter().sum()
     }
 
-    /// Coefficients of the three translations and the three rotations about the centre, one a
+    /// Coefficients of the three translations and the three rotations about the centre, one per
     /// column.
     fn rigid(&self) -> DMatrix<f64> {
         let mut rigid = DMatrix::zeros(FIELDS, RIGID);

@@ -11,25 +11,25 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
 
-/// Energy that may appear above the limit, over what was put in: there it is a local mode that
-/// grows until it saturates, small against a large body.
+/// Largest spurious energy for a step above the limit, relative to the energy supplied: there it
+/// comes from a local mode that grows until it saturates, small compared with a large body.
 const BEYOND_LIMIT: f64 = 1e-4;
-/// Steps between two looks at the kinetic energy.
+/// Interval between checks of the kinetic energy, in steps.
 const EVERY: u64 = 64;
 
-/// Watches the energy of a run.
+/// Monitors the energy of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Watchdog {
     fraction_of_limit: f64,
-    /// Energy that may appear from nowhere, over what was put in.
+    /// Largest spurious energy, relative to the energy supplied.
     allowed: f64,
 }
 
 impl Watchdog {
-    /// For a run whose step is this share of the limit.
+    /// For a run whose step is this fraction of the limit.
     ///
-    /// Leapfrog below the limit keeps an energy close to the true one; for the fastest mode the two
-    /// differ by a factor of up to 1/(1 - share^2). Twice that is allowed.
+    /// Leapfrog below the limit conserves an energy close to the true one; for the fastest mode the
+    /// two differ by a factor of up to 1/(1 - fraction^2). Twice that is allowed.
     pub fn new(fraction_of_limit: f64) -> Self {
         let square = fraction_of_limit * fraction_of_limit;
         Self {
@@ -42,15 +42,14 @@ impl Watchdog {
         }
     }
 
-    /// Whether the kinetic energy says that the ledger should be looked at. Cheap; to be asked
-    /// after every kick.
+    /// Whether the kinetic energy calls for a check of the ledger. Cheap; called after every kick.
     pub fn is_due(&self, state: &State) -> bool {
         if !state.steps.is_multiple_of(EVERY) {
             return false;
         }
         let p = &state.particles;
         let kinetic = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
-        // Not a number is due as well.
+        // Also true for NaN.
         let quiet = kinetic
             <= (1.0 + self.allowed)
                 * state
@@ -59,13 +58,13 @@ impl Watchdog {
         !quiet
     }
 
-    /// Looks at the ledger.
+    /// Checks the ledger.
     ///
     /// # Errors
-    /// Energy is no number, or more has appeared from nowhere than a stable run can show.
+    /// The energy is NaN, or the spurious energy exceeds that of a stable run.
     pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
-        // A load that has only just begun has moved nothing yet: what it does in the half step to
-        // come counts as well.
+        // A load that has just begun has moved nothing yet: its work in the next half step counts
+        // as well.
         let power_w = loads_power_w(
             &state.loads,
             state.time_s,
@@ -129,7 +128,7 @@ fn unstable(
     Diagnostic::unstable("", problem, remedy)
 }
 
-/// The contact that holds most energy, in words, if contacts hold more than bonds.
+/// Description of the contact with the largest energy, if contacts hold more than bonds.
 fn contact_culprit(state: &State) -> Option<String> {
     let contacts = state.contacts.as_ref()?;
     let p = &state.particles;
@@ -157,8 +156,8 @@ fn contact_culprit(state: &State) -> Option<String> {
     ))
 }
 
-/// The bond with the largest energy and the critical step of its two particles alone, s. Where
-/// energies are no numbers: the bond with the smallest step.
+/// The bond with the largest energy and the critical step of its two particles alone, s. If
+/// energies are NaN: the bond with the smallest step.
 fn culprit(state: &State) -> Option<(usize, f64)> {
     let own_step = |at: usize| {
         let ends = state.bonds.ends[at].map(|end| end as usize);

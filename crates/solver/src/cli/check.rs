@@ -1,4 +1,4 @@
-//! `dem-run check`: what a scene will do.
+//! `dem-run check`: dry run of a scene.
 
 use std::time::Instant;
 
@@ -15,18 +15,17 @@ use crate::stages::ledger::CHECKS;
 use crate::state::State;
 use crate::step::{all_bytes, number_of, step};
 
-/// Steps that are tried on a copy, for the prediction of the run time, and the seconds they may
-/// take.
+/// Number of steps tried on a copy, to predict the run time, and their time limit, s.
 const TRIAL: (u32, f64) = (2000, 0.5);
 
-/// Says what came of planning the scene, as text or as JSON.
+/// Prints the plan of a scene, as text or as JSON.
 pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     if scene.run.integrator == Integrator::Static {
         return super::statics::check(scene, plan, memory_bytes(&plan.state), as_json);
     }
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
-    // What the first steps take says nothing where bodies come, go, or become others.
+    // The time of the first steps predicts nothing if bodies are added, removed or replaced.
     let trial = (plan.state.model.rules.are_none()).then(|| Trial::of(&plan.state));
     let per_step_s = trial.as_ref().map(|trial| trial.per_step_s);
     let of_stages = |needed: bool| -> Vec<Value> {
@@ -125,7 +124,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     text
 }
 
-/// What the scene holds, what will come to it and what it weighs.
+/// Contents of the scene, bodies to be added, and masses.
 fn contents(plan: &Plan) -> String {
     let state = &plan.state;
     let mut text = String::new();
@@ -173,7 +172,7 @@ fn contents(plan: &Plan) -> String {
     text
 }
 
-/// The time step and why.
+/// The time step and the reason for it.
 fn time_step(plan: &Plan) -> String {
     let (state, choice) = (&plan.state, &plan.step);
     let mut text = String::new();
@@ -252,7 +251,7 @@ fn time_step(plan: &Plan) -> String {
     text
 }
 
-/// A stage: why it is there or not, what it takes, or what leaving it out saves.
+/// A stage: the reason why it is active or not, its cost, or the saving from skipping it.
 fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> String {
     let mut text = format!("{}: {}", stage.stage.name, stage.why);
     let mut costs = Vec::new();
@@ -290,7 +289,7 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-/// A number of bytes, for a person.
+/// Human-readable number of bytes.
 pub(super) fn size_text(bytes: usize) -> String {
     match bytes as f64 {
         few if few < 1e3 => format!("{bytes} bytes"),
@@ -299,18 +298,18 @@ pub(super) fn size_text(bytes: usize) -> String {
     }
 }
 
-/// What the arrays of a state take, and what contacts may come to take, bytes.
+/// Memory of the arrays of a state, and estimated memory of later contacts, bytes.
 fn memory_bytes(state: &State) -> usize {
     let now = all_bytes(state);
     let may_come = state
         .contacts
         .as_ref()
         .filter(|contacts| !contacts.model.alone);
-    // Every particle may come to touch a few others.
+    // Every particle may get a few contacts.
     now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())
 }
 
-/// What the first steps take, tried on a copy.
+/// Cost of the first steps, tried on a copy.
 struct Trial {
     per_step_s: f64,
     clock: StageClock,
@@ -331,7 +330,7 @@ impl Trial {
         }
     }
 
-    /// Of a stage that has a time of its own and takes part in steps, ns per step.
+    /// Cost of a stage that has its own time and is active in steps, ns per step.
     fn cost_ns(&self, stage: &PlannedStage) -> Option<f64> {
         let has_own = stage.stage.within.is_none() && *stage.stage != CHECKS;
         has_own.then(|| 1e9 * self.per_step_s * self.clock.fraction(number_of(stage.stage)))

@@ -38,10 +38,10 @@ pub(super) struct FragmentArguments {
     quiet: bool,
 }
 
-/// Writes the fragment that is asked for and says what it is.
+/// Writes the requested fragment and describes it.
 ///
 /// # Errors
-/// No such folder, frame or fragment; the body cannot be written.
+/// The folder, frame or fragment does not exist; the body cannot be written.
 pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     let output = &arguments.output;
     for file in body_files(output)? {
@@ -78,8 +78,8 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     })
 }
 
-/// Refuses to write the body over the results or over what their run has read, as far as the folder
-/// tells.
+/// Refuses to overwrite the results or the inputs of their run with the body, as far as the folder
+/// lists them.
 fn refuse_overwriting(results: &Path, output: &Path) -> Result<()> {
     let targets = body_files(output)?;
     if let Some(target) = result_among(results, &targets) {
@@ -95,7 +95,7 @@ fn refuse_overwriting(results: &Path, output: &Path) -> Result<()> {
         .try_for_each(|target| refuse_input(&target.display().to_string(), target, &inputs))
 }
 
-/// The files that the run with these results has read, as its checkpoint and its summary name them.
+/// The input files of the run with these results, according to its checkpoint and its summary.
 fn inputs_of(results: &Path) -> Vec<PathBuf> {
     let mut inputs = Vec::new();
     let checkpoint = read_checkpoint(&results.join("checkpoint.dem"));

@@ -1,4 +1,4 @@
-//! `dem-run check` of a scene that goes to its equilibrium at once.
+//! `dem-run check` of a static scene.
 
 use dem_io::Result;
 use dem_io::safe_write::{write_json_text, write_standard_output};
@@ -10,11 +10,11 @@ use crate::plan::Plan;
 use crate::plan::masses;
 use crate::run::statics::StaticsEstimate;
 
-/// Keys and tables that mean nothing to such a scene.
+/// Keys and tables that have no effect in such a scene.
 const UNUSED: &str = "run.rest_energy_ratio, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
 
-/// Says what will be solved, as text or as JSON. `state_bytes` is what the arrays of the state
-/// take.
+/// Prints what will be solved, as text or as JSON. `state_bytes` is the memory of the arrays of the
+/// state.
 pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
     let state = &plan.state;
     let estimate = StaticsEstimate::of(state, scene.run.end_time_s)

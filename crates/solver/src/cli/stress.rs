@@ -29,11 +29,11 @@ pub(super) struct StressArguments {
     quiet: bool,
 }
 
-/// Tries the cases and prints their table.
+/// Runs the cases and prints their table.
 ///
 /// # Errors
-/// An unknown case, interrupted, cases that did not do as predicted: the table is printed all the
-/// same.
+/// An unknown case; interrupted; cases that differ from their prediction, although the table is
+/// printed.
 pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result<()> {
     let cases = chosen(&options.cases)?;
     let bar = if options.quiet || !std::io::stderr().is_terminal() {

@@ -1,4 +1,4 @@
-//! `dem-run sweep`: a scene with many settings, error against run time.
+//! `dem-run sweep`: a scene with many settings, comparing error and run time.
 
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
@@ -71,7 +71,7 @@ pub(super) struct SweepArguments {
     quiet: bool,
 }
 
-/// Runs the study, lists its runs or collects them, and says what came of it.
+/// Runs the study, lists its runs or collects them, and prints the result.
 ///
 /// # Errors
 /// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the
@@ -166,7 +166,7 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     failure.map_or(Ok(()), Err)
 }
 
-/// Refuses names that the commands of the runs cannot hold.
+/// Refuses names that shell commands cannot represent.
 fn refuse_unlistable_names(options: &SweepArguments, study: &Study, out: &Path) -> Result<()> {
     refuse_unlistable("the study", &options.study)?;
     refuse_unlistable(&format!("{}: scene", study.source), &study.scene)?;
@@ -181,7 +181,7 @@ fn refuse_unlistable_names(options: &SweepArguments, study: &Study, out: &Path) 
     Ok(())
 }
 
-/// What is wrong with a sweep of which some runs have no values. None: all have.
+/// The problem of a sweep with runs without values. None: all have values.
 fn failure(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
     let first = table.failed().next()?;
     let (failed, all) = (table.failed().count(), table.runs.len());
@@ -202,7 +202,7 @@ fn failure(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
     ))
 }
 
-/// Adds what jobs have left to the outcomes of their runs.
+/// Adds the results of jobs to the outcomes of their runs.
 fn read(study: &Study, jobs: &[Job], folder: &SweepFolder, outcomes: &mut [Vec<Outcome>]) {
     let runs = folder.runs();
     for job in jobs {
@@ -231,10 +231,9 @@ fn do_what_is_left(
     worked
 }
 
-/// Reads the scene of every run, so that what it refuses is known before hours are spent: what each
-/// measure is compared
-/// with, where that is known, and the files that the scenes read. Of very many runs, one for each
-/// value is read.
+/// Reads the scene of every run, so that errors appear before hours are spent. Returns the
+/// reference of each measure, if known, and the files that the scenes read. If there are very many
+/// runs, reads one for each value.
 fn checked(
     study: &Study,
     scene_text: &str,

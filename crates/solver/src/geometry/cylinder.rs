@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 
-/// A solid cylinder. Features: 0 the round side, 1 and 2 the first and the second end, 3 and 4
+/// A solid cylinder. Features: 0 the lateral surface, 1 and 2 the first and the second end, 3 and 4
 /// their rims.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cylinder {
@@ -100,7 +100,7 @@ impl Cylinder {
         Touch::under(c, outward, depth_m, feature)
     }
 
-    /// A unit vector across the axis, for centres on it.
+    /// A unit vector perpendicular to the axis, for centres on it.
     fn any_radial(&self) -> Vector3<f64> {
         self.axis
             .cross(&Vector3::ith(self.axis.iamin(), 1.0))

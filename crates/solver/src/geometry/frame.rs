@@ -1,4 +1,4 @@
-//! Where a wall stands and how it is turned.
+//! Position and orientation of a wall.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ impl Frame {
         UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
     }
 
-    /// A point in space as the wall sees it, m.
+    /// A point in space in the wall's frame, m.
     pub fn to_wall(&self, point: [f64; 3]) -> [f64; 3] {
         let from_origin = Vector3::from(point) - Vector3::from(self.position_m);
         self.rotation()

@@ -1,16 +1,16 @@
 //! A triangulated surface.
 //!
 //! A touch is a point of the surface that is the nearest one of every triangle on which it lies. So
-//! a tiled plane is a plane, a mesh of a box is a box, over its edges and corners too, and in a
-//! concave corner each side is touched. Triangles that overlap, or share no vertices where they
-//! meet, are no exception.
+//! a tiled plane is a plane, a mesh of a box is a box, including its edges and corners, and in a
+//! concave corner each side is touched. This includes triangles that overlap, or that meet without
+//! common vertices.
 //!
-//! Of faces that look almost the same way, only the nearest is touched: a round hollow pushes like
+//! Of faces with nearly the same direction, only the nearest is touched: a round hollow pushes like
 //! one face, not like several, and a thin plate with one side.
 //!
 //! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex
-//! than 1e-7 of the reach, a point may be off by as much, and nearer than 1e-9 of the reach it is
-//! passed over if beyond the vertex the surface comes nearer.
+//! than 1e-7 of the reach, the error of a point may be as large; nearer than 1e-9 of the reach, the
+//! point is skipped if the surface comes nearer beyond the vertex.
 
 mod features;
 mod inside;
@@ -27,27 +27,26 @@ use features::features;
 use tree::Tree;
 use triangle::{REGIONS, Triangle};
 
-/// Two points are one within this share of the mesh's diagonal, which is what rounding costs, and
-/// that share of the reach, which is what thin triangles cost.
+/// Two points coincide within this fraction of the mesh's diagonal, to allow for rounding, plus
+/// this fraction of the reach, to allow for thin triangles.
 const SAME: [f64; 2] = [1e-12, 1e-9];
 
-/// In these lengths: how far a nearer point must be away to beat another one, and within what two
-/// that are not beaten are one. The second is larger, because around a vertex there may be a row of
-/// triangles of which none beats the next.
+/// In units of these lengths: the distance beyond which a nearer point rules out another one, and
+/// the distance within which two remaining points coincide. The second is larger, because around a
+/// vertex there may be a row of triangles of which none rules out the next.
 const FAR: f64 = 4.0;
 const NEAR: f64 = 32.0;
 
 /// Cosine of the angle between the normals of faces that count as one: 8 degrees.
 const ALIKE: f64 = 0.99;
 
-/// A triangle lower than this share of the diagonal has no area.
+/// A triangle with a height below this fraction of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;
 
-/// A triangulated surface with two sides, which may be open. Pushes towards the side on which the
-/// centre is.
+/// A triangulated surface with two sides, which may be open. Pushes towards the side of the centre.
 ///
 /// Features are numbered: flat parts, then straight edges between or around them, then corners.
-/// Triangles in one plane are one flat part.
+/// Triangles in one plane form one flat part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mesh {
     /// In the order of the tree.
@@ -56,23 +55,23 @@ pub struct Mesh {
     of_regions: Vec<[u32; REGIONS as usize]>,
     tree: Tree,
     diagonal_m: f64,
-    /// What it consists of.
+    /// Its content.
     pub content: MeshContent,
 }
 
-/// What a mesh consists of.
+/// Content of a mesh.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct MeshContent {
     /// Triangles with an area.
     pub triangles: usize,
-    /// Triangles without, dropped.
+    /// Triangles without area, dropped.
     pub degenerate: usize,
-    /// Edges of one triangle only. None: the surface is closed.
+    /// Edges that belong to one triangle only. None: the surface is closed.
     pub open_edges: usize,
-    /// Edges of more than two triangles.
+    /// Edges that belong to more than two triangles.
     pub crowded_edges: usize,
-    /// Edges along which not as many triangles run one way as the other. None: the surface is
-    /// closed and wound one way, so that it has an inside.
+    /// Edges with different numbers of triangles in the two directions. None: the surface is closed
+    /// and consistently oriented, so that it has an inside.
     pub unpaired_edges: usize,
     /// Flat parts.
     pub flat_parts: u32,
@@ -188,8 +187,8 @@ impl Mesh {
                     found[end] = touch;
                     end += 1;
                 }
-                // Of points that are one, that in a face is exact; that on an edge is more so than
-                // a corner.
+                // Of coinciding points, one in a face is exact, and one on an edge is more accurate
+                // than a corner.
                 Some(k)
                     if kind(&touch) < kind(&found[k])
                         && are_near(&touch, &found[k], NEAR * same_m) =>
@@ -201,7 +200,7 @@ impl Mesh {
         }
         found.truncate(end);
         if end == from {
-            // Thin triangles may beat each other by rounding.
+            // Rounding may make thin triangles rule out each other.
             found.extend(nearest);
         }
         for touch in &mut found[from..] {
@@ -209,8 +208,8 @@ impl Mesh {
         }
     }
 
-    /// Gives a touch its feature. One within a flat part is at the foot on its plane, whichever
-    /// triangle told of it.
+    /// Sets the feature of a touch. Within a flat part its point is the foot on the plane,
+    /// whichever triangle gave it.
     fn name_feature(&self, touch: &mut Touch, c: &Vector3<f64>, near_m: f64) {
         let triangle = &self.triangles[(touch.feature / REGIONS) as usize];
         let feature = self.feature(touch);
@@ -221,8 +220,8 @@ impl Mesh {
         touch.feature = feature;
     }
 
-    /// The nearest point of triangle `t`. Until the touches are sorted out, a touch has `REGIONS *
-    /// triangle + region` for its feature.
+    /// The nearest point of triangle `t`. Until the touches are sorted, a touch has
+    /// `REGIONS * triangle + region` as its feature.
     fn nearest(&self, t: u32, c: &Vector3<f64>) -> Touch {
         let triangle = &self.triangles[t as usize];
         let (point, region) = triangle.nearest(c);
@@ -238,14 +237,14 @@ impl Mesh {
     /// Whether the point of touch `i` lies on a triangle that has a nearer one.
     fn is_beaten(&self, near: &[Touch], i: usize, same_m: f64) -> bool {
         let point = Vector3::from(near[i].point);
-        // Most are beaten by a triangle next to theirs, which is about as near.
+        // Most are ruled out by a neighbouring triangle, at about the same distance.
         (0..i).rev().chain(i + 1..near.len()).any(|j| {
             !are_near(&near[i], &near[j], FAR * same_m)
                 && self.triangles[(near[j].feature / REGIONS) as usize].holds(&point, same_m)
         })
     }
 
-    /// Whether a touch is the same as a nearer one.
+    /// Whether a touch coincides with a nearer one.
     fn are_one(&self, touch: &Touch, nearer: &Touch, same_m: f64) -> bool {
         let are_alike = || {
             Vector3::from(touch.normal).dot(&Vector3::from(nearer.normal)) > ALIKE

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 
-/// The half of space behind a plane. Its only feature is 0.
+/// The half-space behind a plane. Its only feature is 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Plane {
     point: Vector3<f64>,
@@ -14,7 +14,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through a point, m, with a normal of any length out of the wall.
+    /// The plane through a point, m, with a normal out of the wall, of any length.
     ///
     /// # Errors
     /// Numbers that are not finite, or a normal without direction.
@@ -50,7 +50,7 @@ impl Plane {
         self.normal.into()
     }
 
-    /// All of space: a plane has no end.
+    /// All of space: a plane is infinite.
     pub fn bounds(&self) -> Bounds {
         Bounds {
             low: [f64::NEG_INFINITY; 3],

@@ -9,14 +9,15 @@ use super::{Bounds, Touch, are_finite};
 /// A solid box.
 ///
 /// A feature is sx + 3 sy + 9 sz, where sx is 0 on the side of the smallest x, 2 on that of the
-/// largest, 1 between, and so on: a face has one that is not 1, an edge two, a corner three.
+/// largest, 1 between, and so on: a face has one of them that is not 1, an edge two, a corner
+/// three.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SolidBox {
     low: [f64; 3],
     high: [f64; 3],
 }
 
-/// The feature where the centre is over the middle along all axes.
+/// The feature if the centre is between the sides along all axes.
 const MIDDLE: u32 = 13;
 const STRIDES: [u32; 3] = [1, 3, 9];
 
@@ -82,7 +83,7 @@ impl SolidBox {
         Touch::under(centre.into(), outward, least, feature)
     }
 
-    /// Itself.
+    /// The box itself.
     pub fn bounds(&self) -> Bounds {
         Bounds {
             low: self.low,

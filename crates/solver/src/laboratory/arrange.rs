@@ -1,4 +1,4 @@
-//! How fast a test is loaded, and the scene with all that follows from it.
+//! The loading rate of a test, and the scene with everything that follows from it.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::plan::bodies::place_bodies;
 use crate::plan::test_theory::ON_PINS;
 use crate::state::State;
 
-/// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets a support
-/// that moves, the run its end. A scene without a test stays as it is. The velocity rises evenly
-/// during the first period of `lowest_frequency_hz`, the body's in the test, which leaves the
-/// lowest mode at rest.
+/// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets get a
+/// moving support, the run gets its end. A scene without a test stays as it is. The velocity rises
+/// uniformly during the first period of `lowest_frequency_hz`, that of the body in the test, which
+/// leaves the lowest mode at rest.
 ///
 /// # Errors
-/// A support by the name of one of the test's.
+/// A support with the name of one of the test's.
 pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<Scene> {
     let mut scene = scene.clone();
     let Some(test) = scene.test.clone() else {
@@ -61,14 +61,14 @@ pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<S
     Ok(scene)
 }
 
-/// Name of the support by which a test moves a set.
+/// Name of the support with which a test moves a set.
 pub fn support_of(set: &str) -> String {
     format!("test-{set}")
 }
 
-/// A normal_response: moves along the direction of the test, which is one of the axes. Across it
-/// the body may become thinner, as if the normal_response slid on ice: what holds it there as well
-/// makes it break at the normal_response.
+/// A grip: moves along the direction of the test, which is one of the axes. Across it the body may
+/// become thinner, as if the grip slid on ice: holding it across as well would make it break at the
+/// grip.
 fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     let mut holds = [None; 6];
     for (hold, along) in holds.iter_mut().zip(test.direction) {
@@ -79,8 +79,8 @@ fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
     holds
 }
 
-/// Lowest frequency of the body that a scene tests, Hz: that of the free body, and for bending what
-/// is left of it on two supports at its ends. None: the scene has no test.
+/// Lowest frequency of the body that a scene tests, Hz: that of the free body, and for bending its
+/// remaining fraction on two supports at its ends. None: the scene has no test.
 ///
 /// # Errors
 /// The body has no bonds.

@@ -1,5 +1,4 @@
-//! A map of the crack: the body seen from the side, as it stood at the start, and the bonds that
-//! broke.
+//! A map of the crack: the body in its initial state, seen from the side, and the broken bonds.
 
 use dem_plots::{Circle, Dot, Guide, Map};
 use nalgebra::Vector3;
@@ -7,22 +6,22 @@ use nalgebra::Vector3;
 use crate::laboratory::evaluate::Crack;
 use crate::plan::test_setup::{Setup, Specimen};
 
-/// Most particles drawn, those nearest to the viewer.
+/// Largest number of particles drawn, those nearest to the viewer.
 const MOST_PARTICLES: usize = 4000;
 
-/// A particle of the body at the start: centre x, y, z and radius, m.
+/// A particle of the body in its initial position: centre x, y, z and radius, m.
 pub type Sphere = [f64; 4];
 
-/// What the map shows.
+/// Content of the map.
 #[derive(Debug, Clone, Copy)]
 pub struct CrackPicture<'a> {
-    /// What stood where.
+    /// Arrangement of the test.
     pub setup: &'a Setup,
-    /// Particles of the body at the start.
+    /// Particles of the body in their initial positions.
     pub spheres: &'a [Sphere],
-    /// Place at the start, m, and time, s, of each broken bond, in the order of time.
+    /// Initial position, m, and time of breakage, s, of each broken bond, in order of time.
     pub broken: &'a [([f64; 3], f64)],
-    /// Where they are on average.
+    /// Mean position of the crack.
     pub crack: Option<&'a Crack>,
 }
 
@@ -33,13 +32,13 @@ impl View {
     fn of(setup: &Setup) -> Self {
         let direction = Vector3::from(setup.direction);
         let along = match setup.specimen {
-            // Along x or y, square to one along another axis.
+            // Along x or y, perpendicular to a bar along another axis.
             Specimen::Bar { .. } if direction.x.abs() < 0.5 => Vector3::x(),
             Specimen::Bar { .. } => Vector3::y(),
             _ => setup.along.into(),
         };
         let along = if along.sum() < 0.0 { -along } else { along };
-        // What loads comes from above; a bar that is pulled along x is drawn upright as well.
+        // The load comes from above; a bar pulled along x is drawn upright as well.
         let up = -direction;
         Self([along, up, along.cross(&up)])
     }
@@ -50,7 +49,7 @@ impl View {
         [across, up].map(|axis| axis.dot(&Vector3::from(point_m)))
     }
 
-    /// How near to the viewer a sphere reaches, m.
+    /// Nearest coordinate of a sphere towards the viewer, m.
     fn nearness_m(&self, &[x, y, z, radius_m]: &Sphere) -> f64 {
         self.0[2].dot(&Vector3::new(x, y, z)) + radius_m
     }
@@ -101,8 +100,8 @@ fn particles(spheres: &[Sphere], view: &View) -> Vec<Circle> {
     let front_m = front_m.fold(f64::NEG_INFINITY, f64::max);
     let is_in_front = |s: &&Sphere| front_m - view.nearness_m(s) < 2.0 * s[3];
     let mut shown: Vec<&Sphere> = spheres.iter().filter(is_in_front).collect();
-    // Those of a curved front that lie further back are missing less where too few are at the very
-    // front.
+    // If too few are at the very front, as on a curved surface, those further back are drawn as
+    // well.
     if shown.len() < spheres.len().min(200) {
         shown = spheres.iter().collect();
     }
@@ -115,7 +114,8 @@ fn particles(spheres: &[Sphere], view: &View) -> Vec<Circle> {
     shown.iter().rev().map(circle).collect()
 }
 
-/// Where the crack may be: lines at both sides; and the mean place of the broken bonds, m along x.
+/// Expected range of the crack: lines at both sides; and the mean position of the broken bonds, m
+/// along x.
 fn marks(picture: &CrackPicture<'_>, view: &View) -> (Vec<Guide>, Option<f64>) {
     let setup = picture.setup;
     let at = |offset_m: f64| {

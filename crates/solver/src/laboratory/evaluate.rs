@@ -1,4 +1,5 @@
-//! From force and way to what a test is for: stiffness, modulus, strength, where the crack is.
+//! Results of a test from force and displacement: stiffness, modulus, strength, position of the
+//! crack.
 
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
@@ -9,24 +10,24 @@ use crate::plan::test_setup::{Setup, Specimen};
 use crate::plan::test_theory::Beam;
 use crate::plan::test_theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 
-/// Shares of the largest load between which the stiffness is the slope of the load: below it pins
-/// settle into the surface, above it bonds break.
+/// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
+/// settle into the surface; above, bonds break.
 const SLOPE: [f64; 2] = [0.2, 0.6];
 /// Time over which loads are averaged, in periods of the lowest frequency.
 const WINDOW: f64 = 0.05;
-/// Fewest rows for a slope.
+/// Smallest number of rows for a slope.
 const FEWEST_ROWS: usize = 3;
 
-/// A number of a test, and what it should be.
+/// A number of a test, and its expected value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// What it is.
+    /// Its name.
     pub name: String,
-    /// In `unit`.
+    /// Value in `unit`.
     pub value: f64,
     /// SI unit; empty for plain numbers.
     pub unit: String,
-    /// What it should be.
+    /// Expected value.
     pub theory: Option<f64>,
     /// (value - theory)/|theory|.
     pub error: Option<f64>,
@@ -47,67 +48,66 @@ impl Figure {
 /// The first bond that broke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FirstBroken {
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
     /// Load at that time, N.
     pub force_n: f64,
-    /// Travel of what loads at that time, from where the fitted line has no load, m.
+    /// Crosshead travel at that time, from the point where the fitted line has no load, m.
     pub travel_m: f64,
-    /// Where in the body at the start, m. Length 3.
+    /// Initial position in the body, m. Length 3.
     pub place_m: [f64; 3],
-    /// By what.
+    /// Cause of failure.
     pub cause: Cause,
 }
 
-/// Where the bonds broke, in the body at the start.
+/// Position of the broken bonds in the initial body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Crack {
-    /// Broken bonds.
+    /// Number of broken bonds.
     pub bonds: usize,
-    /// From the middle of the span, of a bar's length or of the loaded diameter, on average, m.
+    /// Mean distance from the middle of the span, of a bar's length or of the loaded diameter, m.
     pub offset_m: f64,
     /// Standard deviation of that, m.
     pub spread_m: f64,
-    /// The crack is where it should be if `offset_m` is no larger than this, m: half the distance
-    /// of the loading pins of a four-point test.
+    /// The crack is in the expected place if `offset_m` does not exceed this, m: half the loading
+    /// span of a four-point test.
     pub within_m: f64,
-    /// Whether it is.
+    /// Whether the crack is in the expected place.
     pub is_within: bool,
-    /// Fraction of the broken bonds of which each by itself is.
+    /// Fraction of the broken bonds that are individually in the expected place.
     #[serde(rename = "fraction_within")]
     pub fraction_within: f64,
 }
 
-/// What came of a test.
+/// Result of a test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestResult {
     /// Its type, as in the scene.
     #[serde(rename = "type")]
     pub kind: String,
-    /// Whether the body broke: the load fell below half of its largest.
+    /// Whether the body broke: the load fell below half of its maximum.
     pub broken: bool,
-    /// Bonds that broke, and all that there were.
+    /// Number of broken bonds, and of all bonds.
     pub broken_bonds: [usize; 2],
-    /// Strength that the scene names, Pa.
+    /// Strength given in the scene, Pa.
     pub target_strength_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
     /// Crosshead velocity, m/s.
     pub rate_m_s: f64,
-    /// Dimensions by which it is evaluated.
+    /// Dimensions used in the evaluation.
     pub dimensions: Vec<Figure>,
     /// Results.
     #[serde(rename = "results")]
     pub figures: Vec<Figure>,
-    /// What the bonds would need for the body to have the modulus and the strength that the scene
-    /// names.
+    /// Bond parameters with which the body would have the modulus and the strength given in the
+    /// scene.
     pub calibration: Vec<Figure>,
     /// None: no bond broke.
     pub first_broken: Option<FirstBroken>,
     /// None: no bond broke.
     pub crack: Option<Crack>,
-    /// By how much half the rate changes the figures: (slow - fast)/fast. Empty: it was not
-    /// checked.
+    /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.
     #[serde(rename = "changes_at_half_the_rate")]
     pub half_the_rate_changes: Vec<Figure>,
 }
@@ -119,7 +119,8 @@ impl TestResult {
         found.map(|figure| figure.value)
     }
 
-    /// Notes by how much its figures differ from those of the same test at twice the rate.
+    /// Records the relative differences of its figures from those of the same test at twice the
+    /// rate.
     pub fn compare(&mut self, fast: &Self) {
         let compared = |figure: &Figure| {
             let before = fast.figure(&figure.name)?;
@@ -132,44 +133,44 @@ impl TestResult {
     }
 }
 
-/// What a test is evaluated from.
+/// Input of the evaluation.
 #[derive(Debug, Clone, Copy)]
 pub struct TestInput<'a> {
     /// The test, with its rate.
     pub test: &'a Test,
-    /// What stood where.
+    /// Arrangement of the test.
     pub setup: &'a Setup,
-    /// What was noted.
+    /// Record of the test.
     pub record: &'a Record,
-    /// Place at the start of each broken bond of the record, m.
+    /// Initial position of each broken bond of the record, m.
     pub places_m: &'a [[f64; 3]],
-    /// Kind of the body's bonds.
+    /// Type of the body's bonds.
     pub bonds: Option<&'a BondKind>,
     /// Hz.
     pub lowest_frequency_hz: f64,
-    /// The load fell below half of its largest.
+    /// The load fell below half of its maximum.
     pub broken: bool,
-    /// Number of the bonds that there were.
+    /// Number of all bonds.
     pub all_bonds: usize,
 }
 
-/// Load over a way in the elastic part of a test.
+/// Ratio of load to displacement in the elastic part of a test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slope {
     /// N/m.
     pub stiffness_n_m: f64,
-    /// Way at which the fitted line has no load: play until everything touches, m.
+    /// Displacement at which the fitted line has no load: play until everything touches, m.
     pub start_m: f64,
 }
 
-/// The rows of a test by which it is evaluated: means over a twentieth of the lowest period, which
-/// leave out what swings faster.
+/// The rows used in the evaluation of a test: means over a twentieth of the lowest period, which
+/// remove faster oscillations.
 pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
     record.smoothed(WINDOW / lowest_frequency_hz)
 }
 
-/// The slope of the load over a `way`, between 20 % and 60 % of the largest load. By least squares.
-/// None: too few rows.
+/// The slope of the load over a displacement `way`, between 20 % and 60 % of the largest load, by
+/// least squares. None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let peak = peak(rows)?;
     let up_to = |fraction: f64| {
@@ -193,7 +194,7 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
 }
 
 /// Travel at which the line fitted to the load over the travel has no load, m: play until
-/// everything touches. 0 where there is no line.
+/// everything touches. 0 without a line.
 pub fn play_m(rows: &[Row]) -> f64 {
     slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
 }
@@ -203,7 +204,7 @@ pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
-/// Evaluates a test. Figures that cannot be told from its record are left out.
+/// Evaluates a test. Figures that cannot be determined from its record are omitted.
 pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let TestInput {
         test,
@@ -266,17 +267,17 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     result
 }
 
-/// What the curve of a test says, and the figures that follow from it.
+/// Results read from the curve of a test.
 struct Measured {
-    /// Load over travel, N/m.
+    /// Ratio of load to travel, N/m.
     stiffness_n_m: Option<f64>,
-    /// Load over the deformation of the body itself, N/m.
+    /// Ratio of load to the deformation of the body itself, N/m.
     of_body_n_m: Option<f64>,
     /// Load at which the body broke, N.
     failure_n: Option<f64>,
-    /// What the scene says that the modulus should be, Pa.
+    /// Modulus given in the scene, Pa.
     modulus_pa: Option<f64>,
-    /// What the scene says that the strength should be, Pa.
+    /// Strength given in the scene, Pa.
     strength_pa: Option<f64>,
     dimensions: Vec<Figure>,
     figures: Vec<Figure>,
@@ -348,7 +349,7 @@ impl Measured {
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
         self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
-        // Pressed, the measured places come nearer to each other.
+        // In compression, the measured points approach each other.
         let of_body = self.of_body_n_m.map(f64::abs);
         self.add("specimen stiffness", of_body, "N/m", theory);
         let of_gauge = |k: f64| k * gauge_m / area_m2;
@@ -363,15 +364,15 @@ impl Measured {
 /// Names of figures that are looked up.
 pub(super) const STIFFNESS: &str = "stiffness";
 const EQ_18: &str = "modulus without shear";
-/// Modulus of the body by its own deflection or elongation, shear counted.
+/// Modulus of the body from its own deflection or elongation, including shear.
 pub const MODULUS: &str = "specimen modulus";
 /// Largest load before the body broke.
 pub const FAILURE_FORCE: &str = "failure force";
-/// Stress at that force by the formula of the test.
+/// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 
-/// What the bonds would need. Stresses and strains are proportional to modulus and strength of the
-/// bonds: one run says the factor.
+/// Required bond parameters. Stresses and strains are proportional to modulus and strength of the
+/// bonds: one run gives the factor.
 fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
     let mut found = Vec::new();
     let Some(bonds) = evidence.bonds else {
@@ -391,7 +392,7 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
             found.push(Figure::new(name, wanted / factor, "Pa", None));
         }
     }
-    // As in Platzer 2022, section 4.5.3.3, with all that gives way at the pins in it.
+    // As in Platzer 2022, section 4.5.3.3, including all compliance at the pins.
     if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
         let name = "bond modulus by eq. 18";
         let value = wanted / modulus * bonds.young_modulus_pa;
@@ -422,7 +423,7 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
 fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
     let first = evidence.record.broken.first()?;
     let rows = &evidence.record.rows;
-    // The last row before it: the next one may already know of the fall.
+    // The last row before it: the next one may already include the fall.
     let before = rows.partition_point(|row| row.time_s <= first.time_s);
     let nearest = rows.get(before.saturating_sub(1))?;
     Some(FirstBroken {

@@ -1,5 +1,4 @@
-//! What a test shows: its curve, the picture of the crack, and a page with both and all its
-//! numbers.
+//! Output of a test: its curve, the picture of the crack, and a page with both and all its numbers.
 
 use std::fmt::Write;
 
@@ -13,16 +12,16 @@ use super::crack::{CrackPicture, crack_map};
 use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, play_m, rows_of, slope};
 use super::record::{Record, Row};
 
-/// What the files of a test are made of.
+/// Content of the files of a test.
 #[derive(Debug, Clone, Copy)]
 pub struct TestFiles<'a> {
     /// The scene's file.
     pub scene: &'a str,
     /// The test.
     pub test: &'a Test,
-    /// What was noted.
+    /// Record of the test.
     pub record: &'a Record,
-    /// What came of it.
+    /// Result of the test.
     pub result: &'a TestResult,
     /// The crack.
     pub picture: CrackPicture<'a>,
@@ -47,8 +46,8 @@ pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
 const COLUMNS: &str =
     "time_s,travel_m,displacement_m,load_n,force_n,reaction_n,deflection_m,broken_bonds";
 
-/// What was noted, a row for each interval; the displacement is the travel less `play_m`. Every
-/// number reads back as the same bits.
+/// The record, a row for each interval; the displacement is the travel minus `play_m`. Every number
+/// is written so that it reads back as the same bits.
 fn curve_csv(record: &Record, play_m: f64) -> String {
     let mut out = format!("{COLUMNS}\n");
     for row in &record.rows {
@@ -65,14 +64,14 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
             row.deflection_m,
         ];
         out += &numbers.map(|number| format!("{number:e},")).concat();
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(out, "{broken}");
     }
     out
 }
 
-/// Load over displacement of the rows by which a test is evaluated ([`rows_of`]), with the theory's
-/// line where the scene names a modulus.
+/// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the theory's line
+/// if the scene gives a modulus.
 pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
     let play_m = play_m(rows);
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
@@ -121,7 +120,7 @@ fn named<'a>(result: &'a TestResult, name: &str) -> Option<&'a Figure> {
     result.figures.iter().find(|figure| figure.name == name)
 }
 
-/// A value with a unit that suits it.
+/// A value with a suitable unit.
 pub fn shown(value: f64, unit: &str) -> String {
     let size = value.abs();
     let (factor, unit) = match unit {
@@ -140,7 +139,7 @@ pub fn shown(value: f64, unit: &str) -> String {
         .to_owned()
 }
 
-/// A share as a percentage with its sign.
+/// A fraction as a percentage with its sign.
 pub fn percent(fraction: f64) -> String {
     format!("{:+.1} %", 100.0 * fraction)
 }

@@ -1,4 +1,4 @@
-//! What is noted while a test runs: force and way, and every bond that breaks.
+//! Record of a test: force, displacement, and every broken bond.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use crate::state::State;
 
-/// Intervals of a test's whole stroke over which forces are averaged.
+/// Number of intervals of a test's full stroke over which forces are averaged.
 const INTERVALS: f64 = 1000.0;
-/// Fewest steps in an interval.
+/// Smallest number of steps in an interval.
 const FEWEST_STEPS: u64 = 4;
-/// A body is broken when the force has fallen below this share of its largest.
+/// A body is broken when the force has fallen below this fraction of its maximum.
 const BROKEN: f64 = 0.5;
 
 /// Means over an interval of time.
@@ -18,21 +18,20 @@ const BROKEN: f64 = 0.5;
 pub struct Row {
     /// Middle of the interval, s.
     pub time_s: f64,
-    /// How far the load has moved, m.
+    /// Travel of the load, m.
     pub travel_m: f64,
-    /// Force of all that loads, along the direction of the test, N.
+    /// Force of the moving walls and supports along the direction of the test, N.
     pub force_n: f64,
-    /// Force of all other walls and supports against the direction of the test, less what gravity
-    /// adds to it, N.
+    /// Force of all other walls and supports against the direction of the test, minus the
+    /// contribution of gravity, N.
     pub reaction_n: f64,
-    /// Deflection or elongation of the body between the places where it is measured, m.
+    /// Deflection or elongation of the body between the measured points, m.
     pub deflection_m: f64,
 }
 
 impl Row {
-    /// What the body carries, N: the mean of the force of what loads and of what holds against it.
-    /// The two differ by the body's inertia, which the mean leaves out as far as its centre of mass
-    /// lies halfway between them.
+    /// Load of the body, N: the mean of the applied force and the reaction. The two differ by the
+    /// body's inertia, which the mean cancels as far as its centre of mass is halfway between them.
     pub fn load_n(&self) -> f64 {
         f64::midpoint(self.force_n, self.reaction_n)
     }
@@ -41,28 +40,28 @@ impl Row {
 /// A bond that broke.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BrokenBond {
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
-    /// Which of the state.
+    /// Number in the state.
     pub bond: u32,
-    /// By what.
+    /// Cause of failure.
     pub cause: Cause,
 }
 
-/// A test so far.
+/// Record of a test so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Forces and ways.
+    /// Forces and displacements.
     pub rows: Vec<Row>,
     /// Broken bonds in the order of time.
     pub broken: Vec<BrokenBond>,
-    /// Sums over the interval that has not ended, and the steps in it.
+    /// Sums over the interval that has not ended, and its number of steps.
     open: (Row, u64),
     /// Largest load of a row, N.
     largest_n: f64,
 }
 
-/// Walls and supports of a state.
+/// Numbers of walls and supports in a state.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Holders {
     /// Which walls.
@@ -71,25 +70,25 @@ pub struct Holders {
     pub supports: Vec<usize>,
 }
 
-/// What loads: walls or gripped sets.
+/// Loading of a test: walls or gripped sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
-    /// What loads.
+    /// The moving side.
     pub moving: Holders,
-    /// What holds against it. Nothing: the reaction is taken to be the force.
+    /// The resting side. Nothing: the reaction is assumed to equal the force.
     pub resting: Holders,
-    /// What gravity adds to the reaction, N.
+    /// Contribution of gravity to the reaction, N.
     weight_n: f64,
     /// Steps in an interval.
     pub every: u64,
-    /// Where walls and gripped particles stood at the start, along the direction, on average, m.
+    /// Mean initial coordinate of walls and gripped particles along the direction, m.
     start_m: f64,
-    /// Where the measured particles stood along the direction, moving less resting, m.
+    /// Initial distance of the measured particles along the direction, moving minus resting, m.
     apart_m: f64,
 }
 
 impl Loading {
-    /// Of a test that takes `end_s`, in a state before the first step.
+    /// For a test that takes `end_s`, in a state before the first step.
     pub fn of(moving: Holders, resting: Holders, setup: &Setup, state: &State, end_s: f64) -> Self {
         let every = end_s / INTERVALS / state.time_step_s;
         let mut loading = Self {
@@ -105,7 +104,7 @@ impl Loading {
         loading
     }
 
-    /// Where what loads stands along the direction, on average, m.
+    /// Mean coordinate of the moving side along the direction, m.
     fn place_m(&self, setup: &Setup, state: &State) -> f64 {
         let walls = self.moving.walls.iter();
         let walls = walls.map(|&at| state.walls[at].frame.position_m);
@@ -155,8 +154,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Record {
-    /// Notes a step between a kick and the drift after it. Whether the body is broken: bonds have,
-    /// and the force has fallen below half of its largest.
+    /// Records a step between a kick and the drift after it. Returns whether the body is broken:
+    /// bonds have broken, and the force has fallen below half of its maximum.
     pub fn note(&mut self, setup: &Setup, loading: &Loading, state: &State) -> bool {
         for broken in &state.scratch.events.broken {
             self.broken.push(BrokenBond {
@@ -194,8 +193,8 @@ impl Record {
         !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n
     }
 
-    /// Means of the rows over `over_s`, around each: rows are shorter where the time step has
-    /// become smaller.
+    /// Means of the rows over `over_s`, around each: rows are shorter after the time step has been
+    /// reduced.
     pub fn smoothed(&self, over_s: f64) -> Vec<Row> {
         let rows = &self.rows;
         let around = |row: &Row| {

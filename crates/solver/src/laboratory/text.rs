@@ -1,4 +1,4 @@
-//! A test in words.
+//! Human-readable text on a test.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use dem_io::units::significant;
 use super::evaluate::{Figure, STIFFNESS, TestResult};
 use super::page::{percent, shown};
 
-/// A change by half the rate above this is worth a word.
+/// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
 
 impl TestResult {
-    /// What speaks against the test. Empty: nothing.
+    /// Reasons to doubt the test. Empty: none.
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.target_strength_pa.is_some() && !self.broken {
@@ -53,8 +53,8 @@ impl TestResult {
         broken as f64 / all.max(1) as f64
     }
 
-    /// What is no number in a table: how fast, whether it broke, where it began, where the crack
-    /// is, what the rate changes. Each with a name.
+    /// Results other than the table of numbers: rate, breakage, first broken bond, position of the
+    /// crack, effect of the rate. Each with a name.
     pub fn sentences(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let mut say = |name: &str, text: String| found.push((name.to_owned(), text));

@@ -1,4 +1,4 @@
-//! A test during a run: what is known of its start, and what comes of it at its end.
+//! A test during a run: its initial data, and its result at the end.
 
 use dem_io::Result;
 use dem_results::ResultsFolder;
@@ -13,16 +13,16 @@ use crate::plan::Plan;
 use crate::plan::test_setup::Setup;
 use crate::state::State;
 
-/// What a run is told of a test.
+/// Settings of a test in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestSettings {
     /// Lowest frequency of the body in the test, Hz.
     pub lowest_frequency_hz: f64,
-    /// What came of the same test at twice the rate. None: it was not done.
+    /// Result of the same test at twice the rate. None: it was not done.
     pub at_twice_the_rate: Option<TestResult>,
 }
 
-/// A test that is watched.
+/// A test that is monitored.
 #[derive(Debug, Clone)]
 pub struct Watch<'a> {
     scene: &'a Scene,
@@ -30,12 +30,12 @@ pub struct Watch<'a> {
     settings: TestSettings,
     setup: Setup,
     loading: Loading,
-    /// All particles at the start, and whether they are of the tested body.
+    /// All particles in their initial positions, and whether they belong to the tested body.
     spheres: Vec<(Sphere, bool)>,
 }
 
 impl<'a> Watch<'a> {
-    /// Of a test that stands as `setup` says, in a plan that has not been stepped.
+    /// For a test arranged as in `setup`, in a plan that has not been stepped.
     pub fn new(
         scene: &'a Scene,
         test: &'a Test,
@@ -69,12 +69,12 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Notes a step; whether the body is broken.
+    /// Records a step; returns whether the body is broken.
     pub fn note(&self, record: &mut Record, state: &State) -> bool {
         record.note(&self.setup, &self.loading, state)
     }
 
-    /// What came of it; written to `folder` if there is one.
+    /// Its result, written to `folder` if there is one.
     ///
     /// # Errors
     /// Those of the files.
@@ -134,7 +134,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// The places of those that load, and those of the others.
+/// The indices of those that load, and those of the others.
 fn split(load: impl Iterator<Item = bool>) -> [Vec<usize>; 2] {
     let mut found = [Vec::new(), Vec::new()];
     for (at, loads) in load.enumerate() {

@@ -2,9 +2,9 @@
 //!
 //! A cone of height H and radius R has a variance of height of 3/80 H^2, a mean square distance
 //! from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
-//! slope whatever the ground is and however much is missing all over its surface: sqrt(8 var z /
-//! mean r^2). Spheres count with their own extent. The third says whether there is a slope at all:
-//! a bed that is flat on top has none.
+//! slope independently of the ground and of mass missing uniformly over its surface: sqrt(8 var z /
+//! mean r^2). Spheres count with their own extent. The third shows whether there is a slope at all:
+//! a bed with a flat top has none.
 
 use nalgebra::Vector3;
 
@@ -12,10 +12,10 @@ use super::members::Members;
 use crate::plan::measures::FEWEST_IN_HEAP;
 use crate::state::State;
 
-/// Farther from the axis than this times the radius of the cone lies what has rolled away.
+/// Spheres farther from the axis than this multiple of the cone's radius have rolled away.
 const ROLLED_AWAY: f64 = 1.25;
-/// The covariance tells less of a slope than the variances: by up to a fifth for the layers of a
-/// small cone. What is missing beyond that is flat.
+/// The covariance gives a smaller slope than the variances: by up to a fifth for the layers of a
+/// small cone. Any further difference means a flat top.
 const CONICAL: f64 = 0.8;
 
 /// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
@@ -28,7 +28,7 @@ struct Sphere {
 
 /// Moments of a heap's mass.
 struct Moments {
-    /// Of the axis.
+    /// Position of the axis.
     middle_m: [f64; 2],
     /// Variance of the height, m2.
     upright_m2: f64,
@@ -38,9 +38,9 @@ struct Moments {
     covariance_m3: f64,
 }
 
-/// Slope, degrees, of the cone whose mass is spread as far up and as far out as that of the
-/// members; 0 where they are flat on top. Few that have rolled far away do not change it. No number
-/// for fewer than [`FEWEST_IN_HEAP`]. `up`: unit vector.
+/// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the members;
+/// 0 if their top is flat. A few that have rolled far away do not change it. NaN for fewer than
+/// [`FEWEST_IN_HEAP`]. `up`: unit vector.
 pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<f64>) -> f64 {
     let mut heap = spheres(members, state, &up);
     if heap.len() < FEWEST_IN_HEAP {
@@ -64,7 +64,7 @@ pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<
     }
 }
 
-/// All spheres, those within clumps as well.
+/// All spheres, including those within clumps.
 fn spheres(members: &Members, state: &State, up: &Vector3<f64>) -> Vec<Sphere> {
     let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
     let across = up.cross(&aside);

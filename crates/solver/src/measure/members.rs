@@ -1,4 +1,4 @@
-//! Which particles and clumps a name stands for while bodies come, go, and become others.
+//! Particles and clumps of each name while bodies are added, removed and replaced.
 
 use dem_scene::Scene;
 
@@ -8,14 +8,14 @@ use crate::state::clumps::{Clump, Template};
 use crate::state::events::REMOVED;
 use crate::state::events::Renumbering;
 
-/// The particles of a set, a body or `all`, those that clumps carry among them.
+/// The particles of a set, a body or `all`, including those carried by clumps.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Members {
     /// Its name in the scene.
     pub(super) name: String,
-    /// Numbers in the state, rising.
+    /// Numbers in the state, ascending.
     pub(super) particles: Vec<u32>,
-    /// Whether those are all there are.
+    /// Whether these are all particles.
     pub(super) are_all: bool,
 }
 
@@ -28,8 +28,8 @@ impl Members {
         }
     }
 
-    /// Counts as particles are counted now: those of all, of bodies by their names, and of sets as
-    /// far as their particles are there.
+    /// Updates the numbers of particles: of all, of bodies by their names, and of sets as far as
+    /// their particles still exist.
     pub(super) fn renumber(&mut self, by: &[Renumbering], bodies: &[PlacedBody], state: &State) {
         let named = |name: &String| *name == self.name;
         let templates = &state.clumps.templates;
@@ -55,7 +55,7 @@ impl Members {
         self.are_all = self.particles.len() == state.particles.len();
     }
 
-    /// Those that move by themselves.
+    /// The free particles among them.
     pub(super) fn free<'a>(&'a self, state: &State) -> impl Iterator<Item = usize> + use<'a> {
         let free = state.particles.free as u32;
         let end = self.particles.partition_point(|&i| i < free);

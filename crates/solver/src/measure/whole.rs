@@ -1,8 +1,8 @@
-//! A set as a whole: its centre of mass, how that moves, and how the set turns.
+//! A set as a single body: its centre of mass and its motion and rotation.
 //!
-//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that takes
-//! its place has the same of all its particles, so that every value is the same before and after,
-//! but for rounding.
+//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that
+//! replaces it has the same totals of its particles, so that every value is the same before and
+//! after, except for rounding.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -19,28 +19,28 @@ use crate::state::clumps::{Clump, Template};
 use crate::state::events::REMOVED;
 use crate::state::particles::Motion;
 
-/// Where bodies stood at the start, by their names.
+/// Initial positions of bodies, by name.
 pub(super) type Starts = BTreeMap<String, Start>;
 
-/// Where a body stood at the start.
+/// Initial position of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Start {
     /// Its particles, by their numbers in its file, m.
     places: Vec<Vector3<f64>>,
     /// Its centre, if it was a clump, m.
     centre: Option<Vector3<f64>>,
-    /// How a clump was turned against its file. Particles of other bodies are taken as not turned.
+    /// Rotation of a clump relative to the file. Particles of other bodies count as not rotated.
     turned: UnitQuaternion<f64>,
 }
 
-/// Velocities at the moment of the places: one for each particle, and each clump as it moves.
+/// Velocities at the time of the positions: one for each particle, and the motion of each clump.
 #[derive(Debug, Default)]
 pub(super) struct Motions {
     pub(super) particles: Vec<Motion>,
     pub(super) clumps: Vec<Clump>,
 }
 
-/// Where the bodies of a state stand that has not been stepped.
+/// Positions of the bodies of a state that has not been stepped.
 pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
     let place = |i: &u32| state.particles.poses[*i as usize].place();
     let placed = bodies.iter().map(|body| {
@@ -67,13 +67,13 @@ pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
     placed.chain(clumps).collect()
 }
 
-/// How a clump is turned against the file of its body.
+/// Rotation of a clump relative to the file of its body.
 fn turned(clump: &Clump, template: &Template) -> UnitQuaternion<f64> {
     rotation(clump.turned) * rotation(template.axes).inverse()
 }
 
-/// Centre of mass of where the members stood at the start, m. Those that were not there then do not
-/// count.
+/// Centre of mass of the initial positions of the members, m. Members that did not exist then do
+/// not count.
 pub(super) fn start_centre(
     members: &Members,
     starts: &Starts,
@@ -109,7 +109,7 @@ pub(super) fn start_centre(
             None => {}
         }
     }
-    // In the order of the file or of the state: the same mean, but for rounding.
+    // In the order of the file or of the state: the same mean, except for rounding.
     mean(&parts)
 }
 
@@ -128,7 +128,7 @@ pub(super) fn centre(members: &Members, state: &State) -> Vector3<f64> {
     mean(&places(members, state))
 }
 
-/// How far the centre of mass is from a place, m.
+/// Distance of the centre of mass from a position, m.
 pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
     let mut places = places(members, state);
     for (_, place) in &mut places {
@@ -137,7 +137,7 @@ pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) 
     mean(&places)
 }
 
-/// Masses, kg, and places, m, of particles and clumps.
+/// Masses, kg, and positions, m, of particles and clumps.
 fn places(members: &Members, state: &State) -> Vec<(f64, Vector3<f64>)> {
     let p = &state.particles;
     let free = members.free(state);
@@ -172,7 +172,7 @@ pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> 
 }
 
 /// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
-/// mass, rad/s. Of a single particle or clump, its own.
+/// mass, rad/s. For a single particle or clump, its own.
 pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
@@ -218,13 +218,13 @@ pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vecto
             l,
         );
     }
-    // Every sphere has a moment of inertia of its own, so that of the whole can be inverted.
+    // Every sphere has its own moment of inertia, so the total inertia is invertible.
     let solved = inertia.cholesky().map(|inertia| inertia.solve(&angular));
     solved.unwrap_or_else(|| Vector3::repeat(f64::NAN))
 }
 
-/// Mean by mass of the rotation vectors since the start, rad, of 180 degrees at most.
-/// `turned_before`: of particles that were turned at the start.
+/// Mass-weighted mean of the rotation vectors since the start, rad, of 180 degrees at most.
+/// `turned_before`: of particles that were rotated at the start.
 pub(super) fn turn(
     members: &Members,
     state: &State,
@@ -255,7 +255,8 @@ pub(super) fn turn(
     nearest(mean, &Vector3::zeros())
 }
 
-/// Of the vectors of one rotation that are shorter than a full turn, the one nearer to another.
+/// Of the vectors of one rotation that are shorter than a full revolution, the one nearer to
+/// another.
 fn nearest(turn: Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     let angle = turn.norm();
     if angle == 0.0 {
@@ -269,7 +270,7 @@ fn nearest(turn: Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     }
 }
 
-/// How those of the members' particles were turned at the start that were turned then.
+/// Initial rotations of those of the members' particles that were rotated then.
 pub(super) fn turned_before(
     members: &Members,
     starts: &Starts,

@@ -1,36 +1,36 @@
-//! How an equilibrium was found, for the summary.
+//! Data on an equilibrium for the summary.
 
 use dem_io::units::significant;
 use serde::Serialize;
 
-/// Residual over the largest bond force that is worth a word.
+/// Smallest ratio of residual to the largest bond force that is reported.
 const LARGE_RESIDUAL: f64 = 1e-6;
 
-/// How an equilibrium was found.
+/// Data on an equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EquilibriumSummary {
-    /// Unknown freedoms.
+    /// Number of unknown degrees of freedom.
     pub unknowns: usize,
-    /// Freedoms that supports hold.
+    /// Number of degrees of freedom held by supports.
     pub held: usize,
-    /// Newton steps, of all load steps together.
+    /// Total number of Newton steps of all load steps.
     pub newton_steps: usize,
-    /// Load steps; 1: the whole load at once.
+    /// Load steps; 1: the full load at once.
     pub load_steps: usize,
-    /// The residual over the largest bond force.
+    /// Ratio of the residual to the largest bond force.
     pub residual: f64,
     /// The residual, N; torques over the radii of their particles.
     pub residual_n: f64,
-    /// The largest that a bond carries, N; moments over its radius.
+    /// The largest bond force, N; moments over the bond radius.
     pub largest_bond_force_n: f64,
     /// Bonds beyond their strength.
     pub bonds_beyond_strength: usize,
-    /// Whether every small move from the equilibrium needs work.
+    /// Whether every small displacement from the equilibrium requires work.
     pub stable: bool,
 }
 
 impl EquilibriumSummary {
-    /// What speaks against trusting the result. Empty: nothing.
+    /// Reasons to doubt the result. Empty: none.
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.bonds_beyond_strength > 0 {

@@ -1,4 +1,4 @@
-//! What a run tells of the fragments of its bodies: tables, plots, and a line of the summary.
+//! Output on the fragments of bodies: tables, plots, and a line of the summary.
 
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
@@ -12,22 +12,22 @@ use crate::state::clusters::{Cluster, Clusters, Fragment, Split};
 pub(super) const COUNT: &str = "fragments";
 pub(super) const SIZES: &str = "fragment_sizes";
 
-/// Fragments that the text of a split names.
+/// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;
 
-/// What came of the bodies of a run.
+/// Fragmentation of the bodies in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FragmentSummary {
-    /// Fragments at the end; a body that is whole is one.
+    /// Number of fragments at the end; an intact body is one.
     pub count: usize,
-    /// Fraction of all mass that the heaviest one has.
+    /// Mass fraction of the heaviest fragment.
     pub mass_fraction_of_largest: f64,
     /// Fragments that were found in pieces.
     pub splits: usize,
 }
 
 impl FragmentSummary {
-    /// Of the `fragments` that clusters consist of.
+    /// From the `fragments` of the clusters.
     pub fn new(clusters: &Clusters, fragments: &[Fragment]) -> Self {
         let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
         Self {
@@ -55,7 +55,7 @@ pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
     fragments.iter().map(row).collect()
 }
 
-/// Writes which fragment broke off which.
+/// Writes the parent of each fragment.
 ///
 /// # Errors
 /// Those of the files.
@@ -71,12 +71,13 @@ pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     write_fragment_tree(&folder.fragment_tree(), rows)
 }
 
-/// What one of the clusters that are or were broke into, for a person: `fragment 3 -> 7, 8 (1204 +
-/// 38 particles)`. The largest stand first, and of many only some are named.
+/// Human-readable fragments of one present or former cluster:
+/// `fragment 3 -> 7, 8 (1204 + 38 particles)`. The largest are first, and only some of many are
+/// named.
 pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     let particles = |id: u32| history[id as usize].particles;
     let mut children = split.children.clone();
-    // The sort keeps the order of equal ones.
+    // The sort is stable.
     children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
     let (named, others) = children.split_at(children.len().min(NAMED));
     let ids: Vec<String> = named.iter().map(u32::to_string).collect();
@@ -95,7 +96,7 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     text
 }
 
-/// Draws the number of fragments over time, if it changes, and their sizes at the end, if there is
+/// Plots the number of fragments over time, if it changes, and their sizes at the end, if there is
 /// more than one.
 ///
 /// # Errors
@@ -125,7 +126,8 @@ pub fn write_fragment_plots(
     Ok(())
 }
 
-/// Time, s, and number of fragments, with a step at every change, of all clusters that are or were.
+/// Time, s, and number of fragments, with a step at every change, of all present and former
+/// clusters.
 pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
     let created = history.iter().map(|c| (c.created_s, 1.0));
     let ended = history.iter().filter_map(|c| c.ended_s);
@@ -145,7 +147,7 @@ pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
     points
 }
 
-/// Size, m, and share of all mass in fragments of that size and smaller ones, with a step at every
+/// Size, m, and mass fraction of all fragments of that size and smaller ones, with a step at every
 /// size.
 pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
     let mut fraction = 0.0;

@@ -14,8 +14,8 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::events::REMOVED;
 
-/// Who is who in a frame: particles and bonds of all bodies, in the order of their files, and after
-/// them the spheres of clumps.
+/// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
+/// by the spheres of clumps.
 #[derive(Debug, Clone)]
 pub struct FrameOrder {
     particles: Vec<u32>,
@@ -24,12 +24,12 @@ pub struct FrameOrder {
     start: Vec<[f64; 3]>,
     /// For each particle of the state, its number in the frames.
     place_of: Vec<u32>,
-    /// Whether bodies come, go, or become others: then no particle has a place at the start.
+    /// Whether bodies are added, removed or replaced: then particles have no initial position.
     changes: bool,
 }
 
 impl FrameOrder {
-    /// Of a state at its start.
+    /// From a state at its start.
     pub fn new(bodies: &[PlacedBody], state: &State) -> Self {
         let mut order = Self {
             particles: Vec::new(),
@@ -93,7 +93,7 @@ impl FrameOrder {
         let density = |i: usize| state.density_kg_m3(particle(i));
         let rigid = |i: usize| u32::from(particle(i) >= p.free);
         let bond = |i: usize| self.bonds[i] as usize;
-        // Dear to compute, and seven arrays follow from them.
+        // Costly to compute, and needed for seven arrays.
         let loads: Vec<BondLoad> = (0..self.bonds.len())
             .map(|i| load(state, bond(i)))
             .collect();
@@ -137,7 +137,7 @@ impl FrameOrder {
             particle_arrays.insert(2, vectors("displacement_m", &displacement));
         }
         if state.clusters.is_some() {
-            // With these a fragment can be taken out as a body.
+            // With these arrays a fragment can be extracted as a body.
             particle_arrays.push(counts(FRAGMENT_ID, &cluster));
             particle_arrays.push(scalars(DENSITY, &density));
             bond_arrays.push(scalars(BOND_LENGTH, &initial_length));

@@ -1,4 +1,4 @@
-//! Pictures of a state: what of it is to be seen, and from where.
+//! Pictures of a state: the visible objects, and the view.
 
 pub mod subject;
 pub mod view;

@@ -1,4 +1,4 @@
-//! Plots of the time series: energies together, errors together, every measure by itself.
+//! Plots of the time series: energies together, errors together, every measure separately.
 
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
@@ -8,7 +8,7 @@ use super::fragments::{COUNT, SIZES};
 use super::series::ENERGIES;
 use crate::measure::Probe;
 
-/// Plots that every run has or may have, which no measure may overwrite.
+/// Names of plots that any run may have, which no measure may overwrite.
 const OVERALL: [&str; 5] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES];
 const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
@@ -26,7 +26,7 @@ pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
         .collect();
     let mut energy = plot(&series, "Energy", "energy (J)", &changing, "_j");
     for line in &mut energy.lines {
-        // What goes in, as what is there often lies under it.
+        // Energy supplied is dashed, as the total often hides it.
         line.dashed = line.name.ends_with("work");
     }
     folder.write_plot(ENERGY, &energy.svg().file())?;
@@ -75,7 +75,7 @@ fn plot_name(probe: &Probe) -> String {
     format!("{prefix}{}", probe.name)
 }
 
-/// Names of the plots that a run with these measures has, whatever came of it.
+/// Names of the plots of a run with these measures, whatever its results.
 pub fn plots_of_every_run(probes: &[Probe]) -> Vec<String> {
     let overall = [ENERGY, ERRORS].map(str::to_owned);
     overall
@@ -97,7 +97,7 @@ fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -
             .iter()
             .zip(column(series, name))
             .map(|(&t, &v)| [t, v])
-            // What has no value yet has no point.
+            // Missing values have no points.
             .filter(|[_, v]| !v.is_nan())
             .collect(),
         dashed: false,

@@ -28,8 +28,8 @@ const OTHERS: [&str; 5] = [
     "time_step_s",
 ];
 
-/// Names of all columns after the time, with units, no two alike: energies and errors, force on and
-/// work of each wall, measures.
+/// Names of all columns after the time, with units, all different: energies and errors, force on
+/// and work of each wall, measures.
 pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, probes: &[Probe]) -> Vec<String> {
     let mut columns: Vec<String> = ENERGIES
         .iter()
@@ -82,7 +82,7 @@ pub fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
         let [x, y, z] = wall.total_load()[0].map(|f| -f);
         [x, y, z, wall.work_j]
     });
-    // Adding 0 takes the sign from a zero.
+    // Adding 0 removes the sign of a zero.
     let values = always
         .into_iter()
         .chain(of_walls)

@@ -1,4 +1,4 @@
-//! The summary of a run: what came of it, how far to trust it, where the time went.
+//! The summary of a run: its results, their reliability, and the time spent in each stage.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,74 +24,74 @@ use crate::state::sleep::Sleep;
 /// Program and version.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
 
-/// Energy errors above this share are worth a word.
+/// Smallest energy error that is reported.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
-/// What came of a run. SI units.
+/// Summary of a run. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// The scene's file.
     pub scene: String,
     /// Program and version.
     pub program: String,
-    /// Why it ended: "end time", "rest", or of a laboratory test "breakage" or "end of the stroke".
+    /// Reason for its end: "end time", "rest", or for a laboratory test "breakage" or "end of the
+    /// stroke".
     pub ended_by: String,
-    /// What happened, where it did not come to its end: `ended_by` is "instability" or
-    /// "interruption".
+    /// The problem, if it did not reach its end: `ended_by` is "instability" or "interruption".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
-    /// What was run.
+    /// Inputs of the run.
     pub inputs: Inputs,
-    /// Simulated, s.
+    /// Simulated time, s.
     pub simulated_s: f64,
-    /// Needed for it, s; of the part since the last checkpoint for a run that was resumed.
+    /// Wall time, s; that since the last checkpoint for a run that was resumed.
     pub wall_s: f64,
-    /// Time that processors spent on the same, s, all threads together.
+    /// Processor time of the same, s, all threads together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub processor_s: Option<f64>,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
     /// Processor and number of cores.
     pub machine: String,
     /// Number of particles.
     pub particles: usize,
-    /// Number of bonds, broken ones included; where bodies come and go, of those that are there at
-    /// the end.
+    /// Number of bonds, including broken ones; if bodies are added or removed, of those that exist
+    /// at the end.
     pub bonds: usize,
-    /// What each body weighed at the start, by its name.
+    /// Mass of each body at the start, by name.
     pub bodies: BTreeMap<String, BodyMass>,
     /// Bonds that broke.
     pub broken_bonds: u64,
     /// Largest strain at the edge of a bond, by elongation and bending or by shear and torsion.
     pub largest_bond_strain: f64,
-    /// Largest overlap of a contact over the radius of its smaller sphere.
+    /// Largest ratio of contact overlap to the radius of the smaller sphere.
     pub largest_overlap: f64,
-    /// The same by what they failed by.
+    /// Broken bonds by cause of failure.
     #[serde(serialize_with = "CauseCounts::serialize_by_name")]
     pub broken_by_cause: CauseCounts,
-    /// What the bodies broke into, where they can.
+    /// Fragmentation of the bodies, if they can break.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
-    /// Which bodies came, went, and became others, where they can.
+    /// Bodies added, removed and replaced, if any can be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<PopulationSummary>,
-    /// Who sleeps, where bodies can.
+    /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.
     pub time_step_s: f64,
-    /// Between what an adaptive step went.
+    /// Range of an adaptive step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adaptive: Option<AdaptiveSummary>,
     /// Largest stable step, s.
     pub limit_s: f64,
-    /// Step over limit.
+    /// Ratio of the step to the limit.
     pub fraction_of_limit: f64,
     /// Steps per second of wall time.
     pub steps_per_s: f64,
-    /// Bonds times steps per second of wall time.
+    /// Bond updates per second of wall time.
     pub bond_steps_per_s: f64,
     /// Largest relative energy error of the run.
     pub energy_error: f64,
@@ -101,7 +101,7 @@ pub struct Summary {
     pub angular_momentum_error: f64,
     /// Energies, works and momenta at the end.
     pub balance: Balance,
-    /// What was measured; by name in JSON.
+    /// Results of the measures; by name in JSON.
     #[serde(serialize_with = "by_name")]
     pub measures: Vec<Measured>,
     /// Fraction of each stage in the time of a step; by name in JSON.
@@ -109,24 +109,24 @@ pub struct Summary {
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub inactive_stages: Vec<String>,
-    /// What is odd about the scene but harmless.
+    /// Harmless peculiarities of the scene.
     pub notes: Vec<String>,
-    /// Whether the result can be trusted.
+    /// Reliability of the result.
     pub verdict: Verdict,
     /// Folder of the results.
     pub results: Option<String>,
-    /// The change of the time step, where it went on from a checkpoint with another one.
+    /// The change of the time step, if the run was resumed with another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resumed_with: Option<String>,
-    /// What came of the scene's laboratory test.
+    /// Result of the scene's laboratory test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub test: Option<TestResult>,
-    /// How the equilibrium was found, where the run went to it at once.
+    /// Data on the equilibrium of a static run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equilibrium: Option<EquilibriumSummary>,
 }
 
-/// What is left of a run that ended before there was anything to sum up.
+/// Summary of a run that ended before there were any results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unfinished {
     /// The scene's file.
@@ -135,18 +135,18 @@ pub struct Unfinished {
     pub program: String,
     /// Always "failure".
     pub ended_by: String,
-    /// What happened.
+    /// The problem.
     pub problem: String,
-    /// What was run.
+    /// Inputs of the run.
     pub inputs: Inputs,
-    /// None.
+    /// Empty.
     pub measures: BTreeMap<String, f64>,
     /// Not sound, because of the problem.
     pub verdict: Verdict,
 }
 
 impl Unfinished {
-    /// Of a scene that came to nothing because of this.
+    /// For a scene that failed with this problem.
     pub fn new(scene: &str, inputs: Inputs, problem: &Diagnostic) -> Self {
         Self {
             scene: scene.to_owned(),
@@ -163,19 +163,19 @@ impl Unfinished {
     }
 }
 
-/// Whether the result of a run can be trusted.
+/// Reliability of the result of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Verdict {
-    /// Nothing speaks against it.
+    /// There are no reasons to doubt it.
     pub sound: bool,
-    /// What speaks against it, a sentence each.
+    /// Reasons to doubt it, a sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Which bodies came, went, and became others.
+/// Bodies added, removed and replaced.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PopulationSummary {
-    /// Rigid clumps at the end, of two spheres and more.
+    /// Rigid clumps of two or more spheres at the end.
     pub clumps: usize,
     /// Single loose spheres of clumps and inlets at the end.
     pub single_spheres: usize,
@@ -187,9 +187,9 @@ pub struct PopulationSummary {
     pub fed: u32,
     /// Their mass, kg.
     pub fed_kg: f64,
-    /// Bodies that had to wait until a place was free.
+    /// Bodies that had to wait for a free position.
     pub delayed: u32,
-    /// Bodies that an inlet still owes at the end.
+    /// Bodies that inlets have still to feed at the end.
     pub waiting: u32,
     /// Bodies and fragments discharged through outlets.
     pub discharged: u32,
@@ -197,32 +197,32 @@ pub struct PopulationSummary {
     pub discharged_kg: f64,
     /// Fraction of bond updates that was skipped because bodies were clumps.
     pub bond_updates_skipped: f64,
-    /// Fraction of the spheres of a clump that no other can touch, the mean of all templates.
+    /// Fraction of the spheres of a clump that nothing can touch, the mean of all templates.
     pub inner_sphere_fraction: f64,
 }
 
-/// Between what an adaptive step went.
+/// Range of an adaptive step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AdaptiveSummary {
     /// Smallest step, s.
     pub smallest_step_s: f64,
     /// Largest step, s.
     pub largest_step_s: f64,
-    /// How often it changed.
+    /// Number of its changes.
     pub changes: u64,
 }
 
-/// Who sleeps.
+/// Sleeping bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SleepSummary {
-    /// Bodies that sleep at the end.
+    /// Bodies asleep at the end.
     pub bodies: usize,
     /// Fraction of particle updates that was skipped because their bodies slept.
     pub particle_updates_skipped: f64,
 }
 
 impl SleepSummary {
-    /// Of what is known at the end.
+    /// From the data at the end.
     pub fn of(sleep: &Sleep) -> Self {
         let [done, left_out] = sleep.particle_steps.map(|count| count as f64);
         Self {
@@ -233,7 +233,7 @@ impl SleepSummary {
 }
 
 impl PopulationSummary {
-    /// Of a state at its end. None: no body can come, go, or become another.
+    /// From a state at its end. None: no body can be added, removed or replaced.
     pub fn of(state: &State) -> Option<Self> {
         let (rules, clumps) = (&state.model.rules, &state.clumps);
         let population = &state.population;
@@ -256,7 +256,7 @@ impl PopulationSummary {
             fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
             delayed: population.inlets.iter().map(|come| come.delayed).sum(),
             waiting: (rules.inlets.iter().zip(&population.inlets))
-                // Of what is due at the very end nothing has been tried.
+                // Bodies that are due at the very end have not been tried.
                 .map(|(inlet, come)| inlet.owed(come, state.time_s - state.time_step_s))
                 .sum(),
             discharged: population.outlets.iter().map(|left| left.bodies).sum(),
@@ -316,7 +316,7 @@ impl Summary {
         writeln!(f, "time         {}", fractions.join("   "))
     }
 
-    /// Bodies that came, left or became others.
+    /// Bodies added, removed and replaced.
     fn write_population(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(p) = &self.population else {
             return Ok(());
@@ -349,7 +349,7 @@ impl Summary {
         )
     }
 
-    /// The text of a summary that is of an equilibrium.
+    /// The text of the summary of a static run.
     ///
     /// # Errors
     /// Those of the formatter.
@@ -390,8 +390,7 @@ impl Summary {
         self.write_verdict(f)
     }
 
-    /// Gives the verdict: `warnings` that the run has brought, and what the summary itself speaks
-    /// of.
+    /// Sets the verdict: `warnings` from the run, and those from the summary itself.
     pub(crate) fn judge(&mut self, warnings: Vec<String>) {
         let warnings: Vec<String> = (self.problem.iter().cloned())
             .chain(warnings)
@@ -403,7 +402,7 @@ impl Summary {
         };
     }
 
-    /// What of the summary speaks against trusting the result.
+    /// Reasons in the summary to doubt the result.
     fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
@@ -434,7 +433,7 @@ impl Summary {
         doubts
     }
 
-    /// Two lines for each body: what it weighs.
+    /// Two lines for each body: its masses.
     ///
     /// # Errors
     /// Those of the formatter.
@@ -445,7 +444,7 @@ impl Summary {
         Ok(())
     }
 
-    /// Notes, and what the result is worth.
+    /// Notes, and the verdict.
     ///
     /// # Errors
     /// Those of the formatter.

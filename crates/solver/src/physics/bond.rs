@@ -16,7 +16,7 @@ pub mod stresses;
 pub mod tangent;
 pub mod total;
 
-/// What a bond carries.
+/// Load of a bond.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondLoad<T = f64> {
     /// Along the bond, tension positive, N.

@@ -6,20 +6,22 @@
 //!
 //!   N n - k_t xi - c_t v_t,   N = elastic(d) - c_n v . n >= 0,   |k_t xi + c_t v_t| <= mu N
 //!
-//! and the moment on b is -k_r theta - c_r w_t, with the relative spin w in place of v. The [normal
-//! law](NormalLaw) says what elastic, k_t, c_n and c_t are, the [rolling friction](RollingFriction)
-//! what becomes of the moment.
+//! and the moment on b is -k_r theta - c_r w_t, with the relative spin w in place of v. The
+//! [normal law](NormalLaw) defines elastic, k_t, c_n and c_t, the
+//! [rolling friction](RollingFriction) the moment.
 //!
-//! The springs xi and theta are what a contact remembers. They are summed up from velocities that
-//! leapfrog has halfway through a step, in the axes of the middle of the step (half the turn of the
-//! normal, half the mean spin about it), so that the step is the same backwards.
+//! The displacements xi and theta are the history of a contact. They are summed from the velocities
+//! of the leapfrog, halfway through a step, in the axes of the middle of the step (half the
+//! rotation of the normal, half the mean spin about it), so that the step is time-reversible.
 //!
-//! The books are exact to second order in the time step. The springs' own losses come as energies
-//! of the step just made: the mean of the forces at its two ends times the motion between, less
-//! what is stored. Damping comes as forces: half of their power with the velocity before the kick,
-//! half with that after it ([`Damping::power_w`]).
+//! The energy accounting is exact to second order in the time step. Losses of the springs are
+//! energies of the step just made: the mean of the forces at its two ends times the motion in
+//! between, minus the increase of the stored energy. Losses of damping are computed from forces:
+//! half of their power with the velocity before the kick, half with that after it
+//! ([`Damping::power_w`]).
 //!
-//! Leapfrog knows the velocity of half a step ago when forces are due, and c_n is taken for that.
+//! When forces are computed, the leapfrog only has the velocity of half a step ago; c_n is adjusted
+//! to that.
 
 pub mod assembly;
 pub mod hertz_mindlin;
@@ -37,14 +39,14 @@ use kinematics::{ContactKinematics, FrameRotation};
 use rolling::RollingFriction;
 use slider::coulomb_return_map;
 
-/// What a contact remembers. All 0 when it begins, and again once the ends are apart.
+/// History of a contact. All values are 0 when it begins, and again once the ends are apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSprings<T = f64> {
-    /// Tangential spring: how far b's surface is displaced against a's, across the normal, m.
+    /// Tangential displacement of b's surface relative to a's, across the normal, m.
     pub tangential_m: Vec3<T>,
-    /// Rolling spring: how far b has rolled against a, across the normal, rad.
+    /// Rolling displacement of b relative to a, across the normal, rad.
     pub rolling_rad: Vec3<T>,
-    /// Overlap when forces were computed last, m.
+    /// Overlap at the last computation of forces, m.
     pub overlap_m: T,
 }
 
@@ -58,40 +60,39 @@ impl Default for ContactSprings {
     }
 }
 
-/// What a contact does and stores.
+/// Forces and energies of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<T = f64> {
-    /// To be remembered.
+    /// New history.
     pub springs: ContactSprings<T>,
     /// Force on b, N. The first end feels the opposite.
     pub force_on_b: Vec3<T>,
     /// Moment of rolling friction on b, N m. The first end feels the opposite. Torques of the force
-    /// come [on top](kinematics::torques).
+    /// are [added to it](kinematics::torques).
     pub moment_on_b: Vec3<T>,
     /// Elastic energy.
     pub energy: ContactEnergy<T>,
-    /// Lost by the springs in the step just made.
+    /// Energy lost by the springs in the step just made.
     pub lost: Lost<T>,
-    /// The part of force and moment that is damping.
+    /// The damping part of force and moment.
     pub damping: Damping<T>,
 }
 
 /// Elastic energy of a contact by mode, J.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactEnergy<T = f64> {
-    /// Of the overlap.
+    /// Energy of the overlap.
     pub normal: T,
-    /// Of the tangential spring.
+    /// Energy of the tangential spring.
     pub tangential: T,
-    /// Of the rolling spring.
+    /// Energy of the rolling spring.
     pub rolling: T,
 }
 
-/// Energy the springs lost in a step, J: sliding, and what a spring loses as the normal load
-/// changes.
+/// Energy that the springs lost in a step, J: by sliding, and by changes of the normal load.
 ///
-/// Not below -1/8 k x^2, with k the stiffness before the step and x the motion in it, and that only
-/// in a step that turns a force round.
+/// Not below -1/8 k x^2, with k the stiffness before the step and x the motion in it, and negative
+/// only in a step that reverses a force.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lost<T = f64> {
     /// By sliding.
@@ -103,7 +104,7 @@ pub struct Lost<T = f64> {
 /// Forces and moments of damping on b. The first end feels the opposite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping<T = f64> {
-    /// Along the normal, N: the normal force less its elastic part.
+    /// Along the normal, N: the normal force minus its elastic part.
     pub normal_n: Vec3<T>,
     /// Across it, N.
     pub tangential_n: Vec3<T>,
@@ -123,7 +124,7 @@ pub struct DampingPower<T = f64> {
 }
 
 impl<T: Number> Damping<T> {
-    /// All of it together.
+    /// Total force and moment of damping.
     #[inline(always)]
     pub fn total(&self) -> Damped<T> {
         Damped {
@@ -133,10 +134,10 @@ impl<T: Number> Damping<T> {
     }
 
     /// Power lost at this [relative velocity](kinematics::relative_velocity), m/s, and spin of b
-    /// against a, rad/s, where the forces act.
+    /// relative to a, rad/s, at the time of the forces.
     ///
     /// Over a step: half of it with the forces at its beginning, half with those at its end, both
-    /// with the velocity halfway.
+    /// with the velocity in the middle.
     #[inline(always)]
     pub fn power_w(&self, velocity_m_s: Vec3<T>, spin_rad_s: Vec3<T>) -> DampingPower<T> {
         DampingPower {
@@ -147,7 +148,7 @@ impl<T: Number> Damping<T> {
     }
 }
 
-/// All that damping does to b: what is remembered of it until the next step.
+/// Total damping on b, kept in the history until the next step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damped<T = f64> {
     /// Force, N.
@@ -157,8 +158,8 @@ pub struct Damped<T = f64> {
 }
 
 impl<T: Number> Damped<T> {
-    /// Energy that damping took in a step of `dt`, s, that began with `before` and ends so, J: the
-    /// mean of the two forces times the motion between, as springs' losses are booked.
+    /// Energy lost to damping in a step of `dt`, s, that began with `before` and ends with `self`,
+    /// J: the mean of the two forces times the motion in between, as for the losses of springs.
     #[inline(always)]
     pub fn lost_j(&self, before: &Self, touch: &ContactKinematics<T>, dt: f64) -> T {
         let force = before.force_n + self.force_n;
@@ -168,7 +169,7 @@ impl<T: Number> Damped<T> {
     }
 }
 
-/// What a normal law says of a contact at an overlap, and of the same contact a step before.
+/// Result of a normal law for a contact at its overlap, now and a step before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalResponse<T = f64> {
     /// Elastic force, N.
@@ -179,15 +180,15 @@ pub struct NormalResponse<T = f64> {
     pub normal_n_m: [T; 2],
     /// Stiffness of the tangential spring, before the step and now, N/m.
     pub tangential_n_m: [T; 2],
-    /// Stiffness before the step over that now; 0 where there is no contact now.
+    /// Ratio of the stiffness before the step to that now; 0 if there is no contact now.
     pub stiffness_ratio: T,
-    /// Damping force per speed along the normal, N s/m.
+    /// Coefficient of normal damping, N s/m.
     pub normal_damping_n_s_m: T,
-    /// The same across it.
+    /// Coefficient of tangential damping, N s/m.
     pub tangential_damping_n_s_m: T,
 }
 
-/// A law for the normal force, and what friction needs to know of it.
+/// A law for the normal force, and the quantities that friction needs from it.
 pub trait NormalLaw<T: Number> {
     /// The contact now and, at the overlap of its history, a step of `dt`, s, before.
     fn evaluate(
@@ -197,14 +198,14 @@ pub trait NormalLaw<T: Number> {
         dt: f64,
     ) -> NormalResponse<T>;
 
-    /// How the pair damps and rubs.
+    /// Damping and friction of the pair.
     fn parameters(&self) -> &pair_parameters::PairParameters<T>;
 }
 
-/// What the choice of the time step asks of a law besides forces.
+/// Quantities that the choice of the time step needs from a law besides forces.
 pub trait ImpactLaw: NormalLaw<f64> {
-    /// Fraction of its own limit with which an impact is followed, at most, at the usual safety
-    /// factor: what keeps the energy error of a single impact small.
+    /// Largest fraction of its own limit at which an impact is resolved with the default safety
+    /// factor: it keeps the energy error of a single impact small.
     fn impact_fraction(&self) -> f64;
 
     /// Tangent stiffness along the normal, N/m, at an overlap, m, above 0, with an effective
@@ -212,31 +213,31 @@ pub trait ImpactLaw: NormalLaw<f64> {
     fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64;
 
     /// Largest overlap at which the tangent stiffness is at most this, N/m, with an effective
-    /// radius, m; infinite where no contact is stiffer.
+    /// radius, m; infinite if no contact is stiffer.
     fn overlap_of_stiffness_m(&self, stiffness_n_m: f64, effective_radius_m: f64) -> f64;
 
-    /// Largest overlap of an impact at a speed, m/s, without damping, m: with damping it is less.
+    /// Largest overlap of an impact at a speed, m/s, without damping, m: damping reduces it.
     fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64;
 }
 
-/// The damping c, N s/m, of a force -c v that is computed with the velocity of half a step of `dt`,
-/// s, ago and yet takes from an impact what it should: c/(1 + g/2) with g = c dt/(2 m) and the
-/// reduced mass m, kg. With constant stiffness that is of second order in the step, with Hertz's a
-/// tenth of the first order is left.
+/// The damping c, N s/m, of a force -c v that uses the velocity of half a step of `dt`, s, ago,
+/// corrected to give the right loss in an impact: c/(1 + g/2) with g = c dt/(2 m) and the effective
+/// mass m, kg. With constant stiffness the error is of second order in the step; with Hertz's a
+/// tenth of the first-order error remains.
 ///
-/// With c itself, a step takes -ln(1 - 2 g)/2, which is g (1 + g), from the logarithm of the speed,
-/// and the ends swing faster by a share of g/2, so that they touch for that much less time:
-/// together an impact loses a share of g/2 too much.
+/// With c itself, a step subtracts -ln(1 - 2 g)/2, which is g (1 + g), from the logarithm of the
+/// speed, and the ends oscillate faster by a fraction of g/2, so that the contact is shorter by
+/// that fraction: in total an impact loses too much by a fraction of g/2.
 #[inline(always)]
 fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
     let mass = mass_kg.scale(4.0);
     mass.if_positive(damping_n_s_m * mass / (mass + damping_n_s_m.scale(dt)))
 }
 
-/// What a contact does after a step of `dt` (s) which the touch and the history before it describe.
+/// Forces and energies of a contact after a step of `dt` (s), from its kinematics and its history.
 ///
-/// Meant for the inside of a loop over contacts: there is no branch in it, and what the caller does
-/// not read is not computed.
+/// Meant for the inside of a loop over contacts: it has no branches, and results that the caller
+/// does not use are not computed.
 #[inline(always)]
 pub fn response<T: Number>(
     law: &impl NormalLaw<T>,
@@ -307,7 +308,7 @@ pub fn response<T: Number>(
     }
 }
 
-/// A contact as the limit of the time step sees it: linearised, at rest at its overlap.
+/// A contact linearised for the time step limit, at rest at its overlap.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Linearised<T = f64> {
     /// Stiffness along the normal, N/m.
@@ -324,8 +325,8 @@ pub struct Linearised<T = f64> {
     pub rolling_damping_n_m_s: T,
 }
 
-/// The linearised contact. All its numbers grow with the overlap, so at the largest overlap there
-/// will be they are the largest.
+/// The linearised contact. All its numbers grow with the overlap, so they are largest at the
+/// largest overlap to be expected.
 #[inline(always)]
 pub fn linearised<T: Number>(
     law: &impl NormalLaw<T>,

@@ -1,4 +1,4 @@
-//! Numbers that carry their derivatives: forward differentiation of any formula that is written for
+//! Numbers that carry their derivatives: forward differentiation of any formula written for
 //! [`Number`], exact to rounding.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -23,14 +23,14 @@ impl<const N: usize> Dual<N> {
         }
     }
 
-    /// Variable `k` of the N, where it has this value.
+    /// Variable `k` of the N, with this value.
     pub fn variable(value: f64, k: usize) -> Self {
         let mut variable = Self::constant(value);
         variable.slopes[k] = 1.0;
         variable
     }
 
-    /// `value`, a function of this number that has this slope there.
+    /// `value`, a function of this number with this slope.
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl<const N: usize> Dual<N> {
         }
     }
 
-    /// `value`, a function of this and another number that has these slopes there.
+    /// `value`, a function of this and another number with these slopes.
     #[inline(always)]
     fn chain_both(self, other: Self, value: f64, [by_this, by_other]: [f64; 2]) -> Self {
         let mut slopes = self.slopes;

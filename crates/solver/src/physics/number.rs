@@ -1,12 +1,12 @@
-//! Formulas that are worked out for one bond or contact or for several at once are written for any
+//! Formulas that are evaluated for one bond or contact or for several at once are written for any
 //! [`Number`]: an `f64`, or one `f64` for each of them.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 
-/// What a formula needs of its numbers. Every operation rounds as that of `f64` does, so several at
-/// once give the same bits as one by one.
+/// Operations that formulas need. Every operation rounds like that of `f64`, so several at once
+/// give the same bits as one by one.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -27,7 +27,7 @@ pub trait Number:
     /// One over this.
     fn inverse(self) -> Self;
 
-    /// Root.
+    /// Square root.
     fn sqrt(self) -> Self;
 
     /// The larger of two numbers.
@@ -36,7 +36,7 @@ pub trait Number:
     /// The smaller of two numbers.
     fn minimum(self, other: Self) -> Self;
 
-    /// 1 or -1, as the sign is; -1 for -0.
+    /// 1 or -1, by the sign bit; -1 for -0.
     fn sign(self) -> Self;
 
     /// `value` where this is above 0, and 0 elsewhere.
@@ -101,7 +101,7 @@ impl<T: Number> Vec3<T> {
         self.0 * other.0 + self.1 * other.1 + self.2 * other.2
     }
 
-    /// Outer product.
+    /// Cross product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self(
@@ -181,7 +181,7 @@ impl<T: Number> Mul<T> for Vec3<T> {
 pub struct Rotation<T>(pub Vec3<T>, pub T);
 
 impl<T: Number> Rotation<T> {
-    /// A vector after the rotation.
+    /// The rotated vector.
     #[inline(always)]
     pub fn of(self, vector: Vec3<T>) -> Vec3<T> {
         let Self(axis, w) = self;
@@ -190,8 +190,7 @@ impl<T: Number> Rotation<T> {
         t * w + axis.cross(t) + vector
     }
 
-    /// The rotation after which `before` becomes this one, in space: this times the conjugate of
-    /// `before`.
+    /// The rotation, in space, from `before` to this one: this times the conjugate of `before`.
     #[inline(always)]
     pub fn relative_to(self, before: Self) -> Self {
         let (Self(b, wb), Self(a, wa)) = (self, before);

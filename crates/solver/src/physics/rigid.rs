@@ -2,13 +2,13 @@
 
 use crate::physics::number::{Number, Vec3};
 
-/// Square of the half angle, below which it is summed as a series, exact to rounding.
+/// Square of the half angle below which a series is used, exact to rounding.
 const SMALL: f64 = 0.01;
 
 /// The orientation `turned` (unit quaternion x, y, z, w) after the rotation vector `turn` (rad, in
 /// space): the exponential of half of it, from the left.
 ///
-/// The norm is set right to first order, so that it does not drift.
+/// The norm is corrected to first order, so that it does not drift.
 #[inline(always)]
 pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
     let half = half_angles(turn);
@@ -27,7 +27,7 @@ pub fn turn_a_little<T: Number>(turned: [T; 4], turn: [T; 3]) -> [T; 4] {
     after(turned, half, small_angle(half.square()))
 }
 
-/// Above 0 where a rotation vector, rad, is small enough for [`turn_a_little`].
+/// Above 0 if a rotation vector, rad, is small enough for [`turn_a_little`].
 #[inline(always)]
 pub fn room_to_small<T: Number>(turn: [T; 3]) -> T {
     (-half_angles(turn).square()).plus(SMALL)
@@ -38,7 +38,7 @@ fn half_angles<T: Number>([x, y, z]: [T; 3]) -> Vec3<T> {
     Vec3(x, y, z).scale(0.5)
 }
 
-/// After a turn by these half angles, with their sine over angle and their cosine.
+/// Orientation after a rotation by these half angles, given their sine over angle and their cosine.
 #[inline(always)]
 fn after<T: Number>([x, y, z, w]: [T; 4], half: Vec3<T>, (sine_per_angle, rw): (T, T)) -> [T; 4] {
     let Vec3(rx, ry, rz) = half * sine_per_angle;
@@ -84,7 +84,7 @@ fn less<T: Number>(square: T, divisor: f64, rest: T) -> T {
     (-(square.scale(1.0 / divisor) * rest)).plus(1.0)
 }
 
-/// The rotation vector of an orientation, rad: of the smaller of its two turns.
+/// The rotation vector of an orientation, rad: the one with the smaller angle.
 pub fn rotation_vector(turned: [f64; 4]) -> [f64; 3] {
     let [x, y, z, w] = turned;
     let sign = 1.0_f64.copysign(w);

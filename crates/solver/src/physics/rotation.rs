@@ -1,34 +1,34 @@
 //! Free rotation of a rigid body.
 //!
-//! The kinetic energy is split into parts that each turn the body about one axis, exactly, in a
-//! symmetric order (Reich 1994; Dullweber et al. 1997). The step is of second order and reversible,
-//! and the error of the energy stays bounded. The angular momentum in space is never written, so it
-//! stays the same to the last bit.
+//! The kinetic energy is split into parts, each of which rotates the body about one axis, exactly,
+//! in a symmetric order (Reich 1994; Dullweber et al. 1997). The step is of second order and
+//! reversible, and the energy error stays bounded. The angular momentum in space is never written,
+//! so it stays the same to the last bit.
 //!
-//! An orientation is the unit quaternion x, y, z, w that turns the principal axes of the body into
-//! space.
+//! An orientation is the unit quaternion x, y, z, w that rotates the principal axes of the body
+//! into space.
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::rigid::turn;
 
-/// Part of the step at each end for which the error of second order is least (McLachlan 1995).
+/// Fraction of the step at each end that minimises the second-order error (McLachlan 1995).
 const EDGE: f64 = 0.193_183_327_503_783_6;
 
-/// Turns a body freely for a time.
+/// Rotates a body freely for a time.
 ///
 /// `orientation` is the unit quaternion x, y, z, w from principal axes to space,
 /// `angular_momentum_world` in space, kg m^2/s, `moments` the principal moments, all positive, kg
 /// m^2, and `dt` the time, s, which may be negative.
 ///
 /// The kinetic energy is |L|^2 / (2 M), with M the middle moment, and L_k^2 / 2 (1 / I_k - 1 / M)
-/// for the other two axes. The first part turns the body about its angular momentum and leaves the
-/// others alone, so that it can be taken at any time. The other two alternate, the axis of the
-/// least moment first and last (five turns, McLachlan 1995). A body with two equal moments turns
-/// exactly, and one with nearly equal ones nearly so.
+/// for the other two axes. The first part rotates the body about its angular momentum and does not
+/// affect the others, so that it can be applied at any time. The other two alternate, the axis of
+/// the smallest moment first and last (five rotations, McLachlan 1995). The motion of a body with
+/// two equal moments is exact, that of one with nearly equal ones nearly so.
 ///
-/// The energy is right to 1e-5 with 50 steps or more in the time 2 pi I / |L|, with I the least
-/// moment.
+/// The energy is accurate to 1e-5 with 50 steps or more in the time 2 pi I / |L|, with I the
+/// smallest moment.
 pub fn drift(
     orientation: &mut [f64; 4],
     angular_momentum_world: [f64; 3],
@@ -76,8 +76,8 @@ pub fn kinetic_j(
     0.5 * (l[0] * l[0] / moments[0] + l[1] * l[1] / moments[1] + l[2] * l[2] / moments[2])
 }
 
-/// Turns a body about one of its axes for a time, s, times a rate per angular momentum, 1/(kg m^2),
-/// and the angular momentum in the body the other way.
+/// Rotates a body about one of its axes for a time, s, times a rate per angular momentum, 1/(kg
+/// m^2), and the angular momentum in the body the opposite way.
 #[inline(always)]
 fn spin_about(axis: usize, q: &mut [f64; 4], l: &mut [f64; 3], time_rate: f64) {
     let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -97,7 +97,7 @@ fn into_body(&[x, y, z, w]: &[f64; 4], vector: [f64; 3]) -> [f64; 3] {
     rotated(&[-x, -y, -z, w], vector)
 }
 
-/// A vector turned by a unit quaternion.
+/// A vector rotated by a unit quaternion.
 #[inline(always)]
 fn rotated(&[x, y, z, w]: &[f64; 4], v: [f64; 3]) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -113,12 +113,12 @@ fn rotated(&[x, y, z, w]: &[f64; 4], v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| v[k] + w * twice[k] + more[k])
 }
 
-/// A rotation from its numbers x, y, z, w.
+/// A rotation from its components x, y, z, w.
 pub fn rotation([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
 }
 
-/// The numbers x, y, z, w of a rotation.
+/// The components x, y, z, w of a rotation.
 pub fn numbers(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
     [rotation.i, rotation.j, rotation.k, rotation.w]
 }

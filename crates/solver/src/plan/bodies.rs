@@ -1,4 +1,4 @@
-//! Bodies of a scene, put where they start.
+//! Bodies of a scene at their initial positions.
 
 use std::collections::BTreeMap;
 use std::ops::Add;
@@ -28,18 +28,18 @@ use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
 
-/// Largest share of a radius by which a coordinate may be rounded: a strain of a thousandth is
-/// known to a thousandth then.
+/// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a
+/// thousandth is accurate to a thousandth.
 const ROUNDING: f64 = 1e-6;
-/// A length in a file is taken as that of the bond at rest where it stands if the two differ by
-/// less than this part.
+/// A length in a file counts as the rest length of the bond in its initial position if the two
+/// differ by less than this fraction.
 const SAME_LENGTH: f64 = 1e-9;
 
-/// Particles and bonds of all bodies of a scene, where they start.
+/// Particles and bonds of all bodies of a scene, at their initial positions.
 ///
 /// # Errors
-/// Bonds without a kind; no density; a bond without length; masses or stiffnesses beyond all
-/// numbers.
+/// Bonds without a rule; no density; a bond without length; masses or stiffnesses that are out of
+/// range.
 pub fn place_bodies(
     scene: &Scene,
     mut read: BTreeMap<String, Body>,
@@ -97,14 +97,14 @@ pub(super) fn place_body(
     Ok(one)
 }
 
-/// Whether a body is a rigid clump all along: then nobody uses its bonds.
+/// Whether a body always stays a rigid clump, so that its bonds are unused.
 pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
     let start = scene.bodies.get(name).map(|entry| entry.start_as);
     matches!(start, Some(StartAs::Clump(_))) && !scene.replacement.contains_key(name)
 }
 
-/// The same message said of a body of the scene and, where it comes from a file, of that one of its
-/// `files` that says so.
+/// The same message for a body of the scene and, if it comes from a file, for that one of its
+/// `files` that causes it.
 fn within(
     error: Diagnostic,
     scene: &Scene,
@@ -165,8 +165,8 @@ fn place_particles(
     })
 }
 
-/// The density with which a body's shape is compared: that of its material, or the one that its
-/// file names, kg/m3.
+/// The density for comparison with a body's shape: that of its material, or the one in its file,
+/// kg/m3.
 pub(crate) fn material_density_kg_m3(
     scene: &Scene,
     entry: &BodyEntry,
@@ -177,8 +177,8 @@ pub(crate) fn material_density_kg_m3(
     given.or(about.particle_density_kg_m3)
 }
 
-/// Density of the spheres of a body, kg/m3: of its material, or such that it weighs what the scene
-/// says.
+/// Density of the spheres of a body, kg/m3: that of its material, or the one that gives the mass in
+/// the scene.
 fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Body) -> Result<f64> {
     let place = || format!("{}: [bodies.{name}]", scene.source);
     let mass_kg = match entry.whole_mass {
@@ -214,8 +214,8 @@ fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Bod
     Ok(mass_kg / volume_m3)
 }
 
-/// Whether mass and moment of inertia of a particle of a body's file are such that numbers can hold
-/// them.
+/// Whether mass and moment of inertia of a particle of a body's file are in the range of
+/// floating-point numbers.
 fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> {
     let inert = [
         particles.motions[i].inverse_mass,
@@ -237,7 +237,8 @@ fn check_particle(number: usize, particles: &Particles, i: usize) -> Result<()> 
     ))
 }
 
-/// Whether a particle, `who` in words, is so near to the origin that its place can be told.
+/// Whether a particle, described by `who`, is near enough to the origin for its position to be
+/// accurate.
 pub(super) fn check_place(pose: &Pose, who: impl Fn() -> String) -> Result<()> {
     let farthest_m = pose.place().amax();
     let rounded_m = f64::EPSILON * farthest_m;
@@ -348,7 +349,8 @@ fn place_bonds(
     Ok(())
 }
 
-/// Whether a bond of a body's file has a direction, and swings at a rate that numbers can hold.
+/// Whether a bond of a body's file has a direction, and a frequency in the range of floating-point
+/// numbers.
 fn check_bond(
     number: usize,
     distance_m: f64,

@@ -1,5 +1,4 @@
-//! Templates of rigid clumps, from the bodies of a scene, and the clumps that stand in it at the
-//! start.
+//! Templates of rigid clumps, from the bodies of a scene, and the clumps that exist at the start.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -30,7 +29,7 @@ pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
         .collect()
 }
 
-/// Bodies with bonds that stay rigid clumps all along, and how many bonds they have.
+/// Bodies with bonds that always stay rigid clumps, and the number of their bonds.
 pub(super) fn unused_bonds(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<(String, usize)> {
     let with_bonds = read.iter().map(|(name, body)| (name, body.bonds.len()));
     with_bonds
@@ -43,7 +42,7 @@ pub(super) fn unused_bonds(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<
 /// [`ball_m`].
 ///
 /// # Errors
-/// As those of bodies that stand in the scene.
+/// The same as for bodies that exist at the start.
 pub(super) fn templates(
     scene: &Scene,
     names: &BTreeSet<String>,
@@ -54,8 +53,8 @@ pub(super) fn templates(
     for name in names {
         if let Some(body) = read.remove(name) {
             let mut template = template(scene, name, &body)?;
-            // Which spheres are outer ones takes longest to find, and bodies of one file have the
-            // same.
+            // The search for outer spheres takes longest, and bodies from the same file share the
+            // result.
             let same = |other: &&Arc<Template>| {
                 other.scale == template.scale && other.spheres == template.spheres
             };
@@ -69,9 +68,8 @@ pub(super) fn templates(
     Ok(templates)
 }
 
-/// Radius, m, of a ball for which all that clumps can meet has room where it touches them: see
-/// [`outer_layer`]. 0 where the scene has walls of triangles, whose edges may be as sharp as
-/// knives.
+/// Radius, m, of a ball that fits everything that clumps can touch at the point of contact: see
+/// [`outer_layer`]. 0 if the scene has walls of triangles, whose edges may be arbitrarily sharp.
 pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     let radii = read.values().flat_map(|body| &body.radii).copied();
     let smallest_m = radii.fold(f64::INFINITY, f64::min);
@@ -100,10 +98,10 @@ fn outer(template: &Template, ball_m: f64) -> Vec<u32> {
     outer_layer(&centres, &touching, HIDDEN, ball_m)
 }
 
-/// All of a template but its outer spheres.
+/// A template without its outer spheres.
 fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     let entry = &scene.bodies[name];
-    // As in its file: where and how it stands is said of each clump.
+    // In the axes of its file: each clump has its own position and orientation.
     let in_file = BodyEntry {
         position_m: [0.0; 3],
         rotation_rad: [0.0; 3],
@@ -169,8 +167,7 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     })
 }
 
-/// Clumps that stand in the scene at the start: bodies that start as clumps and come through no
-/// inlet.
+/// Clumps that exist at the start: bodies that start as clumps and do not come through an inlet.
 pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump> {
     let by_inlets: BTreeSet<&String> = scene
         .inlets
@@ -198,11 +195,11 @@ pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump>
         .collect()
 }
 
-/// Whether the scene says how all clumps and what comes of them meet each other and the other
-/// bodies.
+/// Checks that the scene defines contacts between all clumps and their fragments, and with the
+/// other bodies.
 ///
 /// # Errors
-/// Names the materials of which it says nothing.
+/// Names the materials without a contact law.
 pub(super) fn need_pairs(
     scene: &Scene,
     kinds: &Kinds<'_>,

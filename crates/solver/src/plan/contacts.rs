@@ -1,5 +1,5 @@
-//! Contacts of a scene: what each material is, how each pair of materials meets, and which pairs of
-//! particles may.
+//! Contacts of a scene: materials, the contact law of each pair of materials, and the pairs of
+//! particles in contact at the start.
 
 use std::sync::Arc;
 
@@ -19,31 +19,31 @@ use crate::state::bodies::{PlacedBody, called};
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
 
-/// Surfaces closer than this share of the largest radius are near, unless the scene says otherwise
-/// or things are fast; and the largest such share.
+/// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
+/// and the largest such fraction.
 const SKIN: [f64; 2] = [0.1, 0.5];
-/// Steps for which a list of near pairs is to do at the speed of the first impacts.
+/// Number of steps for which a list of near pairs should last at the speed of the first impacts.
 const STEPS_PER_LIST: f64 = 30.0;
-/// Ends that overlap at the start by less than this share of the smaller radius only touch: files
-/// round.
+/// Ends that overlap at the start by less than this fraction of the smaller radius are only
+/// touching: files are rounded.
 pub(super) const ROUNDING: f64 = 1e-6;
-/// Materials that a byte can tell apart, and one that stands for none.
+/// Number of materials that fit into a byte, besides one value for none.
 const MOST_MATERIALS: usize = 255;
 const NO_KIND: u8 = u8::MAX;
 
-/// Kinds of contacts, and which pair of materials has which.
+/// Types of contacts, and the type of each pair of materials.
 pub(super) struct Kinds<'a> {
     /// Names of the materials, by number.
     names: Vec<&'a str>,
     /// In the order of [`Scene::contacts`].
     pub(super) kinds: Vec<ContactKind>,
-    /// Row by row; [`NO_KIND`] where the scene says nothing. Length materials squared.
+    /// Row by row; [`NO_KIND`] if the scene does not define the pair. Length materials squared.
     of_pair: Vec<u8>,
 }
 
 impl<'a> Kinds<'a> {
     /// # Errors
-    /// More materials or pairs than bytes can tell apart.
+    /// More materials or pairs than fit into a byte.
     pub(super) fn new(scene: &'a Scene) -> Result<Self> {
         let names: Vec<&str> = scene.materials.keys().map(String::as_str).collect();
         let count = names.len();
@@ -73,13 +73,13 @@ impl<'a> Kinds<'a> {
         number(&self.names, name)
     }
 
-    /// The kinds in which a material meets all others.
+    /// The types of contacts of a material with all materials.
     pub(super) fn row(&self, material: usize) -> &[u8] {
         let count = self.names.len();
         &self.of_pair[material * count..(material + 1) * count]
     }
 
-    /// Refuses a pair of materials that the scene says nothing of. `who` needs it, in words.
+    /// Refuses a pair of materials without a contact law. `who` describes what needs it.
     pub(super) fn need(&self, scene: &Scene, pair: [usize; 2], who: &str) -> Result<()> {
         if self.row(pair[0])[pair[1]] != NO_KIND {
             return Ok(());
@@ -132,7 +132,7 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
     }
 }
 
-/// Whether the particles of a scene can meet each other or walls, as far as it says how.
+/// Whether the particles of a scene can touch each other or walls, according to the scene.
 pub(super) fn are_needed(scene: &Scene) -> bool {
     !scene.contacts.is_empty() || !scene.walls.is_empty()
 }
@@ -140,8 +140,8 @@ pub(super) fn are_needed(scene: &Scene) -> bool {
 /// Puts contacts into a state whose clusters are known.
 ///
 /// # Errors
-/// A pair of materials that may meet without a word on how; particles of different clusters that
-/// overlap, unless they may.
+/// A pair of materials that may meet without a contact law; particles of different clusters that
+/// overlap, unless that is allowed.
 pub(super) fn place_contacts(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -171,7 +171,8 @@ pub(super) fn place_contacts(
         least_overlap: scene.relaxation.min_overlap,
     };
     let mut contacts = Contacts {
-        // What overlaps now is no fruit of a break: whether it relaxes is asked of the start alone.
+        // Present overlaps are not the result of a break: whether they relax depends only on
+        // `initial_overlap`.
         model: Arc::new(ContactModel {
             relaxes: scene.run.initial_overlap != InitialOverlap::Keep,
             ..model.clone()
@@ -200,7 +201,7 @@ pub(super) fn place_contacts(
     Ok(())
 }
 
-/// Makes of what overlaps contacts that press as if they had been pressed together before.
+/// Turns overlaps into contacts that press as if they had been loaded before.
 fn keep_overlaps(contacts: &mut Contacts, state: &State) {
     let poses = &state.particles.poses;
     for (&pair, history) in contacts.pairs.iter().zip(&mut contacts.histories) {
@@ -209,7 +210,7 @@ fn keep_overlaps(contacts: &mut Contacts, state: &State) {
     contacts.divide(state.particles.len(), contacts.scratch.wanted_partitions);
 }
 
-/// Whether there is one piece that cannot break, and no other can come.
+/// Whether there is one piece that cannot break, and no other can be added.
 fn is_alone(state: &State, clusters: &Clusters) -> bool {
     let of_clumps = state.clumps.templates.iter().any(|t| !t.bonds.is_empty());
     let has_bonds = of_clumps || !state.bonds.is_empty();
@@ -217,8 +218,8 @@ fn is_alone(state: &State, clusters: &Clusters) -> bool {
     clusters.living().count() <= 1 && !breaks && state.model.rules.inlets.is_empty()
 }
 
-/// Chooses how far beyond touching pairs are listed, for impacts at this speed, m/s: what two may
-/// move in some steps, both.
+/// Chooses the skin of the pair list for impacts at this speed, m/s: the distance that both
+/// particles may move in some steps.
 pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
     let (step_s, largest_m) = (state.time_step_s, state.largest_radius_m());
     if let (Some(contacts), None) = (&mut state.contacts, scene.search.skin) {
@@ -227,7 +228,7 @@ pub(super) fn choose_skin(scene: &Scene, speed_m_s: f64, state: &mut State) {
     }
 }
 
-/// Whether the scene says how all those meet that can.
+/// Checks that the scene defines a contact law for all pairs that can meet.
 fn need_pairs(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -264,7 +265,7 @@ fn need_pairs(
     Ok(())
 }
 
-/// Refuses two particles at one place: no force between them has a direction.
+/// Refuses two particles at the same position: a force between them has no direction.
 fn refuse_same_place(
     scene: &Scene,
     contacts: &Contacts,
@@ -287,7 +288,7 @@ fn refuse_same_place(
     ))
 }
 
-/// Refuses particles that are pressed into each other by more than the radius of the smaller.
+/// Refuses particles that overlap by more than the radius of the smaller one.
 fn refuse_swallowed(
     scene: &Scene,
     contacts: &Contacts,

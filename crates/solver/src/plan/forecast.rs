@@ -1,6 +1,5 @@
-//! What will happen in a run, as far as it can be told before: which bodies meet what and when,
-//! what
-//! inlets will feed, and what of it speaks against running the scene as it stands.
+//! Forecast of a run: first contacts of bodies and their times, the feed of inlets, and resulting
+//! doubts about the scene.
 
 use dem_io::units::significant;
 use dem_scene::{FeedRate, Scene};
@@ -12,40 +11,40 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::step::all_bytes;
 
-/// Bodies of which it is said what they meet first; of others it is not looked at.
+/// Largest number of bodies whose first contacts are predicted.
 const MOST_BODIES: usize = 8;
-/// Moments at which it is looked whether a flying body is in a region.
+/// Number of times at which a flying body is tested for being in a region.
 const MOMENTS: usize = 10_000;
 
-/// What will happen in a run.
+/// Forecast of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Forecast {
-    /// What bodies meet first, a sentence each.
+    /// First contacts of bodies, a sentence each.
     pub first_contacts: Vec<String>,
-    /// What inlets will feed.
+    /// Expected feed of inlets.
     pub to_come: Vec<InletForecast>,
-    /// What speaks against running the scene as it stands, a sentence each. The run says at its end
-    /// what came of it.
+    /// Reasons against running the scene as it is, a sentence each. The run reports at its end
+    /// whether they came true.
     pub warnings: Vec<String>,
 }
 
-/// What an inlet will feed until the end, if all find their place.
+/// Expected feed of an inlet until the end, if all bodies find room.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InletForecast {
     /// Name of the inlet.
     pub inlet: String,
     /// Number of bodies.
     pub bodies: f64,
-    /// Their spheres, once they are bonded.
+    /// Number of their spheres, once bonded.
     pub spheres: f64,
-    /// Their bonds.
+    /// Number of their bonds.
     pub bonds: f64,
-    /// What they take once they are bonded, if none leaves, bytes.
+    /// Their memory once bonded, if none leaves, bytes.
     pub bytes: f64,
 }
 
-/// Foretells what comes of a scene that is ready to step and whose impacts are at most this fast,
-/// m/s. `arriving` has one body of each shape that may come, bonded.
+/// Forecast for a scene that is ready to step and whose impacts do not exceed this speed, m/s.
+/// `arriving` has one body of each shape that may be added, bonded.
 pub(super) fn forecast(
     scene: &Scene,
     state: &State,
@@ -108,7 +107,7 @@ fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut 
     }
 }
 
-/// When a body that is replaced in a region comes there, if it does so in free flight.
+/// Time at which a body that is replaced in a region reaches it in free flight, if it does.
 fn regions(scene: &Scene, state: &State, flyer: &FreeBody, until_s: f64, forecast: &mut Forecast) {
     let rule = scene.replacement.get(&flyer.name);
     let Some(name) = rule.and_then(|rule| rule.enters.as_ref()) else {

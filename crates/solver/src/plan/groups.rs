@@ -1,4 +1,4 @@
-//! Which particles the names in a scene stand for.
+//! Particle groups: the particles of each name in a scene.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use crate::state::bodies::PlacedBody;
 use crate::state::particles::Particles;
 use crate::state::supports::GroupSupport;
 
-/// Particles (numbers in the state, rising) of every set, every body and `all`.
+/// Particles (numbers in the state, ascending) of every set, every body and `all`.
 ///
 /// # Errors
-/// A set that picks nothing, or a number that the body does not have.
+/// A set that selects no particles, or a number that the body does not have.
 pub fn resolve_groups(
     scene: &Scene,
     bodies: &[PlacedBody],
@@ -91,7 +91,7 @@ fn is_in(pick: &Pick, place: &[f64; 3]) -> bool {
     }
 }
 
-/// Where the centres of all particles are, for a person.
+/// Human-readable extent of the centres of all particles.
 fn extent(particles: &Particles) -> String {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
@@ -108,7 +108,7 @@ fn extent(particles: &Particles) -> String {
     format!("{} to {}", show(low), show(high))
 }
 
-/// Which freedoms of which particles these supports hold.
+/// Degrees of freedom that these supports hold.
 pub(super) fn held_degrees_of_freedom<'a>(
     supports: impl Iterator<Item = &'a GroupSupport>,
 ) -> BTreeMap<u32, [bool; 6]> {
@@ -124,7 +124,7 @@ pub(super) fn held_degrees_of_freedom<'a>(
     held
 }
 
-/// The particles of a set that the scene is known to have.
+/// The particles of a set that must exist in the scene.
 pub(super) fn particles_of<'a>(groups: &'a BTreeMap<String, Vec<u32>>, name: &str) -> &'a [u32] {
     groups.get(name).map_or(&[], Vec::as_slice)
 }

@@ -1,5 +1,4 @@
-//! Whether supports hold every piece: what they leave free to move as a whole has no equilibrium of
-//! its own.
+//! Checks that supports hold every piece: a piece that can move as a rigid body has no equilibrium.
 
 use dem_io::{Diagnostic, Result};
 use nalgebra::{Matrix6, SymmetricEigen, Vector3, Vector6};
@@ -9,15 +8,14 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
 use dem_io::disjoint::{find, join};
 
-/// Smallest share of the best held rigid motion with which another counts as held: some 1e-6 in
-/// lengths.
+/// A rigid motion counts as held from this fraction of the best held one: about 1e-6 in lengths.
 const HELD: f64 = 1e-12;
 
-/// Refuses a state of which a piece can move as a whole: a body without bonds, a particle without
-/// any, a body that supports hold too little.
+/// Refuses a state with a piece that can move as a rigid body: a body without bonds, a particle
+/// without any, a body with too few supports.
 ///
 /// # Errors
-/// The first such piece, with how many of its six rigid motions are free.
+/// The first such piece, with the number of its six rigid motions that are free.
 pub fn refuse_loose(state: &State, bodies: &[PlacedBody], scene: &str) -> Result<()> {
     let count = state.particles.len();
     let mut names: Vec<u32> = (0..count as u32).collect();
@@ -81,14 +79,15 @@ pub fn refuse_loose(state: &State, bodies: &[PlacedBody], scene: &str) -> Result
     Ok(())
 }
 
-/// How many of the six rigid motions of a piece its held freedoms leave.
+/// Number of the six rigid motions of a piece that its held degrees of freedom leave free.
 fn free_motions(piece: &[u32], state: &State, holds: &[[bool; 6]]) -> usize {
     let place = |i: &u32| state.particles.poses[*i as usize].place();
     let centre = piece.iter().map(place).sum::<Vector3<f64>>() / piece.len() as f64;
     let far_m = |i: &u32| (place(i) - centre).norm();
     let size_m = piece.iter().map(far_m).fold(0.0, f64::max);
     let size_m = if size_m > 0.0 { size_m } else { 1.0 };
-    // How far a held freedom moves in motions along, and in turns by 1/size about, the three axes.
+    // Displacement of a held degree of freedom in translations along, and in rotations by 1/size
+    // about, the three axes.
     let mut gram = Matrix6::<f64>::zeros();
     for i in piece {
         let arm = (place(i) - centre) / size_m;

@@ -1,4 +1,5 @@
-//! How sets of particles start: displaced from where their bonds are at rest, and moving.
+//! Initial state of particle groups: displacement from the rest positions of their bonds, and
+//! motion.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use super::groups::{held_degrees_of_freedom, particles_of};
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 
-/// What moves along and about the axes is called so in messages.
+/// Names of motions along and about the axes in messages.
 const MOTIONS: [&str; 6] = [
     "m/s along x",
     "m/s along y",
@@ -21,12 +22,12 @@ const MOTIONS: [&str; 6] = [
     "rad/s about z",
 ];
 
-/// Gives particles the state that `[initial]` says, on top of what their bodies say: first all are
-/// displaced, then set in motion.
+/// Applies the state of `[initial]` in addition to the initial state of the bodies: first all
+/// displacements, then the motions.
 ///
 /// # Errors
-/// A displacement that incremental bonds would not feel, that brings bonded particles to one place
-/// or particles too far away; a motion of a freedom that a support holds.
+/// A displacement that incremental bonds would ignore, that moves bonded particles to one position
+/// or particles too far away; a motion of a degree of freedom that a support holds.
 pub(super) fn start(
     scene: &Scene,
     groups: &BTreeMap<String, Vec<u32>>,
@@ -77,7 +78,7 @@ fn displace(
     Ok(())
 }
 
-/// Refuses bonded particles that stand at one place: their bond has no direction there.
+/// Refuses bonded particles at the same position, where their bond has no direction.
 fn refuse_short_bonds(scene: &Scene, bodies: &[PlacedBody], state: &State) -> Result<()> {
     let poses = &state.particles.poses;
     let is_short = |pair: &&[u32; 2]| {

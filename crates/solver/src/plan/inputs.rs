@@ -1,4 +1,4 @@
-//! What a run was of: enough to do it again, and to tell it from others.
+//! Inputs of a run: enough to repeat it, and to distinguish it from others.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,15 +8,15 @@ use dem_io::hash::file_hash;
 use dem_scene::{BodySource, Scene, WallShape};
 use serde::{Serialize, Serializer};
 
-/// What was run.
+/// Inputs of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Inputs {
     /// Every value of the scene in SI, defaults included, by its key.
     #[serde(serialize_with = "as_map")]
     pub scene: Vec<(String, String)>,
-    /// What `--set` laid over it, as typed.
+    /// Overrides by `--set`, as typed.
     pub set: Vec<String>,
-    /// Of all that is random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Bodies by name.
     pub bodies: BTreeMap<String, InputBody>,
@@ -24,12 +24,12 @@ pub struct Inputs {
     pub walls: BTreeMap<String, InputFile>,
 }
 
-/// A body that went into a run.
+/// A body used in a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InputBody {
-    /// Its file; `-` for standard input. None: it stands in the scene.
+    /// Its file; `-` for standard input. None: it is defined in the scene.
     pub file: Option<String>,
-    /// Of its numbers, see [`Body::hash`]; 16 hexadecimal digits.
+    /// Hash of its numbers, see [`Body::hash`]; 16 hexadecimal digits.
     pub hash: String,
     /// Number of particles.
     pub particles: usize,
@@ -37,17 +37,17 @@ pub struct InputBody {
     pub bonds: usize,
 }
 
-/// A file that went into a run.
+/// A file used in a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InputFile {
     /// Its name.
     pub file: String,
-    /// Of its bytes: FNV-1a, 64 bit, 16 hexadecimal digits. None: it cannot be read.
+    /// Hash of its bytes: FNV-1a, 64 bit, 16 hexadecimal digits. None: it cannot be read.
     pub hash: Option<String>,
 }
 
 impl Inputs {
-    /// Of a scene and its bodies as they were read.
+    /// From a scene and its bodies as they were read.
     pub fn of(scene: &Scene, read: &BTreeMap<String, Body>) -> Self {
         let body = |(name, body): (&String, &Body)| {
             let source = &scene.bodies.get(name)?.source;

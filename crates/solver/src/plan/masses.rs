@@ -1,4 +1,4 @@
-//! What the bodies of a scene weigh, beside what their shapes would.
+//! Masses of the bodies of a scene, compared with those of their shapes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,14 +18,13 @@ use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Template;
 use crate::state::particles::Particles;
 
-/// A difference that is worth a note, percent.
+/// Smallest difference that is reported, percent.
 const WORTH_A_NOTE: f64 = 5.0;
-/// Most bodies that a person is told of.
+/// Largest number of bodies that are listed.
 const LISTED: usize = 8;
 
-/// What each body of a scene weighs, by its name, where it stands at the start; a body that comes
-/// through an inlet as it
-/// stands in its file. `about`: what is known of the bodies.
+/// Mass of each body of a scene, by name: in its initial state, or as in its file if it comes
+/// through an inlet. `about`: information on the bodies.
 pub fn masses(
     scene: &Scene,
     about: &BTreeMap<String, About>,
@@ -87,7 +86,7 @@ fn of_particles(body: &PlacedBody, particles: &Particles) -> MassProperties {
     of_spheres(&centres, &masses, &inertias)
 }
 
-/// Bodies that weigh other than their shapes, although the scene does not say what they weigh: a
+/// Bodies whose mass differs from that of their shape although the scene does not set it: a
 /// sentence each.
 pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> {
     let is_said = |name: &String| (scene.bodies.get(name)).is_some_and(|b| b.whole_mass.is_some());
@@ -104,7 +103,7 @@ pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> 
     unsaid.filter_map(note).collect()
 }
 
-/// What the programs that made the bodies warned of, a sentence each.
+/// Warnings of the programs that made the bodies, a sentence each.
 pub fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
     let mut warnings = Vec::new();
     for (name, about) in about {
@@ -125,7 +124,7 @@ pub fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
     warnings
 }
 
-/// Lines for a person, the first with a name in front: two for each body.
+/// Human-readable lines, the first preceded by a label: two for each body.
 pub fn lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     for (name, mass) in masses.iter().take(LISTED) {

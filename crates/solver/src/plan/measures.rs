@@ -1,4 +1,4 @@
-//! Measures that can have no value, as the plan knows.
+//! Measures that the plan recognises as impossible.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use dem_scene::{Measure, Quantity, Scene};
 
 use crate::state::State;
 
-/// Fewest particles of which an angle of repose can be told.
+/// Smallest number of particles for which an angle of repose has a meaning.
 pub const FEWEST_IN_HEAP: usize = 50;
 
-/// Refuses a force or a contact where nothing can touch, a contact between two that share
+/// Refuses a force or a contact if nothing can touch, a contact between two groups with common
 /// particles, and a slope of a heap of few particles.
 ///
 /// # Errors
@@ -56,7 +56,7 @@ pub(super) fn refuse_valueless(
     Ok(())
 }
 
-/// What two of the scene have in common, for a person.
+/// Human-readable description of what two objects of the scene have in common.
 fn shared(
     of: &str,
     with: &str,
@@ -75,8 +75,7 @@ fn shared(
     }
 }
 
-/// How many particles there are of which a measure is the slope, if they are too few and no more
-/// can come.
+/// Number of particles of a measure of slope, if they are too few and no more can be added.
 fn few(
     measure: &Measure,
     scene: &Scene,

@@ -1,17 +1,17 @@
-//! How often a run writes: an interval with which it would fill the disk is refused.
+//! Output intervals of a run: refuses those that would fill the disk.
 
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
-/// Most frames, and most pictures: each is a file.
+/// Largest number of frames, and of pictures: each is a file.
 const MOST_FILES: f64 = 1e5;
-/// Most rows of the time series.
+/// Largest number of rows of the time series.
 const MOST_ROWS: f64 = 1e7;
-/// Most checkpoints: each replaces the one before.
+/// Largest number of checkpoints: each replaces the one before.
 const MOST_CHECKPOINTS: f64 = 1e6;
 
-/// Refuses intervals of `[output]` in which a run with this step, s, would write too often.
+/// Refuses intervals of `[output]` with which a run with this step, s, would write too often.
 ///
 /// # Errors
 /// More frames, pictures, rows or checkpoints than a run may write (exit code 2).
@@ -20,7 +20,7 @@ pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
         return Ok(());
     };
     let end_s = scene.run.end_time_s;
-    // Nothing is written more than once a step. An adaptive step may become shorter than it is now.
+    // Output is written at most once a step. An adaptive step may become shorter than it is now.
     let steps = if scene.run.adaptive {
         f64::INFINITY
     } else {
@@ -43,7 +43,8 @@ pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
         };
         let count = (end_s / interval_s).floor().min(steps);
         if count > most {
-            // Two digits of a twentieth more are never less than the shortest interval itself.
+            // Rounding to two digits of a value larger by a twentieth never gives less than the
+            // shortest interval itself.
             let shortest_s = 1.05 * end_s / most;
             return Err(Diagnostic::input(
                 format!("{}: output.{key}", scene.source),

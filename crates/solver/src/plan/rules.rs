@@ -15,10 +15,10 @@ use crate::state::clumps::Template;
 use crate::state::regions::Region;
 use crate::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
 
-/// What the scene says of when bodies come, go, and become others.
+/// The rules of the scene for adding, removing and replacing bodies.
 ///
 /// # Errors
-/// A region's file that is no closed surface.
+/// A region's file that is not a closed surface.
 pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules> {
     let mut regions = Vec::new();
     for (name, entry) in &scene.regions {
@@ -141,8 +141,7 @@ fn region(entry: &SceneRegion) -> Result<Region> {
     })
 }
 
-/// What the rules ask for and cannot get, a sentence each: triggers that never fire, inlets that
-/// feed
+/// Rules that cannot work as intended, a sentence each: triggers that never fire, inlets that feed
 /// nothing, bodies that have to wait.
 pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
     let mut doubts = Vec::new();
@@ -178,7 +177,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
         }
     }
     if let (Some(sleep), g) = (&scene.sleep, Vector3::from(scene.run.gravity_m_s2).norm()) {
-        // On the way up and down again.
+        // Time on the way up and down again.
         let turning_s = 2.0 * sleep.speed_m_s / g;
         if sleep.after_s < turning_s {
             doubts.push(format!(
@@ -236,7 +235,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
     doubts
 }
 
-/// Whether a region has nothing in common with the box around all bodies, inlets and walls.
+/// Whether a region is disjoint from the box around all bodies, inlets and walls.
 fn is_away(region: &Region, state: &State) -> bool {
     let places = state.particles.poses.iter().map(|pose| pose.place().into());
     let inlets = state.model.rules.inlets.iter();
@@ -253,8 +252,8 @@ fn is_apart(a: &Bounds, b: &Bounds) -> bool {
     (0..3).any(|k| common.low[k] > common.high[k])
 }
 
-/// About how many bodies per second can leave the region of an inlet. None: they do not move of
-/// themselves.
+/// Approximate number of bodies per second that can leave the region of an inlet. None: they do not
+/// move by themselves.
 fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
     let speed = Vector3::from(inlet.velocity_m_s).norm();
     let reaches = inlet.templates.iter();

@@ -1,4 +1,4 @@
-//! What a step of a scene consists of, and what it leaves out and why.
+//! Stages of the step of a scene, those that are skipped, and the reasons.
 
 use dem_scene::Scene;
 
@@ -7,20 +7,20 @@ use crate::stages::watching::OUTPUT;
 use crate::state::State;
 use crate::step::{number_of, stages};
 
-/// A stage of the step: done or left out, and why.
+/// A stage of the step: active or skipped, and the reason.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedStage {
-    /// Which.
+    /// The stage.
     pub stage: &'static Stage,
     /// Whether the scene needs it.
     pub needed: bool,
-    /// Why, or why not.
+    /// The reason.
     pub why: String,
-    /// Bytes of the arrays that it alone needs, at the start.
+    /// Bytes of the arrays that only this stage needs, at the start.
     pub bytes: usize,
 }
 
-/// What a step consists of, and what is left out.
+/// The stages of a step, active or skipped.
 pub(super) fn planned_stages(state: &State, scene: &Scene) -> Vec<PlannedStage> {
     let stages = stages().iter().filter(|stage| ***stage != OUTPUT);
     let planned = stages.map(|stage| {
@@ -38,7 +38,7 @@ pub(super) fn planned_stages(state: &State, scene: &Scene) -> Vec<PlannedStage> 
     planned.collect()
 }
 
-/// Leaves the stages out of the step that the scene does not need.
+/// Removes the stages from the step that the scene does not need.
 pub(super) fn leave_out(stages: &[PlannedStage], state: &mut State) {
     for planned in stages.iter().filter(|planned| !planned.needed) {
         state.scratch.clock.leave_out(number_of(planned.stage));

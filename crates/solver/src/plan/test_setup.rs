@@ -1,5 +1,5 @@
-//! What stands where in a test: the dimensions that its formulas need, and the particles whose way
-//! is measured.
+//! Geometry of a test: the dimensions for its formulas, and the particles whose displacement is
+//! measured.
 
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
@@ -9,29 +9,29 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::test_theory::Beam;
 use crate::state::State;
 
-/// Half the size of the part of a body whose way is measured, over its height.
+/// Half the size of the part of a body whose displacement is measured, as a fraction of its height.
 const SPOT: f64 = 0.125;
-/// Measured length of a bar over its length.
+/// Gauge length of a bar as a fraction of its length.
 const GAUGE: f64 = 0.5;
-/// Larger over smaller size of a disc across its axis, at most.
+/// Largest ratio of the larger to the smaller size of a disc across its axis.
 const ROUND: f64 = 1.25;
-/// A disc has split in two if the crack is no further from the loaded diameter than this share of
-/// it, on average.
+/// A disc has split in two if the mean distance of the crack from the loaded diameter is at most
+/// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
 
-/// What is tested.
+/// Specimen of a test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Specimen {
-    /// Bent by one or two pins.
+    /// Beam bent by one or two pins.
     Beam(Beam),
-    /// Pressed across its diameter.
+    /// Disc pressed across its diameter.
     Disc {
         /// m
         diameter_m: f64,
         /// m
         thickness_m: f64,
     },
-    /// Pressed or pulled along its length.
+    /// Bar pressed or pulled along its length.
     Bar {
         /// m
         length_m: f64,
@@ -40,37 +40,37 @@ pub enum Specimen {
     },
 }
 
-/// A test as it stands at the start.
+/// Initial arrangement of a test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
-    /// What is tested.
+    /// The specimen.
     pub specimen: Specimen,
-    /// Unit vector in which the load moves. Length 3.
+    /// Unit vector of the load's motion. Length 3.
     pub direction: [f64; 3],
-    /// Unit vector along which the place of the crack is told: along a beam or bar, across the
-    /// loaded diameter of a disc. Length 3.
+    /// Unit vector along which the position of the crack is measured: along a beam or bar, across
+    /// the loaded diameter of a disc. Length 3.
     pub along: [f64; 3],
     /// Middle of the body, and of the span of a beam, m. Length 3.
     pub middle_m: [f64; 3],
-    /// The crack is where it should be if it is no further from the middle than this on average, m.
+    /// The crack is in the expected place if its mean distance from the middle is at most this, m.
     pub crack_within_m: f64,
-    /// Particles whose displacement, less that of `resting`, is the body's deflection or
+    /// Particles whose displacement, minus that of `resting`, is the body's deflection or
     /// elongation. Empty: not measured.
     pub moving: Vec<u32>,
-    /// The others.
+    /// The reference particles.
     pub resting: Vec<u32>,
-    /// Their distance along a bar, m; 0 elsewhere.
+    /// Their distance along a bar, m; otherwise 0.
     pub gauge_m: f64,
-    /// Radius of the particles, on average, m.
+    /// Mean radius of the particles, m.
     pub mean_radius_m: f64,
 }
 
-/// Looks at walls and body. `particles`: those of the tested body, in a state before the first
-/// step. `volume_m3`: of the body's shape, if known.
+/// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
+/// state before the first step. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
-/// Pins that are no cylinders, or not as many as the test needs; they stand askew; a body that is
-/// nowhere between them; a disc that is not round.
+/// Pins that are not cylinders, or not the number that the test needs; skewed pins; a body that is
+/// not between them; a disc that is not round.
 pub fn setup(
     scene: &Scene,
     test: &Test,
@@ -102,7 +102,7 @@ pub fn setup(
     Ok(setup)
 }
 
-/// Smallest and largest place of the body along an axis, m.
+/// Smallest and largest coordinate of the body along an axis, m.
 fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
     particles
         .iter()
@@ -121,7 +121,7 @@ fn middle([low, high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
-/// A unit vector or its opposite, whichever points along its axis rather than against it.
+/// A unit vector or its opposite, whichever has a positive largest component.
 fn forwards(along: Vector3<f64>) -> Vector3<f64> {
     if along[along.iamax()] < 0.0 {
         -along
@@ -208,7 +208,7 @@ fn beam(
     let centre = middle([held[0], held[1]]) * along
         + middle(extent(&across)) * across
         + middle(extent(&direction)) * direction;
-    // A crack of three-point bending starts under the pin: it may stray by half the height.
+    // A crack in three-point bending starts under the pin: it may deviate by half the height.
     let crack_within_m = if loaded.len() == 2 {
         0.5 * beam.loading_span_m
     } else {
@@ -240,15 +240,15 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f6
     Ok((0.5 * (from + to), (to - from).normalize()))
 }
 
-/// Where a point of a wall's shape stands at the start.
+/// Initial position of a point of a wall's shape.
 fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     let turned = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
     let pivot = Vector3::from(wall.pivot_m);
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
 
-/// Refuses walls that load by moving away from the body. Of an STL it is not known where it would
-/// meet the body.
+/// Refuses walls that load by moving away from the body. It is not known where the surface of an
+/// STL file would meet the body.
 fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
     for name in &test.crosshead {
         let Some(wall) = scene.walls.get(name) else {
@@ -278,7 +278,8 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
     Ok(())
 }
 
-/// A disc: its axis is the one of x, y and z, square to the load, along which it is shortest.
+/// A disc: its axis is the one of x, y and z, perpendicular to the load, along which it is
+/// shortest.
 fn disc(
     test: &Test,
     direction: Vector3<f64>,
@@ -354,8 +355,8 @@ fn bar(
     }
 }
 
-/// Chooses the particles whose way is measured: of a beam those at its middle height where it is
-/// loaded and where it is supported, of a bar two slices at the ends of its middle half.
+/// Chooses the particles whose displacement is measured: for a beam those at half its height at the
+/// loading points and the supports, for a bar two slices at the ends of its middle half.
 fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
     let middle = Vector3::from(setup.middle_m);
     let [along, direction] = [setup.along, setup.direction].map(Vector3::from);

@@ -1,5 +1,4 @@
-//! The time step of a run: the exact limit, what is chosen, and the estimates that others use
-//! beside it.
+//! The time step of a run: the exact limit, the choice, and common estimates for comparison.
 
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
@@ -21,50 +20,50 @@ use crate::state::events::TopologyChange;
 use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
-/// Fraction of the smallest radius that a particle may move in a step.
+/// Largest fraction of the smallest radius that a particle may move in a step.
 pub const FARTHEST: f64 = 0.5;
 
-/// The chosen step and what it was chosen from.
+/// The chosen step and its basis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepChoice {
-    /// Taken, s; of an adaptive step, the first one.
+    /// The chosen step, s; the first one if the step is adaptive.
     pub step_s: f64,
-    /// Whether it was given, not found.
+    /// Whether it was given by the scene.
     pub given: bool,
-    /// The exact limit of the state at the start.
+    /// The exact limit of the initial state.
     pub limit: Limit,
-    /// Largest step that is stable in the first impacts, too, as far as they can be foreseen, s.
+    /// Largest step that is also stable in the first impacts, as far as they can be predicted, s.
     pub foreseen_s: f64,
     /// Speed of those impacts, m/s.
     pub impact_speed_m_s: f64,
-    /// Largest stiffness over mass of a contact that the step allows for, 1/s2.
+    /// Largest ratio of stiffness to mass of a contact that the step allows for, 1/s2.
     pub contact_rate_1_s2: f64,
-    /// Rayleigh's estimate (Platzer 2022, eq. 14), s; infinite where no modulus is known.
+    /// Rayleigh's estimate (Platzer 2022, eq. 14), s; infinite if no modulus is known.
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) (Platzer 2022, eq. 15), s; infinite without bonds.
     pub platzer_eq_15_s: f64,
-    /// What the step has to be right for once clumps have become clusters: what `step_s` is chosen
-    /// by, unless it is adaptive.
+    /// Requirements once clumps have become clusters: `step_s` is based on them, unless it is
+    /// adaptive.
     pub replaced: StepBasis,
 }
 
-/// What a step has to be right for.
+/// Requirements that the time step must meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepBasis {
-    /// Of what is there, and of what may come: the smallest.
+    /// The smallest limit of existing bodies and those that may be added.
     pub limit: Limit,
-    /// Largest step that is stable in the first impacts, too, as far as they can be foreseen, s.
+    /// Largest step that is also stable in the first impacts, as far as they can be predicted, s.
     pub foreseen_s: f64,
     /// Speed of those impacts, m/s.
     pub impact_speed_m_s: f64,
-    /// Largest stiffness over mass of a contact that the step allows for, 1/s2.
+    /// Largest ratio of stiffness to mass of a contact that the step allows for, 1/s2.
     pub contact_rate_1_s2: f64,
     /// Largest automatic step, s.
     pub step_s: f64,
 }
 
 impl StepBasis {
-    /// From a state as it stands, and `to_come`, if anything may come: see [`arriving`].
+    /// From the present state and, if bodies may be added, `to_come`: see [`arriving`].
     pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
         let run = &scene.run;
         let impact_speed_m_s = impact_speed(scene, state);
@@ -87,8 +86,8 @@ impl StepBasis {
         } else {
             f64::INFINITY
         };
-        // A contact that is pressed now is on its way: an adaptive step must not rise before its
-        // end. What is pressed from the start on is followed like an impact, too.
+        // A contact under load now is part of an impact: an adaptive step must not rise before its
+        // end. Contacts under load from the start are treated like an impact, too.
         let keeps = run.initial_overlap == InitialOverlap::Keep;
         let [pressed_k, pressed_c] = if run.adaptive || keeps {
             contact_rates(state)
@@ -113,7 +112,7 @@ impl StepBasis {
 }
 
 impl StepChoice {
-    /// Of a run that goes to its equilibrium at once, in one step to its end.
+    /// For a static run, which goes to its end in one step.
     pub fn none(end_s: f64) -> Self {
         let limit = Limit {
             step_s: f64::INFINITY,
@@ -143,14 +142,14 @@ impl StepChoice {
         }
     }
 
-    /// Step over the smaller of both limits.
+    /// Ratio of the step to the smaller of both limits.
     pub fn fraction_of_limit(&self) -> f64 {
         self.step_s / self.foreseen_s.min(self.limit.step_s)
     }
 }
 
-/// Chooses the step of a scene: the one given, or `safety` times the limit, made a little smaller
-/// so that the end time is met.
+/// Chooses the step of a scene: the given one, or `safety` times the limit, slightly reduced so
+/// that the end time is met.
 ///
 /// # Errors
 /// A given step above the limit, unless any step is allowed.
@@ -218,18 +217,18 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
     })
 }
 
-/// One body of each template as it comes: a clump, or a bonded cluster of an inlet whose bodies are
-/// bonded. They stand where they do not touch. None: there are no templates.
+/// One body of each template as it is added: a clump, or a bonded cluster if its inlet feeds bonded
+/// bodies. Their positions are such that they do not touch. None: there are no templates.
 pub fn arriving(state: &State) -> Option<State> {
     coming(state, false)
 }
 
-/// The same with all bonded that can be.
+/// The same with all bodies bonded that can be.
 pub fn arriving_as_clusters(state: &State) -> Option<State> {
     coming(state, true)
 }
 
-/// One body of each shape; where clumps are `replaced`, those that can become clusters are some.
+/// One body of each shape; if clumps are `replaced`, as a cluster if it can become one.
 fn coming(state: &State, replaced: bool) -> Option<State> {
     let becomes_one = |n: usize| {
         let starts = state
@@ -247,7 +246,7 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
         starts || (replaced && triggers)
     };
     let templates = &state.clumps.templates;
-    // Bodies of one file may be many.
+    // There may be many bodies from one file.
     let same = |a: usize, b: usize| {
         let [one, other] = [a, b].map(|n| &templates[n]);
         becomes_one(a) == becomes_one(b)
@@ -308,8 +307,9 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
     Some(bonded)
 }
 
-/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest of all particles that are there or may be
-/// fed, each with its own material, s (Platzer 2022, eq. 14). Infinite: no particle has a modulus.
+/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest value of all particles that exist or may
+/// be fed, each with its own material, s (Platzer 2022, eq. 14). Infinite: no particle has a
+/// modulus.
 pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
     let of_material = |body: &str| {
         let material = scene.materials.get(&scene.bodies.get(body)?.material)?;
@@ -335,8 +335,8 @@ pub fn rayleigh_s(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> f64 {
     of_bodies.chain(of_templates).fold(f64::INFINITY, f64::min)
 }
 
-/// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest of all
-/// bonds (Platzer 2022, eq. 15).
+/// 0.17 sqrt(m/K) with the lighter end and the normal stiffness of each bond, the smallest value of
+/// all bonds (Platzer 2022, eq. 15).
 fn platzer_eq_15_s(state: &State) -> f64 {
     let motions = &state.particles.motions;
     let bonds = &state.bonds;
@@ -348,9 +348,9 @@ fn platzer_eq_15_s(state: &State) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A speed that no impact will exceed until bonds or loads drive something faster, m/s: of
-/// particles and walls against each other at the start, and what a fall through the whole scene
-/// adds. 0 where nothing can touch.
+/// Upper bound of impact speeds until bonds or loads accelerate something, m/s: the relative speed
+/// of particles and walls at the start, plus a fall through the entire scene. 0 if nothing can
+/// touch.
 fn impact_speed(scene: &Scene, state: &State) -> f64 {
     if state.contacts.is_none() {
         return 0.0;
@@ -378,7 +378,7 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
     start_m_s.hypot(by_time.min(by_height))
 }
 
-/// Largest speed of a wall where particles are, m/s.
+/// Largest speed of a wall near particles, m/s.
 fn wall_speed(wall: &Wall, state: &State) -> f64 {
     let pivot = Vector3::from(wall.frame.position_m);
     let poses = state.particles.poses.iter();
@@ -423,8 +423,8 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
     }
 }
 
-/// Largest step with which an impact at this speed, m/s, is followed as well as `safety` asks, s;
-/// infinite where nothing can touch.
+/// Largest step that resolves an impact at this speed, m/s, as well as `safety` requires, s;
+/// infinite if nothing can touch.
 pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
     share_of_impact(state, safety) * safe_step(k, c)
@@ -438,11 +438,11 @@ fn share_of_impact(state: &State, safety: f64) -> f64 {
     let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.model.kinds));
     let fractions = kinds.map(|kind| kind.law.at_impact().impact_fraction());
     let usual = fractions.fold(1.0, f64::min);
-    // A factor of exactly 1 at the usual safety.
+    // The factor is exactly 1 at the default safety.
     safety / SAFETY * usual
 }
 
-/// How far the deepest corner of a box lies along `down`, m.
+/// Coordinate of the deepest corner of a box along `down`, m.
 fn deepest(bounds: &Bounds, down: &Vector3<f64>) -> f64 {
     let depths = bounds
         .corners()
@@ -450,7 +450,7 @@ fn deepest(bounds: &Bounds, down: &Vector3<f64>) -> f64 {
     depths.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How far bodies can fall along `down` from the highest point of an inlet to the lowest of a wall,
+/// Largest height of fall along `down` from the highest point of an inlet to the lowest of a wall,
 /// m.
 fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
     let regions = (state.model.rules.inlets.iter())
@@ -466,7 +466,7 @@ fn fall_from_inlets_m(state: &State, down: &Vector3<f64>) -> f64 {
     (bottom - top).max(0.0)
 }
 
-/// How far anything can fall along `down` before it meets a wall or another particle, at most, m.
+/// Largest height of fall along `down` before meeting a wall or another particle, m.
 fn fall_m(state: &State, down: &Vector3<f64>) -> f64 {
     let heights = state.particles.poses.iter().map(|p| p.place().dot(down));
     let (mut high, mut low) = (f64::INFINITY, f64::NEG_INFINITY);

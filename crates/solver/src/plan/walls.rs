@@ -1,4 +1,4 @@
-//! Walls of a scene, put where they start.
+//! Walls of a scene at their initial positions.
 
 mod surface;
 
@@ -21,15 +21,14 @@ use crate::state::walls::{Wall, WallContact, WallModel};
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};
 
-/// Fraction of a belt's speed that may be off its plane: what rounding of written numbers costs.
+/// Largest fraction of a belt's speed out of its plane: allows for rounding of written numbers.
 const OFF_PLANE: f64 = 1e-6;
 
-/// The walls of a scene, in the order of their names. What is odd about them but harmless goes to
-/// `notes`.
+/// The walls of a scene, in the order of their names. Harmless peculiarities are added to `notes`.
 ///
 /// # Errors
-/// A file that is no surface; a pair of materials that may meet without a word on how; a belt that
-/// leaves its plane; particles in walls, unless they may.
+/// A file that is not a surface; a pair of materials that may meet without a contact law; a belt
+/// that leaves its plane; particles in walls, unless that is allowed.
 pub(super) fn place_walls(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -69,7 +68,8 @@ pub(super) fn place_walls(
         };
         let mut wall = Wall::new(Arc::new(model), frame);
         let keeps = scene.run.initial_overlap == InitialOverlap::Keep;
-        // What only touches presses by so little that it is left out, unless it is to be kept.
+        // Bodies that only touch press so little that the contact is dropped, unless overlaps are
+        // to be kept.
         let least_share = if keeps { 0.0 } else { ROUNDING };
         let touches = starting_touches(&wall, state, least_share);
         let is_through = touches.iter().any(|(_, touch)| touch.distance_m < 0.0);
@@ -127,7 +127,7 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
     })
 }
 
-/// Refuses a belt whose surface would move into or out of the plane that it is.
+/// Refuses a belt whose surface velocity has a component normal to its plane.
 fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Result<()> {
     let WallShape::Plane { normal, .. } = &entry.shape else {
         return Ok(());
@@ -153,7 +153,7 @@ fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Resul
     ))
 }
 
-/// Rotated about the pivot as `rotation` says.
+/// Frame rotated about the pivot by `rotation`.
 fn frame(entry: &SceneWall) -> Frame {
     let upright = [0.0, 0.0, 0.0, 1.0];
     Frame {
@@ -162,7 +162,7 @@ fn frame(entry: &SceneWall) -> Frame {
     }
 }
 
-/// What overlaps a wall at the start by more than this share of its radius.
+/// Particles that overlap a wall at the start by more than this fraction of their radius.
 fn starting_touches(wall: &Wall, state: &State, least_share: f64) -> Vec<(u32, Touch)> {
     let mut found = Vec::new();
     let mut of_one = Vec::new();
@@ -228,7 +228,7 @@ fn refuse_touches(
     ))
 }
 
-/// A touch at the start: its overlap is where the law begins, or presses where it is kept.
+/// A contact at the start: its overlap is the origin of the law, or presses if it is kept.
 fn at_start(particle: u32, touch: &Touch, state: &State, keeps: bool) -> WallContact {
     let overlap_m = state.particles.poses[particle as usize].radius_m() - touch.distance_m;
     let history = if keeps {

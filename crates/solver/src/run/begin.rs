@@ -1,4 +1,4 @@
-//! A run before its first step.
+//! The beginning of a run, before its first step.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -26,7 +26,7 @@ use crate::run::snapshot::fingerprint;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 
-/// A run: what is stepped, and what watches it.
+/// A run: the plan that is stepped, and its monitors.
 pub(super) struct Run<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: RunSettings<'a>,
@@ -42,33 +42,33 @@ pub(super) struct Run<'a> {
     pub(super) schedule: OutputSchedule,
     /// None: no results are kept.
     pub(super) files: Option<Files<'a>>,
-    /// Whether a checkpoint is to be written once the step is done.
+    /// Whether a checkpoint is to be written after the step.
     pub(super) is_checkpoint_due: bool,
-    /// When the last checkpoint was written.
+    /// Wall time of the last checkpoint.
     pub(super) saved: Instant,
-    /// What the plan says that the summary repeats.
+    /// Parts of the plan that the summary repeats.
     pub(super) planned: Planned,
     pub(super) first_step: u64,
     pub(super) began: Instant,
     pub(super) processor_before_s: Option<f64>,
 }
 
-/// What the summary repeats of the plan.
+/// Parts of the plan that the summary repeats.
 pub(super) struct Planned {
     pub(super) stages: Vec<PlannedStage>,
     pub(super) masses: BTreeMap<String, BodyMass>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) inputs: Inputs,
-    /// How the time step of a run that goes on differs from before.
+    /// Change of the time step in a resumed run.
     pub(super) changed_step: Option<String>,
 }
 
 impl<'a> Run<'a> {
-    /// Begins a run, or goes on with one.
+    /// Begins a run, or resumes one.
     ///
     /// # Errors
-    /// The checkpoint is not of this scene, or leaves nothing to do; those of the files.
+    /// The checkpoint belongs to another scene, or the run is already over; those of the files.
     pub(super) fn begin(plan: Plan, scene: &'a Scene, settings: RunSettings<'a>) -> Result<Self> {
         let mut settings = settings;
         let mut probes = probes(scene, &plan);
@@ -85,7 +85,7 @@ impl<'a> Run<'a> {
             ..
         } = plan;
         place_watches(&probes, &mut state);
-        // Of the bonds at the start, be they broken since or not.
+        // Of the bonds at the start, broken since or not.
         let mut order = FrameOrder::new(&bodies, &state);
         let of_pictures = settings.folder.and(Order::of(scene, &state));
         let size = state.particles.len() + state.bonds.len();

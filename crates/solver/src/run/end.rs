@@ -18,7 +18,7 @@ use crate::state::clusters::fragments::Fragment;
 use crate::step::{advance, number_of, stages};
 
 impl Run<'_> {
-    /// Writes what is left to be written, and sums up.
+    /// Writes the remaining files and the summary.
     ///
     /// # Errors
     /// Those of the files.
@@ -54,8 +54,8 @@ impl Run<'_> {
         })
     }
 
-    /// The last checkpoint, from which a run can be taken further with a later end time; plots,
-    /// film and summary.
+    /// The last checkpoint, from which the run can be continued to a later end time; plots, film
+    /// and summary.
     fn write_end(&mut self, summary: &Summary) -> Result<()> {
         advance(&mut self.state);
         if let Some(files) = &mut self.files {
@@ -92,7 +92,7 @@ impl Run<'_> {
         let bonds = if state.model.rules.are_none() {
             state.bonds.len() as f64
         } else {
-            // Of the entire run, as the number of bonds changes.
+            // Mean over the entire run, as the number of bonds changes.
             state.population.bond_steps[0] as f64 / state.steps.max(1) as f64
         };
         let of_state = state.clusters.as_ref().zip(fragments);

@@ -1,4 +1,4 @@
-//! What is written to the table of events.
+//! Entries of the table of events.
 
 use dem_io::Result;
 use dem_results::Event;
@@ -63,7 +63,7 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
     files.events.append(&events)
 }
 
-/// What has happened to bodies in this step.
+/// Events of bodies in this step.
 pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<()> {
     let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
     for one in &state.scratch.events.population {
@@ -156,8 +156,8 @@ pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Takes the step of a scene for a run that goes on: one that is given, or one smaller than before;
-/// one that is adaptive goes on as it was. Says what has changed.
+/// Takes the time step of the scene in a resumed run: a given step, or one smaller than before; an
+/// adaptive step stays as it was. Returns a description of the change.
 pub(super) fn change_step(
     state: &mut State,
     choice: &StepChoice,
@@ -176,8 +176,8 @@ pub(super) fn change_step(
     (step_s != before_s).then(|| change(before_s, step_s))
 }
 
-/// Who is near whom is asked anew before the next step: what was listed is for steps of the present
-/// size.
+/// Requests a new neighbour search before the next step: the present lists are valid for steps of
+/// the present size.
 pub(super) fn look_anew_for_near(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
         contacts.skin_left_m = -1.0;
@@ -193,7 +193,7 @@ pub(super) fn new_step<'a>(state: &State, cause: &'a str, detail: &'a str) -> Ev
     of_all(state, "time_step", cause, detail)
 }
 
-/// An event that no bond and no place has to itself.
+/// An event without a bond and a position.
 fn of_all<'a>(state: &State, kind: &'a str, cause: &'a str, detail: &'a str) -> Event<'a> {
     Event {
         step: state.steps,

@@ -16,12 +16,12 @@ use crate::state::bodies::PlacedBody;
 /// Files that grow during a run.
 pub(super) struct Files<'a> {
     pub(super) folder: &'a ResultsFolder,
-    /// Of what the plan fixed: see [`super::snapshot::fingerprint`].
+    /// Hash of the data fixed by the plan: see [`super::snapshot::fingerprint`].
     fingerprint: u64,
     pub(super) series: SeriesFile,
     pub(super) events: EventFile,
     pub(super) frames: FrameFiles,
-    /// None: no pictures are wanted.
+    /// None: no pictures.
     pub(super) pictures: Option<Pictures>,
     /// None: nothing can break into fragments.
     pub(super) fragments: Option<FragmentFile>,
@@ -29,7 +29,7 @@ pub(super) struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// New files, or those of a run that is `continued` where it stood.
+    /// New files, or those of a resumed run at the point where it is `continued`.
     pub(super) fn open(
         folder: &'a ResultsFolder,
         fingerprint: u64,
@@ -67,7 +67,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Writes a checkpoint, and everything to the disk that it goes on from.
+/// Writes a checkpoint, and flushes all files that it depends on to the disk.
 pub(super) fn save(
     state: &State,
     bodies: &[PlacedBody],
@@ -100,7 +100,7 @@ pub(super) fn save(
     write_checkpoint(&files.folder.checkpoint(), &snapshot.to_bytes()?)
 }
 
-/// Says that the run can be taken up again where it has left a checkpoint.
+/// Adds to a message that the run can be resumed from its checkpoint, if there is one.
 pub(super) fn with_checkpoint(mut problem: Diagnostic, files: Option<&Files<'_>>) -> Diagnostic {
     let checkpoint = files.map(|files| files.folder.checkpoint());
     if let Some(path) = checkpoint.filter(|path| path.is_file()) {

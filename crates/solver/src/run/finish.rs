@@ -1,5 +1,5 @@
-//! What a run writes once it has ended, and how that is made up for where the run was killed in the
-//! midst of it.
+//! Files that a run writes once it has ended, and their recovery if the run was killed while
+//! writing them.
 
 use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result};
@@ -20,8 +20,8 @@ use crate::plan::Plan;
 use crate::state::State;
 use crate::state::clusters::fragments as fragments_of;
 
-/// What a run that has come to its end leaves beside its last checkpoint, before it writes plots,
-/// film and summary.
+/// Data that a finished run leaves next to its last checkpoint, before it writes plots, film and
+/// summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct End {
     /// `summary.json`.
@@ -39,8 +39,8 @@ impl End {
         })
     }
 
-    /// Writes plots, fragments and film of a run that ends in this state, and its summary at last:
-    /// where that is, all is.
+    /// Writes plots, fragments and film of a run that ends in this state, and its summary last: if
+    /// the summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.
@@ -66,21 +66,20 @@ impl End {
     }
 }
 
-/// What [`finish`] has made up for.
+/// Result of [`finish`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
-    /// The files that were missing, by their names in the folder of results.
+    /// Names of the missing files in the folder of results.
     pub missing: Vec<String>,
     /// The summary of the run, as JSON.
     pub summary: String,
 }
 
-/// Writes the files that a run has not written that had come to its end when it was killed, or that
-/// have been removed since.
-/// None: the run has not come to its end, or all of them are there.
+/// Writes the files that are missing because the run was killed after reaching its end, or that
+/// have been removed since. None: the run has not reached its end, or no file is missing.
 ///
 /// # Errors
-/// The scene is not that of the run; those of the files.
+/// The scene is not the one of the run; those of the files.
 pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<Option<Finished>> {
     let (Some(folder), Some(snapshot)) = (settings.folder, &settings.resume) else {
         return Ok(None);
@@ -134,7 +133,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     Ok(Some(Finished { missing, summary }))
 }
 
-/// Names of the files at the end of a run that are not there. A summary of another run is none.
+/// Names of the missing files at the end of a run. A summary of another run does not count.
 fn missing(
     folder: &ResultsFolder,
     end: &End,

@@ -1,4 +1,4 @@
-//! When fragments are written, and what of them.
+//! The times at which fragments are written, and their data.
 
 use dem_io::Result;
 
@@ -10,14 +10,14 @@ use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::clusters::fragments;
 
-/// Besides the frames, fragments are written when there are more by one in so many: of few every
-/// one shows, and the rows written for all splits together are at most one more than this times the
-/// fragments at the end.
+/// Besides at the frames, fragments are written when their number has grown by one in this many.
+/// While there are few, every new one is written, and the number of rows written for all splits
+/// together is at most one more than this times the number of fragments at the end.
 const GROWTH: u64 = 20;
 
 impl Progress {
-    /// Whether so many more fragments are there than when they were written last that they are to
-    /// be written again.
+    /// Whether the number of fragments has grown enough since they were last written for them to be
+    /// written again.
     pub(super) fn has_new_fragments(&self, state: &State) -> bool {
         let Some(clusters) = &state.clusters else {
             return false;
@@ -27,7 +27,7 @@ impl Progress {
     }
 }
 
-/// Writes how all fragments are and move, if there are any.
+/// Writes the position and motion of all fragments, if there are any.
 pub(super) fn write_fragments(
     state: &State,
     progress: &mut Progress,

@@ -1,5 +1,5 @@
-//! The limit of the time step while a run goes on: it falls as bonds stretch, as contacts are
-//! pressed, as particles become fast.
+//! The limit of the time step during a run: it falls as bonds stretch, contact forces rise, and
+//! particles become fast.
 
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
@@ -17,50 +17,50 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
 use crate::state::particles::Pose;
 
-/// Steps between two looks at the strains of the bonds.
+/// Interval between checks of the bond strains, in steps.
 const STRAIN_EVERY: u64 = 64;
-/// The limit of the step is asked for again when the largest strain has grown by this since: a bond
-/// that is longer has longer levers and is stiffer across.
+/// The limit is computed again when the largest strain has grown by this: a longer bond has longer
+/// levers and a higher transverse stiffness.
 const MORE_STRAIN: f64 = 0.02;
-/// Steps between two looks at the contacts: a collision takes more. All other looks are at
-/// multiples of it, too.
+/// Interval between checks of the contacts, in steps: a collision takes longer. All other intervals
+/// are multiples of it.
 pub(super) const CHECK_EVERY_STEPS: u64 = 8;
-/// The limit is looked for again when the stiffest contact has become stiffer by this factor since.
+/// The limit is computed again when the stiffest contact has become stiffer by this factor.
 const STIFFER: f64 = 1.2;
-/// The step is looked at again when bodies are faster by this factor, on the mean of their mass,
-/// than the impacts that it allows for.
+/// The step is checked again when the mass-averaged speed of bodies exceeds the impact speed that
+/// the step allows for by this factor.
 const FASTER: f64 = 1.2;
 
-/// An adaptive step is looked at again after so many steps for each iteration that the last look
-/// took, so that looking takes less than a hundredth of the time; and after this many at least.
+/// An adaptive step is checked again after this many steps for each iteration of the last check, so
+/// that checks take less than a hundredth of the time; and after this many steps at least.
 const STEPS_PER_ITERATION: u64 = 256;
 const LOOK_EVERY: u64 = 512;
-/// It becomes larger where it can by this factor: a step that is never quite the same keeps energy
-/// less well.
+/// Smallest factor by which it is increased: a step that changes all the time conserves energy less
+/// well.
 const LARGER: f64 = 1.2;
-/// And smaller, where impacts alone ask for it, from this factor on.
+/// Smallest factor by which it is reduced if only impacts require it.
 const SMALLER: f64 = 1.05;
 
-/// What the step of a run has to keep to.
+/// Limits on the time step of a run.
 #[derive(Debug)]
 pub(super) struct Limits<'a> {
     smallest_radius_m: f64,
-    /// Largest radius, m, and largest inverse mass, 1/kg; none where bodies may come or clumps
+    /// Largest radius, m, and largest inverse mass, 1/kg; none if bodies may be added or clumps
     /// become clusters.
     extremes: Option<[f64; 2]>,
-    /// None: the scene names a step, which is kept.
+    /// None: the step is given by the scene, and kept.
     safety: Option<f64>,
     end_s: f64,
-    /// None: the step only falls.
+    /// None: the step only decreases.
     adaptive: Option<Adaptive<'a>>,
 }
 
-/// What an adaptive step goes by.
+/// Basis of an adaptive step.
 #[derive(Debug)]
 struct Adaptive<'a> {
     scene: &'a Scene,
     arriving: Option<State>,
-    /// Once clumps have become clusters.
+    /// Requirements once clumps have become clusters.
     replaced: StepBasis,
 }
 
@@ -83,11 +83,11 @@ impl<'a> Limits<'a> {
         }
     }
 
-    /// Looks whether the limit has fallen, after a step, and takes a smaller step if it has; an
-    /// adaptive step becomes larger, too. `replaced`: clumps have just become clusters.
+    /// Checks after a step whether the limit has fallen, and reduces the step if it has; increases
+    /// an adaptive step if possible. `replaced`: clumps have just become clusters.
     ///
     /// # Errors
-    /// A particle moves so far in a step that contacts would miss it, and the scene names the step;
+    /// A particle moves so far in a step that contacts would miss it, and the scene sets the step;
     /// those of the files.
     pub(super) fn follow(
         &mut self,
@@ -120,7 +120,7 @@ impl<'a> Limits<'a> {
                 may_be_less = true;
             }
         }
-        // Mostly the step still is small enough: what was found last says so at once, a bound near
+        // Usually the step is still small enough: the last result shows it at once, a bound near
         // the step in a fraction of the time that the limit itself takes.
         let needed_s = state.time_step_s / self.safety.unwrap_or(1.0);
         let rates = may_be_less.then(|| contact_rates(state));
@@ -141,8 +141,8 @@ impl<'a> Limits<'a> {
             }
         }
         if let (true, Some(safety)) = (look_at_contacts, self.safety) {
-            // Loads or supports may have made bodies faster than was foreseen. Not the fastest
-            // particle: a bond that breaks lets a few snap back.
+            // Loads or supports may have made bodies faster than predicted. Not the fastest
+            // particle: when a bond breaks, a few particles snap back.
             let p = &state.particles;
             let kinetic_j = kinetic_energy(p, |i| p.motions[i]) + state.clumps.kinetic_j();
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
@@ -163,8 +163,8 @@ impl<'a> Limits<'a> {
         Ok(())
     }
 
-    /// An adaptive step is chosen anew once clumps have become clusters, now and then, and once all
-    /// bonds have gone.
+    /// Chooses an adaptive step again once clumps have become clusters, at intervals, and once
+    /// there are no bonds left.
     fn follow_adaptive(
         &mut self,
         state: &mut State,
@@ -200,7 +200,7 @@ impl<'a> Limits<'a> {
         Ok(())
     }
 
-    /// Takes a step that is no larger than this, if the present one is, and notes it.
+    /// Reduces the step to this one, if the present one is larger, and records it.
     fn take(
         &self,
         state: &mut State,
@@ -215,7 +215,7 @@ impl<'a> Limits<'a> {
         self.set(state, largest_s, cause, progress, files)
     }
 
-    /// Takes this step, or one that is hardly smaller, and notes it.
+    /// Sets this step, or one slightly smaller, and records it.
     fn set(
         &self,
         state: &mut State,
@@ -258,12 +258,12 @@ fn extremes(state: &State) -> Option<[f64; 2]> {
     ])
 }
 
-/// A step that is stable by what was found last, s, with bonds that are longer since and contacts
-/// of these [rates](contact_rates). Either with all contacts that there are on top of it, which is
-/// never too long; or as if all bonds and contacts had become as much stiffer as the stiffest
-/// particle's contacts are by their sum.
+/// A stable step from the last result, s, for bonds that have become longer since and contacts with
+/// these [rates](contact_rates). The larger of two bounds: one adds all present contacts, which is
+/// always safe; the other assumes that all bonds and contacts have become stiffer by the factor of
+/// the stiffest particle's contacts, by their sum.
 fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
-    // Stiffness across a bond grows with the square of its levers.
+    // Transverse stiffness of a bond grows with the square of its levers.
     let longer = (1.0 + progress.strain) / (1.0 + progress.bound_strain);
     let of_bonds = Bound {
         step_s: progress.bound.step_s / (longer * longer),
@@ -281,7 +281,7 @@ fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
     with_all_s.max(all_stiffer_s)
 }
 
-/// Stops a run in which a particle moves farther in a step than contacts can follow.
+/// Stops a run in which a particle moves farther in a step than contacts can resolve.
 fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
     let p = &state.particles;
     let moved_m = |i: usize| {
@@ -305,8 +305,8 @@ fn too_fast(state: &State, bodies: &[PlacedBody]) -> Result<()> {
     ))
 }
 
-/// A particle that has gone through a wall, or two that are pressed into each other so far that
-/// they would go through each other, as a reason to stop.
+/// The diagnostic that stops a run: a particle has gone through a wall, or two overlap so deeply
+/// that they would pass through each other.
 pub(super) fn tunnelling(
     state: &State,
     scene: &Scene,

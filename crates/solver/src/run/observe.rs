@@ -1,4 +1,4 @@
-//! What a run looks at and writes: between the two halves of a step, where everything can be
+//! Observation and output of a run: between the two halves of a step, where everything can be
 //! measured, and after the second.
 
 use std::sync::atomic::Ordering;
@@ -25,21 +25,21 @@ use crate::state::bodies::renumber;
 use crate::state::events::PopulationEvent;
 use crate::step::number_of;
 
-/// Wall time between two checkpoints where the scene names no other rhythm.
+/// Wall time between two checkpoints unless the scene sets an interval.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
-/// Steps between two looks at how bonds are bent and twisted: each costs about five times what the
-/// bonds of a step do.
+/// Interval between checks of bending and twisting of bonds, in steps: each check costs about five
+/// times as much as the bonds of a step.
 const EDGES_EVERY: u64 = 1024;
 
-/// What ends the loop over steps.
+/// The reason why the loop over steps ends.
 pub(super) struct Ended {
     pub(super) by: &'static str,
     pub(super) balance: Balance,
     pub(super) problem: Option<Diagnostic>,
 }
 
-/// What is due at a step.
+/// Output that is due at a step.
 #[derive(Debug, Clone, Copy)]
 struct Due {
     /// The run ends with this step.
@@ -56,15 +56,15 @@ impl Due {
         self.row || self.frame || self.checkpoint || self.picture || self.watchdog
     }
 
-    /// A checkpoint of a run that has gone unstable would be worth nothing.
+    /// A checkpoint of a run that has gone unstable would be worthless.
     fn needs_balance(self) -> bool {
         self.row || self.checkpoint || self.watchdog
     }
 }
 
 impl Run<'_> {
-    /// Looks at the step where everything can be measured, and writes what is due. Says how the run
-    /// has ended, if it has.
+    /// Evaluates the step where everything can be measured, and writes the output that is due.
+    /// Returns how the run has ended, if it has.
     ///
     /// # Errors
     /// Those of the files.
@@ -129,8 +129,8 @@ impl Run<'_> {
         Ok(None)
     }
 
-    /// Follows what has become of the bodies in the second half of the step, and of the limit of
-    /// the time step; writes a checkpoint where one is due. Says how the run has ended, if it has.
+    /// Handles the changes of bodies in the second half of the step, and the limit of the time
+    /// step; writes a checkpoint if one is due. Returns how the run has ended, if it has.
     ///
     /// # Errors
     /// Those of the files.
@@ -170,7 +170,7 @@ impl Run<'_> {
         Ok(None)
     }
 
-    /// What has happened in the first half of the step.
+    /// Records the events of the first half of the step.
     fn note_step(&mut self) -> Result<()> {
         let (state, bodies, seen) = (&self.state, &self.bodies, &mut self.progress.seen);
         seen.note_breaks(state, bodies);
@@ -187,7 +187,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What is due at this step. `broke`: the body of a test has broken, so that it ends.
+    /// Output that is due at this step. `broke`: the body of a test has broken, so that it ends.
     fn due(&self, broke: bool) -> Due {
         let (state, schedule, progress) = (&self.state, &self.schedule, &self.progress);
         let end_s = self.scene.run.end_time_s;
@@ -221,7 +221,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Writes frame, picture and fragments where they are due.
+    /// Writes frame, picture and fragments if they are due.
     fn write_frame(&mut self, due: Due, rests: bool) -> Result<()> {
         let (state, progress) = (&self.state, &mut self.progress);
         let Some(files) = &mut self.files else {
@@ -242,8 +242,9 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Decides whether the state after this step is kept. The ledger of this step has been looked
-    /// at: what is saved is sound. Looking at it only to save would change its later figures.
+    /// Decides whether the state after this step is saved. The ledger of this step has been
+    /// checked, so only a valid state is saved. Checking it only in order to save would change its
+    /// later values.
     fn plan_checkpoint(&mut self, due: Due) {
         let every_s = self.schedule.checkpoint_s;
         let is_late = every_s.is_none() && self.saved.elapsed() >= CHECKPOINT_EVERY;
@@ -253,7 +254,7 @@ impl Run<'_> {
         }
     }
 
-    /// Takes up how particles are counted once bodies have come, gone or become others. Says
+    /// Applies new numbers of particles after bodies have been added, removed or replaced. Returns
     /// whether clumps have become clusters.
     fn follow_population(&mut self) -> Result<bool> {
         let events = &self.state.scratch.events;
@@ -280,7 +281,7 @@ impl Run<'_> {
         Ok(replaced)
     }
 
-    /// Looks for pieces once more where bonds have broken since they were looked for last.
+    /// Searches for fragments a last time if bonds have broken since the last search.
     fn find_last_pieces(&mut self) -> Result<()> {
         if self.state.unsearched.is_empty() {
             return Ok(());
@@ -290,7 +291,7 @@ impl Run<'_> {
         files.map_or(Ok(()), |files| write_splits(&self.state, files))
     }
 
-    /// Writes a checkpoint, where results are kept.
+    /// Writes a checkpoint, if results are kept.
     pub(super) fn save(&mut self) -> Result<()> {
         let Some(files) = &mut self.files else {
             return Ok(());
@@ -299,7 +300,7 @@ impl Run<'_> {
         save(state, bodies, self.scene, probes, &mut self.progress, files)
     }
 
-    /// How a run ends that does not come to its end.
+    /// The end of a run that does not reach its end time.
     fn ended_early(&mut self, by: &'static str, problem: Diagnostic) -> Ended {
         let problem = Some(with_checkpoint(problem, self.files.as_ref()));
         let balance = balance(&mut self.state);
@@ -311,7 +312,7 @@ impl Run<'_> {
     }
 }
 
-/// Books the time since then, if any, of work that is done in few steps.
+/// Adds the time since then, if any, to the stage of work that few steps need.
 fn book(state: &mut State, stage: &Stage, since: Option<Instant>) {
     if let Some(since) = since {
         state

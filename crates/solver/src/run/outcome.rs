@@ -1,14 +1,14 @@
-//! How a run ended.
+//! Outcome of a run.
 
 use dem_io::Diagnostic;
 
 use crate::output::summary::Summary;
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// What came of it, as far as it went.
+    /// Its results, as far as it went.
     pub summary: Summary,
-    /// Why it did not come to its end. None: it did.
+    /// Reason why it did not reach its end. None: it did.
     pub problem: Option<Diagnostic>,
 }

@@ -1,4 +1,4 @@
-//! When pictures are taken, and the film of them at the end.
+//! Pictures taken during a run, and the film made of them at the end.
 
 use dem_io::Result;
 use dem_pictures::Image;
@@ -15,7 +15,7 @@ use crate::output::pictures::View;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 
-/// What a checkpoint keeps of the pictures.
+/// Data of the pictures in a checkpoint.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Taken {
     every_s: f64,
@@ -23,7 +23,7 @@ pub(super) struct Taken {
     count: usize,
 }
 
-/// How the pictures of a run are taken, and how often.
+/// View and interval of the pictures of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Order {
     view: View,
@@ -31,7 +31,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Of a state at its start. None: no pictures are wanted.
+    /// From the initial state. None: no pictures.
     pub(super) fn of(scene: &Scene, start: &State) -> Option<Self> {
         let output = scene.output.as_ref()?;
         Some(Self {
@@ -51,7 +51,7 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
-    /// None yet, or those of a run that goes on at this state.
+    /// No pictures yet, or those of a run that is resumed in this state.
     ///
     /// # Errors
     /// Those of the files.
@@ -87,12 +87,12 @@ impl Pictures {
         })
     }
 
-    /// What a checkpoint keeps of them.
+    /// Their data for a checkpoint.
     pub(super) fn taken(&self) -> Taken {
         self.taken
     }
 
-    /// Whether it is time for the next one.
+    /// Whether the next one is due.
     pub(super) fn are_due(&self, state: &State) -> bool {
         due(state, self.order.every_s, self.taken.next)
     }
@@ -109,7 +109,7 @@ impl Pictures {
         Ok(())
     }
 
-    /// Writes some of them side by side, and all or many one after the other.
+    /// Writes a sheet of some of them side by side, and a film of all or many.
     ///
     /// # Errors
     /// Those of the files.

@@ -1,4 +1,4 @@
-//! Where a run stands besides its state: what is written next, and what has been seen.
+//! Progress of a run besides its state: next outputs, and quantities monitored so far.
 
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Factor, Scene, WallMotion};
@@ -13,7 +13,7 @@ use crate::plan::time_step::{StepBasis, StepChoice};
 use crate::stages::ledger::{Balance, over};
 use crate::state::State;
 
-/// Where the output of a run stands, and what it watches.
+/// Progress of the output of a run, and of its monitors.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     rhythm: OutputSchedule,
@@ -29,43 +29,41 @@ pub struct Progress {
     pub(super) pictures: Taken,
     /// Largest errors of energy, momentum and angular momentum so far: J, N s, N m s.
     largest_errors: [f64; 3],
-    /// Largest stable step when it was last looked for, s.
+    /// Largest stable step at its last computation, s.
     pub(super) limit_s: f64,
-    /// What was found when it was looked for last, of bonds and of the contacts that there were.
+    /// Result of that computation for bonds and the contacts at that time.
     pub(super) bound: Bound,
     /// Largest strain of a bond at that time.
     pub(super) bound_strain: f64,
-    /// Upper bounds of the eigenvalues of the contacts at that time, 1/s2 and 1/s; 0 where they are
-    /// not known.
+    /// Upper bounds of the eigenvalues of the contacts at that time, 1/s2 and 1/s; 0 if unknown.
     pub(super) bound_rates: [f64; 2],
-    /// The largest since.
+    /// The largest strain since.
     pub(super) strain: f64,
-    /// Stiffness over mass of the stiffest contact that the step allows for, 1/s2.
+    /// Ratio of stiffness to mass of the stiffest contact that the step allows for, 1/s2.
     pub(super) contact_rate_1_s2: f64,
     /// Speed of the impacts that the step allows for, m/s.
     pub(super) impact_speed_m_s: f64,
-    /// Step at which an adaptive time step is looked at again, at the latest.
+    /// Step at which an adaptive time step is checked next, at the latest.
     pub(super) next_check: u64,
-    /// Whether there were bonds when it was looked at last.
+    /// Whether there were bonds at the last check.
     pub(super) had_bonds: bool,
     /// Smallest and largest time step so far, s.
     pub(super) steps_s: [f64; 2],
-    /// How often it has changed.
+    /// Number of its changes.
     pub(super) step_changes: u64,
-    /// Since when the kinetic energy has been small against the elastic, s.
+    /// Time since which the kinetic energy has been small compared with the elastic energy, s.
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
     pub(super) rested: bool,
-    /// What has been noted of a laboratory test.
+    /// Record of a laboratory test.
     pub(super) test: Record,
-    /// Whether that has ended because the body broke.
+    /// Whether it has ended because the body broke.
     pub(super) broke: bool,
-    /// What has been seen beside the measures.
+    /// Quantities monitored besides the measures.
     pub(super) seen: Seen,
 }
 
-/// When the last load, support or wall has changed for the last time, s; infinite where a wall
-/// moves on and on.
+/// Time of the last change of a load, support or wall, s; infinite if a wall never stops moving.
 fn last_change_s(state: &State) -> f64 {
     let loads = state.loads.iter().map(|load| &load.factor);
     let supports = state.supports.iter().map(|support| &support.factor);
@@ -90,7 +88,7 @@ fn last_change_s(state: &State) -> f64 {
 }
 
 impl Progress {
-    /// Of a run that has not begun.
+    /// For a run that has not begun.
     pub(super) fn new(rhythm: OutputSchedule, choice: &StepChoice) -> Self {
         Self {
             rhythm,
@@ -104,7 +102,7 @@ impl Progress {
         }
     }
 
-    /// From now on the step is right for this.
+    /// Sets the requirements that the step meets from now on.
     pub(super) fn allow_for(&mut self, basis: &StepBasis) {
         self.limit_s = basis.foreseen_s;
         self.bound = basis.limit.bound();
@@ -113,7 +111,7 @@ impl Progress {
         self.impact_speed_m_s = basis.impact_speed_m_s;
     }
 
-    /// From now on the step is right for this as well as for what it was right for.
+    /// Adds requirements that the step meets from now on.
     pub(super) fn allow_as_well_for(&mut self, basis: &StepBasis) {
         if basis.limit.step_s < self.bound.step_s {
             self.bound = basis.limit.bound();
@@ -124,15 +122,15 @@ impl Progress {
         self.impact_speed_m_s = self.impact_speed_m_s.max(basis.impact_speed_m_s);
     }
 
-    /// The time step has become this, s.
+    /// Records a new time step, s.
     pub(super) fn note_step(&mut self, step_s: f64) {
         let [smallest, largest] = self.steps_s;
         self.steps_s = [smallest.min(step_s), largest.max(step_s)];
         self.step_changes += 1;
     }
 
-    /// Why a run that stands at the present of `state` has nothing left to do, and what would take
-    /// it further. None: it has.
+    /// Reason why a run in the present state has nothing left to do, and how to continue it. None:
+    /// it is not over.
     pub(super) fn is_over(
         &self,
         state: &State,
@@ -163,8 +161,7 @@ impl Progress {
         })
     }
 
-    /// Goes on from a checkpoint, which stands at the present of `state`, perhaps in another
-    /// rhythm.
+    /// Resumes from a checkpoint of the present state, perhaps with other output intervals.
     ///
     /// # Errors
     /// The run is over.
@@ -213,8 +210,8 @@ impl Progress {
         }
     }
 
-    /// Largest errors so far of energy, momentum and angular momentum, over the largest energy and
-    /// momenta until now.
+    /// Largest errors so far of energy, momentum and angular momentum, divided by the largest
+    /// energy and momenta until now.
     pub(super) fn largest_errors(&self, balance: &Balance) -> [f64; 3] {
         let [energy, momentum, angular_momentum] = self.largest_errors;
         let [of_momentum, of_angular_momentum] = balance.momentum_scales;

@@ -1,20 +1,19 @@
-//! When a run writes.
+//! Output schedule of a run.
 
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::state::State;
 
-/// Rows of the time series unless asked otherwise.
+/// Default number of rows of the time series.
 const ROWS: f64 = 1000.0;
 
-/// Particles and bonds of a scene in which a row costs time worth saving: as much as about four
-/// steps.
+/// Number of particles and bonds from which the cost of a row matters: about that of four steps.
 const LARGE: usize = 20_000;
-/// Steps between two rows of a large scene, at least, unless asked otherwise.
+/// Default smallest number of steps between two rows of a large scene.
 const ROW_STEPS: f64 = 200.0;
 
-/// How often a run writes, s, and what it takes for rest.
+/// Output intervals of a run, s, and its criterion for rest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct OutputSchedule {
     pub(super) row_s: f64,
@@ -28,7 +27,7 @@ pub(super) fn due(state: &State, every_s: f64, next: u64) -> bool {
     state.time_s + 0.5 * state.time_step_s >= next as f64 * every_s
 }
 
-/// Number of the first of those times that is still to come.
+/// Number of the first of those times that is in the future.
 pub(super) fn next(state: &State, every_s: f64) -> u64 {
     first_after(state.time_s + 0.5 * state.time_step_s, every_s)
 }
@@ -39,7 +38,7 @@ pub(super) fn first_after(time_s: f64, every_s: f64) -> u64 {
 }
 
 impl OutputSchedule {
-    /// Of a scene planned with this step, with so many particles and bonds.
+    /// For a scene planned with this step, with this number of particles and bonds.
     pub(super) fn of(scene: &Scene, step_s: f64, size: usize) -> Self {
         let output = scene.output.clone().unwrap_or_default();
         let apart = if size > LARGE {

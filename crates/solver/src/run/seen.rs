@@ -1,5 +1,5 @@
-//! What a run sees beside its measures, and what of it speaks against trusting the result: bodies
-//! that nothing touched, laws used beyond what they mean, breakage that is not over.
+//! Quantities that a run monitors besides its measures, and reasons to doubt its result: bodies
+//! that nothing touched, laws used beyond their range of validity, breakage that is not over.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,14 +18,14 @@ use crate::state::events::PopulationEvent;
 use crate::state::events::REMOVED;
 use crate::state::events::STARTS_BONDED;
 
-/// Fraction of the run at its end in which a breaking bond says that breakage is not over.
+/// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
 const LATE: f64 = 0.05;
-/// Fraction of the largest kinetic energy in the motion of pieces apart that says the same.
+/// Fraction of the largest kinetic energy in the relative motion of fragments that shows the same.
 const FLYING: f64 = 0.05;
-/// Bodies that a warning names; the others are counted.
+/// Number of bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
 
-/// The largest value of something, and where it was.
+/// The largest value of a quantity, and where it occurred.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Extreme {
     /// The value.
@@ -34,31 +34,31 @@ pub(super) struct Extreme {
     pub(super) time_s: f64,
     /// m. Length 3.
     pub(super) place_m: [f64; 3],
-    /// Between what, in words; empty below what the laws mean.
+    /// The objects concerned, in words; empty within the range of validity of the laws.
     pub(super) between: String,
 }
 
-/// What has been seen so far.
+/// Quantities monitored so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Seen {
     /// Names of bodies that something has touched.
     touched: BTreeSet<String>,
-    /// Overlap over the smaller radius.
+    /// Ratio of overlap to the smaller radius.
     pub(super) overlap: Extreme,
     /// Strain at the edge of a bond.
     pub(super) bond_strain: Extreme,
-    /// Names of bodies of which a clump was replaced.
+    /// Names of bodies with a clump that was replaced.
     replaced: BTreeSet<String>,
     /// Names of bodies that an inlet has fed.
     came: BTreeSet<String>,
-    /// When a bond broke last, s.
+    /// Time of the last bond breakage, s.
     last_break_s: Option<f64>,
     /// Largest kinetic energy at a row of the time series, J.
     largest_kinetic_j: f64,
 }
 
 impl Seen {
-    /// Takes down that bonds have broken in this step, and how they were strained.
+    /// Records the bonds that have broken in this step, and their strains.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
         for broken in &state.scratch.events.broken {
             self.last_break_s = Some(state.time_s);
@@ -72,7 +72,7 @@ impl Seen {
         }
     }
 
-    /// Takes down which clumps have been replaced.
+    /// Records the clumps that have been replaced.
     pub(super) fn note_population(&mut self, happened: &[PopulationEvent]) {
         for one in happened {
             if let PopulationEvent::Replaced { body, cause, .. } = one
@@ -86,12 +86,12 @@ impl Seen {
         }
     }
 
-    /// Takes down the kinetic energy, J.
+    /// Records the kinetic energy, J.
     pub(super) fn note_kinetic(&mut self, kinetic_j: f64) {
         self.largest_kinetic_j = self.largest_kinetic_j.max(kinetic_j);
     }
 
-    /// Looks at who touches whom, and how deep. Cheap enough for every eighth step.
+    /// Checks contacts and their overlaps. Cheap enough for every eighth step.
     pub(super) fn look_at_contacts(&mut self, state: &State, scene: &Scene, bodies: &[PlacedBody]) {
         let Some(contacts) = &state.contacts else {
             return;
@@ -174,7 +174,7 @@ impl Seen {
         }
     }
 
-    /// Looks at how far bonds are stretched or pressed. The largest elongation now.
+    /// Checks elongation and compression of bonds. Returns the largest present elongation.
     pub(super) fn look_at_bonds(&mut self, state: &State, bodies: &[PlacedBody]) -> f64 {
         let Some((strain, at)) = most_strained(&state.bonds, &state.particles.poses) else {
             return 0.0;
@@ -183,7 +183,7 @@ impl Seen {
         strain
     }
 
-    /// Looks at how far bonds are strained at their edges, bent and twisted as they are.
+    /// Checks strains at the edges of bonds, including bending and torsion.
     pub(super) fn look_at_edges(&mut self, state: &State, bodies: &[PlacedBody]) {
         if let Some((strain, at)) = most_strained_edge(&state.bonds, &state.particles.poses) {
             self.note_strain(strain, at, state, bodies);
@@ -210,7 +210,7 @@ impl Seen {
         };
     }
 
-    /// What speaks against trusting the result at the end of a run, a sentence each.
+    /// Reasons to doubt the result at the end of a run, a sentence each.
     pub(super) fn warnings(
         &self,
         state: &State,
@@ -267,7 +267,7 @@ impl Seen {
                 .place_m
                 .iter()
                 .fold(0.0_f64, |far, x| far.max(x.abs()));
-            // What is nothing but rounding is nothing.
+            // Rounding errors are shown as 0.
             let told = |x: f64| if x.abs() < 1e-9 * far_m { 0.0 } else { x };
             let [x, y, z] = extreme.place_m.map(|x| significant(told(x), 4));
             let time = significant(extreme.time_s, 4);
@@ -282,7 +282,7 @@ impl Seen {
         strained.into_iter().chain(pressed).collect()
     }
 
-    /// Bodies that could have touched something and did not.
+    /// Bodies that could have touched something but did not.
     fn untouched(&self, state: &State, scene: &Scene, bodies: &[PlacedBody]) -> Vec<String> {
         if !can_meet(state, scene) {
             return Vec::new();
@@ -298,8 +298,8 @@ impl Seen {
         {
             let own = flying.iter().find(|flyer| flyer.name == *name);
             let is_there = own.is_some() || !is_present(state, bodies, name);
-            // One that is held or loaded is not there to touch anything; one that no inlet has fed
-            // was not there at all.
+            // A held or loaded body is not meant to touch anything; one that no inlet has fed did
+            // not exist.
             if !is_there || self.never_came(state, name) {
                 continue;
             }
@@ -321,14 +321,14 @@ impl Seen {
         warnings
     }
 
-    /// Whether inlets could have fed a body and did not.
+    /// Whether inlets could have fed a body but did not.
     fn never_came(&self, state: &State, name: &str) -> bool {
         let is_own = |(t, _): &(u32, f64)| state.clumps.templates[*t as usize].body == name;
         let mut inlets = state.model.rules.inlets.iter();
         !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
-    /// Breakage that goes on.
+    /// Warning that breakage is not over.
     fn not_over(&self, state: &State, scene: &Scene, fragments: &[Fragment]) -> Vec<String> {
         let mut warnings = Vec::new();
         let is_fed = state
@@ -367,14 +367,14 @@ impl Seen {
     }
 }
 
-/// Whether anything of a body is in the scene.
+/// Whether any part of a body is in the scene.
 fn is_present(state: &State, bodies: &[PlacedBody], name: &str) -> bool {
     let mut clumps = state.clumps.all.iter();
     bodies.iter().any(|body| body.name == name)
         || clumps.any(|clump| state.clumps.template(clump).body == name)
 }
 
-/// What will become of a body in flight, in words.
+/// Predicted outcome for a body in flight, in words.
 fn outlook(flyer: &FreeBody, state: &State, flying: &[FreeBody]) -> String {
     let gaps = state
         .walls
@@ -412,7 +412,7 @@ fn outlook(flyer: &FreeBody, state: &State, flying: &[FreeBody]) -> String {
     }
 }
 
-/// The pieces that broke off something, by the cluster that they all were.
+/// Fragments grouped by the cluster that they come from.
 fn pieces_by_body<'a>(
     state: &State,
     fragments: &'a [Fragment],
@@ -434,7 +434,7 @@ fn pieces_by_body<'a>(
     pieces
 }
 
-/// Kinetic energy of the motion of pieces about their common centre of mass, J.
+/// Kinetic energy of the motion of fragments relative to their common centre of mass, J.
 fn kinetic_apart_j(fragments: &[&Fragment]) -> f64 {
     let (mut mass_kg, mut momentum, mut kinetic_j) = (0.0, [0.0; 3], 0.0);
     for fragment in fragments {

@@ -1,4 +1,4 @@
-//! How a run is told to go.
+//! Settings of a run.
 
 use std::sync::atomic::AtomicBool;
 
@@ -7,18 +7,18 @@ use dem_results::ResultsFolder;
 use super::snapshot::Snapshot;
 use crate::laboratory::watch::TestSettings;
 
-/// How a run is told to go.
+/// Settings of a run.
 #[derive(Debug)]
 pub struct RunSettings<'a> {
-    /// Where results go. None: nowhere.
+    /// Folder of results. None: no results are written.
     pub folder: Option<&'a ResultsFolder>,
-    /// Where to go on from. None: from the start.
+    /// Checkpoint to resume from. None: from the start.
     pub resume: Option<Snapshot<'static>>,
-    /// Threads, as said in the summary.
+    /// Number of threads, as given in the summary.
     pub threads: usize,
-    /// Set when the run is to stop.
+    /// Set to stop the run.
     pub interrupted: &'a AtomicBool,
-    /// What is known of the scene's laboratory test, for which it has been arranged. None: it is
-    /// not evaluated.
+    /// Settings of the scene's laboratory test, for which it has been arranged. None: it is not
+    /// evaluated.
     pub test: Option<TestSettings>,
 }

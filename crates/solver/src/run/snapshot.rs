@@ -1,5 +1,5 @@
-//! A checkpoint: what moves of a state, as it stands, and where the output stands. What the scene
-//! and the bodies say is read again when a run goes on.
+//! A checkpoint: the changing part of a state as it is, and the progress of the output. Scene and
+//! bodies are read again when a run is resumed.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,22 +18,22 @@ use crate::state::bodies::PlacedBody;
 /// A run between two steps.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Snapshot<'a> {
-    /// The scene, as [`dem_scene::Scene::describe`] tells it.
+    /// The scene, as written by [`dem_scene::Scene::describe`].
     scene: String,
     /// See [`fingerprint`].
     fingerprint: u64,
     /// The state, without its model and without what can be rebuilt.
     state: Cow<'a, State>,
-    /// Which particles and bonds belong to which body.
+    /// Particles and bonds of each body.
     bodies: Cow<'a, [PlacedBody]>,
-    /// What the probes have shown.
+    /// Histories of the probes.
     pub measures: Vec<measure::History>,
-    /// Where the output stands.
+    /// Progress of the output.
     pub progress: Progress,
 }
 
 impl<'a> Snapshot<'a> {
-    /// Of a run between two steps.
+    /// From a run between two steps.
     pub fn taken(
         state: &'a State,
         bodies: &'a [PlacedBody],
@@ -51,7 +51,7 @@ impl<'a> Snapshot<'a> {
             progress,
         }
     }
-    /// The files of bodies, walls and regions that its scene names.
+    /// The files of bodies, walls and regions named in its scene.
     pub fn files_of_scene(&self) -> Vec<PathBuf> {
         let of_line = |line: &str| {
             let (key, file) = line.split_once(' ')?;
@@ -78,7 +78,7 @@ impl<'a> Snapshot<'a> {
     /// From the bytes of a checkpoint.
     ///
     /// # Errors
-    /// It holds something else.
+    /// The data are not a checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         postcard::from_bytes(bytes).map_err(|error| {
             Diagnostic::input(
@@ -89,11 +89,11 @@ impl<'a> Snapshot<'a> {
         })
     }
 
-    /// Whether a scene is the one of the run, but for what may change on the way: when it ends, how
-    /// it steps, what it writes, and where the files of its bodies are.
+    /// Checks that a scene is the one of the run, except for settings that may change: end time,
+    /// time step, output, and paths of the files of its bodies.
     ///
     /// # Errors
-    /// Says what has changed.
+    /// Names the differences.
     pub fn check_scene(&self, scene: &str) -> Result<()> {
         let may_change = |key: &str| {
             const RUN: [&str; 4] = [
@@ -139,11 +139,11 @@ impl<'a> Snapshot<'a> {
         ))
     }
 
-    /// Puts a state that has been planned from the same scene, and has this [`fingerprint`], where
-    /// the run stood.
+    /// Restores the progress of the run in a state that has been planned from the same scene and
+    /// has this [`fingerprint`].
     ///
     /// # Errors
-    /// The scene's bodies or bonds are others than those of the run.
+    /// The scene's bodies or bonds differ from those of the run.
     pub fn restore(
         &self,
         fingerprint: u64,
@@ -168,7 +168,7 @@ fn other_bodies() -> Diagnostic {
     )
 }
 
-/// A hash of what the plan fixed, and of the particles and bonds before the first step.
+/// A hash of the data fixed by the plan, and of the particles and bonds before the first step.
 ///
 /// # Errors
 /// None in practice (exit code 1).

@@ -1,13 +1,14 @@
-//! Equilibrium without steps: where bonded bodies on supports come to rest under the loads that act
+//! Static equilibrium without steps: the equilibrium of bonded bodies on supports under the loads
 //! at the end of a run, found by Newton's method.
 //!
-//! Bonds, loads, gravity and supports are those of a run that steps, so at rest both give the same.
-//! What depends on motion (masses but for their weight, damping, time steps) means nothing here,
-//! and what touches, breaks, comes or goes is refused: run.integrator = "leapfrog" is for these.
+//! Bonds, loads, gravity and supports are the same as in a run with steps, so both give the same
+//! state at rest. Quantities that depend on motion (masses except for weight, damping, time steps)
+//! have no effect, and contacts, breakage, inlets and outlets are refused: run.integrator =
+//! "leapfrog" is for these.
 //!
-//! A support that holds one or two of the three turns of a particle holds the sum of its small
-//! turns about those axes. Where the particle turns far about the others as well, that depends on
-//! its way, which here is that of the Newton steps.
+//! A support that holds one or two of the three rotations of a particle holds the sum of its small
+//! rotations about those axes. If the particle also rotates far about the others, the result
+//! depends on its path, which here is that of the Newton steps.
 
 pub mod degrees_of_freedom;
 pub mod displacements;
@@ -43,8 +44,8 @@ use crate::check::laws::strain_warning;
 use self::newton::{loads, six};
 use self::record::{AtRest, equilibrium_summary};
 
-/// Brings a plan into its equilibrium, measures it and writes it down. `tell` is called now and
-/// then with how far it has come, in 0..1.
+/// Brings a plan into equilibrium, measures it and writes the results. `tell` is called from time
+/// to time with the progress, in 0..1.
 ///
 /// # Errors
 /// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory,
@@ -101,8 +102,8 @@ pub fn run(
     Ok(summary)
 }
 
-/// Makes of a state whose poses are in equilibrium one that has rested there for one long step: at
-/// `end_s`, without velocities, with the reactions of its supports.
+/// Turns a state whose poses are in equilibrium into one that has rested there for one long step:
+/// at `end_s`, without velocities, with the reactions of its supports.
 pub fn set_at_rest(state: &mut State, end_s: f64, steps: u64) {
     let load = loads(state, end_s);
     for motion in &mut state.particles.motions {
@@ -130,7 +131,7 @@ pub fn set_at_rest(state: &mut State, end_s: f64, steps: u64) {
     state.steps = steps;
 }
 
-/// What went wrong, for a person.
+/// Human-readable description of the failure.
 fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
     let place = scene.source.clone();
     let fraction = significant(100.0 * unsolved.fraction, 4);
@@ -165,7 +166,7 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
     }
 }
 
-/// Sum of mass times place of all particles, kg m. Length 3.
+/// Sum of mass times position of all particles, kg m. Length 3.
 fn moments(state: &State) -> [f64; 3] {
     let p = &state.particles;
     crate::stages::motion::ordered_sums(p.len(), |i| {
@@ -175,8 +176,7 @@ fn moments(state: &State) -> [f64; 3] {
     })
 }
 
-/// Energies at rest. Works and errors depend on the way there, which nobody went: they are no
-/// numbers.
+/// Energies at rest. Works and errors depend on a path that was not followed: they are NaN.
 fn balance(state: &State, start_moments: [f64; 3]) -> Balance {
     let elastic = elastic_energy(state);
     let now = moments(state);

@@ -1,20 +1,20 @@
-//! The arrangement of circles that other balls cut on a sphere: which caps of it they hide and
-//! which arcs of the circles stay free.
+//! The arrangement of circles that other balls cut on a sphere: the caps that they hide and the
+//! arcs of the circles that remain free.
 //!
-//! Two circles are always compared in the same order and cross in the same points for both, so that
-//! rounding never tears the edge of what stays free.
+//! Two circles are always compared in the same order and have the same points of intersection for
+//! both, so that rounding never leaves gaps in the edge of the free part.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-/// What a ball hides of a sphere.
+/// The part of a sphere that a ball hides.
 pub(crate) enum Hidden {
     /// No part with an area.
     Nothing,
     /// A cap.
     Part(Cap),
-    /// The whole sphere.
+    /// The entire sphere.
     All,
 }
 
@@ -26,14 +26,14 @@ pub(crate) struct Cap {
     pub(crate) cosine: f64,
     /// Sine of the angular radius, positive.
     pub(crate) sine: f64,
-    /// Directions of the angles 0 and 90 degrees on the circle, right-handed with the axis.
+    /// Directions at the angles 0 and 90 degrees on the circle, right-handed with the axis.
     pub(crate) across: [Vector3<f64>; 2],
 }
 
 /// An arc of a circle: the angles from the first up to the second, rad, within 0 to 2 pi.
 pub(crate) type Arc = [f64; 2];
 
-/// How two circles on a sphere lie.
+/// Relative position of two circles on a sphere.
 enum Meeting {
     /// Neither cap hides any of the other circle.
     Apart,
@@ -41,7 +41,7 @@ enum Meeting {
     FirstInside,
     /// The cap of the second circle lies in the other.
     SecondInside,
-    /// Together the two caps hide the sphere.
+    /// Together the two caps cover the sphere.
     HideAll,
     /// The circles cross.
     Cross(Crossing),
@@ -49,7 +49,7 @@ enum Meeting {
 
 /// Two circles that cross.
 struct Crossing {
-    /// Unit vector across both axes.
+    /// Unit vector perpendicular to both axes.
     side: Vector3<f64>,
     /// Sine and cosine of the angle between the axes.
     between: [f64; 2],
@@ -57,17 +57,17 @@ struct Crossing {
     half: [f64; 2],
 }
 
-/// What the ball of radius `other_m` with its centre at `offset_m` hides of the sphere of radius
-/// `radius_m` around the origin, m.
+/// The part of the sphere of radius `radius_m` around the origin that is hidden by the ball of
+/// radius `other_m` with its centre at `offset_m`, m.
 ///
-/// A ball in the same place hides the sphere if it is larger, or if it is as large and `rules`.
+/// A ball at the same position hides the sphere if it is larger, or if it is equal and `rules`.
 pub(crate) fn hidden(radius_m: f64, offset_m: Vector3<f64>, other_m: f64, rules: bool) -> Hidden {
     let far = offset_m.norm();
     if far == 0.0 {
         let over = other_m > radius_m || (other_m == radius_m && rules);
         return if over { Hidden::All } else { Hidden::Nothing };
     }
-    // One less the cosine of the angular radius, and one more: as products, as both can be small.
+    // 1 minus the cosine of the angular radius, and 1 plus it: as products, as both can be small.
     let double = 2.0 * far * radius_m;
     let less = (other_m - far + radius_m) * (other_m - radius_m + far) / double;
     let more = (radius_m - other_m + far) * (far + radius_m + other_m) / double;
@@ -98,13 +98,13 @@ impl Cap {
     }
 }
 
-/// How the circles of two caps lie; the first is the one with the smaller circle, as the points of
-/// crossing are sharpest there.
+/// Relative position of the circles of two caps; the first has the smaller circle, on which the
+/// points of intersection are most accurate.
 fn meet(a: &Cap, b: &Cap) -> Meeting {
     let across = a.axis.cross(&b.axis);
     let sine = across.norm();
     let cosine = a.axis.dot(&b.axis);
-    // cos(b) - cos(between) cos(a), without the cancellation where the axes are near parallel.
+    // cos(b) - cos(between) cos(a), without cancellation for nearly parallel axes.
     let excess = if cosine > 0.0 {
         b.cosine - a.cosine + 0.5 * a.cosine * (a.axis - b.axis).norm_squared()
     } else {
@@ -146,8 +146,8 @@ impl Crossing {
     }
 }
 
-/// Puts the caps into order, the largest first, and removes those inside others, of equal ones all
-/// but the first. False if two caps together hide the sphere.
+/// Sorts the caps, the largest first, and removes those inside others; of equal ones it keeps the
+/// first. False if two caps together cover the sphere.
 pub(crate) fn prune(caps: &mut Vec<Cap>) -> bool {
     caps.sort_by(|a, b| a.cosine.total_cmp(&b.cosine));
     let mut kept: Vec<Cap> = Vec::with_capacity(caps.len());
@@ -158,7 +158,7 @@ pub(crate) fn prune(caps: &mut Vec<Cap>) -> bool {
             } else {
                 (larger, &cap)
             };
-            // Apart or crossing for sure.
+            // Certainly apart or crossing.
             if a.axis.dot(&b.axis) <= a.cosine * b.cosine && a.cosine + b.cosine > 0.0 {
                 continue;
             }
@@ -174,8 +174,8 @@ pub(crate) fn prune(caps: &mut Vec<Cap>) -> bool {
     true
 }
 
-/// Puts into `free` the arcs of a circle that lie in no other cap, of caps after [`prune`]. An arc
-/// over the angle 0 comes as two.
+/// Puts into `free` the arcs of a circle that lie in no other cap, for caps after [`prune`]. An arc
+/// across the angle 0 is split in two.
 pub(crate) fn free_arcs(caps: &[Cap], circle: usize, free: &mut Vec<Arc>) {
     free.clear();
     free.push([0.0, TAU]);

@@ -1,9 +1,9 @@
 //! Neighbour search among spheres: points sorted into cubic cells.
 
-/// Points in cubic cells, sorted by cell and then by index, so that the order of what is found
-/// never changes.
+/// Points in cubic cells, sorted by cell and then by index, so that the order of results never
+/// changes.
 ///
-/// One size of cell for all: made for radii that differ by some tens at most.
+/// All cells have the same size: suitable for radii that differ by a factor of some tens at most.
 pub(crate) struct Cells {
     edge_m: f64,
     low_m: [f64; 3],
@@ -11,7 +11,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// Sorts points, m, into cells with edges of `edge_m`, m, or of 1 m where that is no positive
+    /// Sorts points, m, into cells with edges of `edge_m`, m, or of 1 m if that is not a positive
     /// number.
     pub(crate) fn new(points_m: &[[f64; 3]], edge_m: f64) -> Self {
         let edge_m = if edge_m > 0.0 { edge_m } else { 1.0 };
@@ -32,7 +32,7 @@ impl Cells {
     }
 
     /// Puts into `found` the indices of all points in the cell of `point_m` and the 26 cells around
-    /// it: all points within one edge, and some further ones.
+    /// it: all points within one edge, and some more distant ones.
     pub(crate) fn near(&self, point_m: &[f64; 3], found: &mut Vec<u32>) {
         found.clear();
         let [x, y, z] = self.cell(point_m);

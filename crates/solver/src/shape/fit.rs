@@ -1,35 +1,36 @@
-//! The rotation that best carries one set of points onto another.
+//! The rotation that best maps one set of points onto another.
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion, Vector3, Vector4};
 
-/// Eigenvalues nearer than this part of the largest count as equal, and smaller ones as zero.
+/// Eigenvalues that differ by less than this fraction of the largest count as equal, and smaller
+/// ones as zero.
 const EQUAL: f64 = 1e-13;
 
-/// Distances from a line below this part of the length are rounding.
+/// Distances from a line below this fraction of the length are rounding.
 const ON_A_LINE: f64 = 1e-14;
 
 /// A pair of points, and its weight.
 type Pair = (Vector3<f64>, Vector3<f64>, f64);
 
-/// The rotation, unit quaternion x, y, z, w with w not negative, that carries the points `from`
-/// onto the points `to` with the least weighted sum of squared distances.
+/// The rotation, unit quaternion x, y, z, w with w not negative, that maps the points `from` onto
+/// the points `to` with the smallest weighted sum of squared distances.
 ///
-/// Both sets hold one point each per entry, in any one unit, and are centred by the caller: nothing
-/// is shifted here. `weights`, none negative, are masses or ones. Entries without partners are left
-/// out. Numbers that are not finite give no rotation: 0, 0, 0, 1.
+/// Both sets hold one point per entry, in the same unit, and are centred by the caller: nothing is
+/// shifted here. `weights`, none negative, are masses or ones. Entries without a counterpart are
+/// ignored. Numbers that are not finite give no rotation: 0, 0, 0, 1.
 ///
-/// Never a reflection. Where many rotations are as good (points on one line, or no points), it is
-/// the one with the smallest turn as a rule.
+/// Never a reflection. If several rotations are equally good (points on one line, or no points), it
+/// is usually the one with the smallest angle.
 ///
 /// Horn 1987 gives the start: the eigenvector of a symmetric 4 x 4 matrix. Newton steps on the
-/// distances themselves then bring it to rounding, and a last turn about the long axis does so for
-/// points near a line.
+/// distances themselves then refine it to rounding, and a last rotation about the long axis does so
+/// for points near a line.
 pub fn best_rotation(from: &[[f64; 3]], to: &[[f64; 3]], weights: &[f64]) -> [f64; 4] {
     let pairs = || {
         let points = from.iter().zip(to).zip(weights);
         points.map(|((a, b), &weight)| (Vector3::from(*a), Vector3::from(*b), weight))
     };
-    // A sum that is not finite tells of any entry that is not.
+    // The sum is not finite if any entry is not.
     let size: f64 = pairs()
         .map(|(a, b, weight)| (a.norm_squared() + b.norm_squared()) * weight)
         .sum();
@@ -47,7 +48,8 @@ pub fn best_rotation(from: &[[f64; 3]], to: &[[f64; 3]], weights: &[f64]) -> [f6
     [turn.i, turn.j, turn.k, turn.w].map(|q| q * sign)
 }
 
-/// The eigenvector of the largest eigenvalue; of equal ones, the part of no rotation in them.
+/// The eigenvector of the largest eigenvalue; if several are equal, the part of their space nearest
+/// to no rotation.
 fn horn(pairs: impl Iterator<Item = Pair>) -> UnitQuaternion<f64> {
     let s: Matrix3<f64> = pairs.map(|(a, b, weight)| a * b.transpose() * weight).sum();
     let curl = Vector3::new(
@@ -82,14 +84,14 @@ fn horn(pairs: impl Iterator<Item = Pair>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(Quaternion::from(chosen))
 }
 
-/// The small rotation that brings the turned points to rest against the others, where it is
-/// determined.
+/// The small rotation that minimises the distances of the rotated points from the others, where it
+/// is determined.
 fn newton(turn: &UnitQuaternion<f64>, pairs: impl Iterator<Item = Pair>) -> UnitQuaternion<f64> {
     let mut torque = Vector3::zeros();
     let mut stiffness = Matrix3::zeros();
     for (a, b, weight) in pairs {
         let a = turn * a;
-        // The same as a x b, without the rounding of long arms.
+        // The same as a x b, without the rounding errors of long arms.
         torque += a.cross(&(b - a)) * weight;
         let outer = a * b.transpose();
         stiffness += (Matrix3::from_diagonal_element(a.dot(&b))
@@ -111,7 +113,7 @@ fn newton(turn: &UnitQuaternion<f64>, pairs: impl Iterator<Item = Pair>) -> Unit
     UnitQuaternion::from_scaled_axis(step)
 }
 
-/// The rotation about the long axis of the points that leaves the least distances across it.
+/// The rotation about the long axis of the points that minimises the distances perpendicular to it.
 fn twist(
     turn: &UnitQuaternion<f64>,
     pairs: impl Iterator<Item = Pair> + Clone,

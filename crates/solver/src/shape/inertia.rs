@@ -8,11 +8,11 @@ use super::union;
 
 /// The mass properties of the union of spheres of one density: each overlap counts once.
 ///
-/// `centres_m` and `radii_m`, m, have one entry per sphere; entries without a partner are left out.
-/// The density is in kg/m^3. Voids between spheres stay empty.
+/// `centres_m` and `radii_m`, m, have one entry per sphere; entries without a counterpart are
+/// ignored. The density is in kg/m^3. Voids between spheres stay empty.
 ///
-/// All integrals are closed forms on the arcs of circles that bound the free part of each sphere. A
-/// union without volume has no mass and zero moments.
+/// All integrals have closed forms on the arcs of circles that bound the free part of each sphere.
+/// A union without volume has no mass and zero moments.
 pub fn of_union(centres_m: &[[f64; 3]], radii_m: &[f64], density_kg_m3: f64) -> MassProperties {
     let count = centres_m.len().min(radii_m.len());
     let Some(&origin) = centres_m.first().filter(|_| count > 0) else {

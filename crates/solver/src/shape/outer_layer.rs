@@ -1,24 +1,25 @@
-//! The spheres of a union that can be touched from outside, and by what.
+//! The outer spheres of a union: those that can be touched from outside by objects of a given
+//! bluntness.
 //!
-//! What touches a sphere and holds a ball of some radius close to where it does so has the centre
-//! of that ball in reach of the sphere. ContactSphere centres come from outside, and cannot get
-//! where the other spheres, grown by the radius of the ball, leave no way: over a closed surface
-//! around the sphere that these hide all over.
+//! If an object touches a sphere and has room for a ball of some radius near the point of contact,
+//! the centre of that ball is within reach of the sphere. Ball centres come from outside, and
+//! cannot enter where the other spheres, grown by the radius of the ball, leave no gap: through a
+//! closed surface around the sphere that these cover completely.
 
 use nalgebra::Vector3;
 
 use super::caps::{Arc, Cap, Hidden, free_arcs, hidden, prune};
 use super::cells::Cells;
 
-/// A sphere of a clump is left out if it is hidden even when it grows by this share of its radius:
-/// what touches the clump overlaps it by less.
+/// A sphere of a clump is an inner one if it is hidden even when grown by this fraction of its
+/// radius: objects that touch the clump overlap it by less.
 pub const HIDDEN: f64 = 0.05;
 
-/// Of the smallest sphere that clumps can meet, the share that balls have which cannot get in: less
-/// than 1, for edges and corners are further from such balls.
+/// Radius of balls that cannot enter, as a fraction of that of the smallest sphere that clumps can
+/// meet: less than 1, as edges and corners are farther from such balls.
 pub const FRACTION_OF_SMALLEST: f64 = 0.7;
 
-/// How far the centre of a ball is from the corner of three walls at right angles that it touches
+/// Distance of the centre of a ball from the corner of three walls at right angles that it touches
 /// from within, in its radii. For edges and faces it is less.
 const TO_CORNER: f64 = 1.732_050_807_568_877_2;
 
@@ -26,26 +27,26 @@ const TO_CORNER: f64 = 1.732_050_807_568_877_2;
 /// leave some.
 const LEAST_ARC_RAD: f64 = 1e-12;
 
-/// Spheres nearer than this to each other and to one radius, in radii, are equal spheres in the
-/// same place.
+/// Spheres whose positions and radii differ by less than this, in radii, are equal spheres at the
+/// same position.
 const SAME: f64 = 1e-12;
 
-/// The indices, rising, of the spheres that can be touched by balls of at least the radius
-/// `ball_m`, m, and by what has corners no sharper than a cube and room for such a ball in each.
-/// With 0: by anything, however sharp. Those left out stay so if they grow by `margin` times their
-/// radius; the others stay as they are.
+/// The indices, ascending, of the spheres that can be touched by balls of at least the radius
+/// `ball_m`, m, and by objects whose corners are no sharper than those of a cube and have room for
+/// such a ball. With 0: by any object, however sharp. Inner spheres remain inner if they grow by
+/// `margin` times their radius while the others do not.
 ///
-/// `centres_m` and `radii_m`, m, have one entry per sphere; entries without a partner are left out.
-/// A sphere of which nothing but single points can be touched does not count. Of equal spheres in
-/// the same place, only the first counts.
+/// `centres_m` and `radii_m`, m, have one entry per sphere; entries without a counterpart are
+/// ignored. A sphere that can only be touched at single points does not count. Of equal spheres at
+/// the same position, only the first counts.
 ///
-/// The test is exact to rounding, without samples: the other balls hide caps of the surface around
-/// a sphere, and some of it is free if and only if an arc of the edge of some cap lies in no other
-/// cap, or if there is no cap at all.
+/// The test is exact to rounding, without sampling: the other balls hide caps of the surface around
+/// a sphere, and a part of it is free if and only if an arc of the edge of some cap lies in no
+/// other cap, or if there is no cap at all.
 ///
-/// Spheres around a void inside the body in which a ball has room count as outer too, although
-/// nothing from outside reaches them. The time is best for radii within some tens of each other, as
-/// the neighbours are searched in cells as wide as the largest pair.
+/// Spheres around a void inside the body with room for a ball also count as outer ones, although
+/// nothing from outside reaches them. It is fastest for radii within a factor of some tens, as the
+/// neighbours are searched in cells as wide as the largest pair.
 pub fn outer_layer(centres_m: &[[f64; 3]], radii_m: &[f64], margin: f64, ball_m: f64) -> Vec<u32> {
     let count = centres_m.len().min(radii_m.len());
     let (centres_m, radii_m) = (&centres_m[..count], &radii_m[..count]);
@@ -71,7 +72,7 @@ pub fn outer_layer(centres_m: &[[f64; 3]], radii_m: &[f64], margin: f64, ball_m:
         .collect()
 }
 
-/// The spheres, and room for the work on one of them.
+/// The spheres, and buffers for the work on one of them.
 struct Layer<'a> {
     centres_m: &'a [[f64; 3]],
     radii_m: &'a [f64],

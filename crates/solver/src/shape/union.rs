@@ -4,10 +4,12 @@
 //! polynomials over the free part of each sphere. On the unit sphere, a spherical harmonic Y of
 //! degree l has the Laplacian -l (l + 1) Y, so that its integral over a part of the sphere is -1 /
 //! (l (l + 1)) times that of its normal derivative along the edge: arcs of circles, with closed
-//! forms. This leaves the area (l = 0). Its one-form is singular at one point, which is put far
-//! from all circles; each arc gives the turn of its stereographic image less its own curvature.
+//! forms. This leaves the area (l = 0). Its one-form is singular at one point, which is placed far
+//! from all circles; each arc contributes the rotation of its stereographic image minus its own
+//! curvature.
 //!
-//! All is continuous in the arcs: an arc lost or kept by rounding changes the result by rounding.
+//! Everything is continuous in the arcs: an arc lost or kept due to rounding changes the result
+//! only by rounding.
 
 use std::f64::consts::PI;
 
@@ -65,7 +67,7 @@ fn patches(centres: &[[f64; 3]], radii: &[f64], mut each: impl FnMut(Vector3<f64
     let cells = Cells::new(centres, 2.0 * largest);
     let (mut near, mut caps, mut free) = (Vec::new(), Vec::new(), Vec::new());
     'spheres: for (i, (centre, &radius)) in (0_u32..).zip(centres.iter().zip(radii)) {
-        // Not a number is no sphere either.
+        // NaN does not count as a sphere either.
         if radius.is_nan() || radius <= 0.0 {
             continue;
         }
@@ -87,14 +89,14 @@ fn patches(centres: &[[f64; 3]], radii: &[f64], mut each: impl FnMut(Vector3<f64
 }
 
 impl Patch {
-    /// The part of the unit sphere outside all caps, which have passed through [`prune`].
+    /// The part of the unit sphere outside all caps, which must be the result of [`prune`].
     fn outside(caps: &[Cap], c: Vector3<f64>, free: &mut Vec<Arc>) -> Self {
         let (pole, is_free) = far_point(caps);
         let mut edge = Edge::zero();
         for (circle, cap) in caps.iter().enumerate() {
             free_arcs(caps, circle, free);
             for &[from, to] in &*free {
-                // In two, as half a turn is the limit for one.
+                // Split in two, as half a revolution is the limit for one arc.
                 let middle = 0.5 * (from + to);
                 edge.add(cap, [from, middle], &-pole, &c);
                 edge.add(cap, [middle, to], &-pole, &c);
@@ -148,7 +150,7 @@ fn far_point(caps: &[Cap]) -> (Vector3<f64>, bool) {
 
 /// Integrals along arcs of the edge, with the cap on the right.
 struct Edge {
-    /// Turn of the stereographic image less the curvature of the arc itself.
+    /// Rotation of the stereographic image minus the curvature of the arc itself.
     turn: f64,
     /// Of the normal derivatives into the caps of u, u u^T and the harmonic part of u u^T (u . c).
     first: Vector3<f64>,
@@ -166,7 +168,7 @@ impl Edge {
         }
     }
 
-    /// Adds an arc of at most half a turn; `sight` is the point opposite the centre of the
+    /// Adds an arc of at most half a revolution; `sight` is the point opposite the centre of the
     /// stereographic image.
     fn add(&mut self, cap: &Cap, [from, to]: Arc, sight: &Vector3<f64>, c: &Vector3<f64>) {
         let half = 0.5 * (to - from);
@@ -177,7 +179,7 @@ impl Edge {
         let g = cap.across[1] * cos_mid - cap.across[0] * sin_mid;
         let (along, out) = (cap.cosine, cap.sine);
 
-        // The arc is walked from its larger angle to its smaller one.
+        // The arc is traversed from its larger angle to its smaller one.
         let start = n * along + (f * cos + g * sin) * out;
         let bend = stereographic_turn(&start, &(f * sin - g * cos), &-g, sight);
         self.turn += 2.0 * bend + along * 2.0 * half;
@@ -212,8 +214,8 @@ impl Edge {
     }
 }
 
-/// Half the turn of the stereographic image of an arc, rad: the angle between its tangent at the
-/// start and its chord.
+/// Half the rotation of the stereographic image of an arc, rad: the angle between its tangent at
+/// the start and its chord.
 fn stereographic_turn(
     start: &Vector3<f64>,
     tangent: &Vector3<f64>,

@@ -1,4 +1,4 @@
-//! Bonds are taken four at a time: what is known of their ends is gathered from memory row by row,
+//! Bonds are processed four at a time: the data of their ends are gathered from memory row by row,
 //! computed lane by lane, and added to the particles in the order of the bonds.
 
 use std::ops::Range;
@@ -9,18 +9,18 @@ use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::Partition;
 
-/// Four bonds, and which of them are wanted.
+/// Four bonds, some of which are wanted.
 pub(super) struct BondGroup {
-    /// Their numbers. Where there are fewer than four, one stands for those that are missing.
+    /// Their numbers. If there are fewer than four, one of them fills the empty places.
     pub(super) numbers: [usize; BLOCK],
     /// Their two particles.
     pub(super) ends: [[u32; 2]; BLOCK],
-    /// Places that are wanted.
+    /// Places of the wanted bonds.
     pub(super) wanted: Range<usize>,
 }
 
 impl BondGroup {
-    /// Bonds of these numbers, of which some are wanted. `ends` are those of all.
+    /// The bonds with these numbers, some of them wanted. `ends` are those of all bonds.
     #[inline(always)]
     pub(super) fn new(numbers: [usize; BLOCK], ends: &[[u32; 2]], wanted: Range<usize>) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl BondGroup {
         }
     }
 
-    /// Those of a block, of which the ones in `range` are wanted.
+    /// The bonds of a block; those in `range` are wanted.
     #[inline(always)]
     pub(super) fn of_block(bonds: &Bonds, block: usize, range: &Range<usize>) -> Self {
         let (first, last) = (block * BLOCK, bonds.len() - 1);
@@ -47,16 +47,16 @@ impl BondGroup {
         )
     }
 
-    /// Those of a part of a list: one to four.
+    /// The bonds of a short list: one to four.
     #[inline(always)]
     pub(super) fn of_list(bonds: &Bonds, some: &[u32]) -> Self {
         let numbers = [0, 1, 2, 3].map(|i: usize| some[i.min(some.len() - 1)] as usize);
         Self::new(numbers, &bonds.ends, 0..some.len())
     }
 
-    /// Adds what the bonds from `first` on, one for each lane, do to those of their ends that are
-    /// particles of a partition. `wrenches` are those of the partition. Torques are of both ends;
-    /// the force is on the second, the first feels the opposite.
+    /// Adds the wrenches of the bonds from `first` on, one for each lane, to those of their ends
+    /// that are particles of a partition. `wrenches` are those of the partition. Torques act on
+    /// both ends. The force acts on the second end; the first feels the opposite force.
     #[inline(always)]
     pub(super) fn add<T: Lanes>(
         &self,
@@ -91,26 +91,26 @@ impl BondGroup {
     }
 }
 
-/// Blocks that a range of bonds touches.
+/// Blocks that contain bonds of a range.
 #[inline(always)]
 pub(super) fn blocks_of(range: &Range<usize>) -> Range<usize> {
     range.start / BLOCK..range.end.div_ceil(BLOCK)
 }
 
-/// Vectors from places x, y, z of rows.
+/// Vectors from columns x, y, z of rows.
 #[inline(always)]
 pub(super) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Vec3<T> {
     let [x, y, z, _] = T::columns(proof, rows);
     Vec3(x, y, z)
 }
 
-/// Rows of x, y, z and something that makes four.
+/// Rows of x, y, z and a fourth number for padding.
 #[inline(always)]
 pub(super) fn rows<T: Lanes>(vectors: Vec3<T>) -> [[f64; 4]; MOST] {
     T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
 }
 
-/// The way from the first to the second ends, m, of as many bonds as there are lanes.
+/// Vectors from the first to the second ends, m, one for each lane.
 #[inline(always)]
 pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &[Pose]) -> Vec3<T> {
     vectors(proof, |lane| {
@@ -119,7 +119,7 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
     })
 }
 
-/// Asks for the cache line of a value that will be needed soon.
+/// Prefetches the cache line of a value that will be needed soon.
 #[inline(always)]
 #[expect(
     unsafe_code,
@@ -127,8 +127,8 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
 )]
 pub(super) fn fetch_soon<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: a prefetch has no effect but on the cache, whatever the address, and every x86-64
-    // processor has it.
+    // SAFETY: a prefetch affects only the cache, whatever the address, and every x86-64 processor
+    // has it.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());
@@ -137,11 +137,11 @@ pub(super) fn fetch_soon<T>(value: &T) {
     let _ = value;
 }
 
-/// Bonds between those that are computed and those whose particles are fetched into the cache.
+/// Prefetch distance, in bonds.
 const AHEAD: usize = 64;
 
-/// Asks for the particles at the second ends of the bonds that come soon after those of a block: in
-/// a large body they come from far away in memory, while first ends follow one another.
+/// Prefetches the particles at the second ends of the bonds that follow a block soon: in a large
+/// body they are far away in memory, while first ends follow one another.
 #[inline(always)]
 pub(super) fn fetch_second_ends(
     bonds: &Bonds,
@@ -159,7 +159,7 @@ pub(super) fn fetch_second_ends(
     }
 }
 
-/// Works on all partitions, on as many threads as there are; each has the wrenches of its own
+/// Works on all partitions, on as many threads as there are. Each gets the wrenches of its own
 /// particles.
 pub(super) fn for_each_partition(
     partitions: &mut [Partition],

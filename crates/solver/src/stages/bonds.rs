@@ -1,4 +1,4 @@
-//! Forces of the bonds on the particles, total formulation.
+//! Bond forces on the particles, total formulation.
 
 use std::f64::consts::PI;
 
@@ -19,7 +19,7 @@ use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
 
-/// Forces of bonds.
+/// Bond forces.
 pub const BONDS: Stage = Stage {
     name: "bond forces",
     within: None,
@@ -62,19 +62,20 @@ fn bonds_of_clumps(state: &State) -> usize {
         .sum()
 }
 
-/// Bonds of all templates if clumps can become clusters, 0 if not.
+/// Bonds of all templates if clumps can become clusters, otherwise 0.
 pub(super) fn bonds_to_come(state: &State) -> usize {
     let can_bond = !state.model.rules.triggers.iter().all(Option::is_none)
         || state.model.rules.starts.iter().any(|start| start.bonded);
     if can_bond { bonds_of_clumps(state) } else { 0 }
 }
 
-/// Whether there are bonds, or will be, and a kind of bond is so.
+/// Whether there are bonds, or can be later, and a rule meets the condition.
 pub(super) fn any_bond(state: &State, is_so: impl Fn(&BondRule) -> bool) -> bool {
     state.bonds.len() + bonds_to_come(state) > 0 && state.bonds.rules.iter().any(is_so)
 }
 
-/// Sets the wrenches to 0 where there are no bonds, whose forces are set before all others.
+/// Sets the wrenches to 0 if there are no bonds. Otherwise the bond forces, which come first, set
+/// them.
 pub fn clear_wrenches(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         let p = &mut state.particles;
@@ -88,7 +89,7 @@ pub fn clear_wrenches(state: &mut State) -> usize {
     0
 }
 
-/// Sets the wrenches to the forces of the bonds. Returns how many were computed.
+/// Sets the wrenches to the bond forces. Returns the number of bonds computed.
 pub fn compute_bonds(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         return 0;
@@ -108,14 +109,15 @@ pub fn compute_bonds(state: &mut State) -> usize {
         .sum()
 }
 
-/// Square of the utilisation from which a bond is looked at by itself: less than 1, for rounding.
+/// Square of the utilisation from which a bond is checked individually: less than 1, to allow for
+/// rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
-/// 1, and some more for the rounding of differences from which weak bonds are found.
+/// Slightly more than 1, to allow for rounding of the differences that identify weak bonds.
 const ROUNDED_UP: f64 = 1.0 + 1e-14;
 
-/// Sets the wrenches to the forces of the bonds. `partitions` cover all particles; their `failing`
-/// lists the bonds of the total formulation that have reached their strength.
+/// Sets the wrenches to the bond forces. `partitions` cover all particles; their `failing` lists
+/// the bonds of the total formulation that have reached their strength.
 pub fn bond_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
@@ -132,12 +134,12 @@ pub fn bond_wrenches(
     });
 }
 
-/// Largest change of length over initial length of the bonds that are not broken.
+/// Largest ratio of change of length to initial length of the unbroken bonds.
 pub fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
     most_strained(bonds, poses).map_or(0.0, |(strain, _)| strain)
 }
 
-/// The bond that is strained most, and its strain. None: no bond is whole.
+/// The bond with the largest strain, and that strain. None: all bonds are broken.
 pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     let strain = |at: usize| {
         let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
@@ -154,9 +156,8 @@ pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 
-/// Largest strain at the edge of a bond, be it broken or not: of elongation and bending together,
-/// or
-/// of shear and torsion together.
+/// Largest strain at the edge of a bond, broken or not: of elongation and bending together, or of
+/// shear and torsion together.
 pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     let load = bonds.forces(at, poses).load;
     let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
@@ -166,8 +167,8 @@ pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     normal_m.max(shear_m) / bonds.initial_length_m(at)
 }
 
-/// The unbroken bond whose [edge](edge_strain) is strained most, and that strain. Ten times as much
-/// work as [`most_strained`].
+/// The unbroken bond with the largest [edge](edge_strain) strain, and that strain. Ten times as
+/// costly as [`most_strained`].
 pub fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     (0..bonds.len())
         .into_par_iter()
@@ -182,7 +183,7 @@ struct PartitionWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],
     partition: &'a mut Partition,
-    /// Of the partition's particles only.
+    /// Those of the partition's particles.
     wrenches: &'a mut [Wrench],
 }
 
@@ -264,15 +265,16 @@ impl LaneWork for PartitionWork<'_> {
     }
 }
 
-/// What bonds do to their ends, and how far they are beyond their strength: lane by lane.
+/// Forces of bonds on their ends, and how far the bonds exceed their strength: lane by lane.
 struct Found<T> {
     force_on_b: Vec3<T>,
     torques: [Vec3<T>; 2],
-    /// Square of the utilisation less [`NEARLY`], times (pi r^3)^2; below 0 if nothing can break.
+    /// Square of the utilisation minus [`NEARLY`], times (pi r^3)^2; below 0 if the bond cannot
+    /// break.
     beyond: [f64; MOST],
 }
 
-/// What bonds of a rule have in common.
+/// Properties that the bonds of a rule share.
 struct Kind {
     torsion_per_bending: f64,
     screen: Option<Screen>,
@@ -338,7 +340,7 @@ fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Rotatio
     Rotation(Vec3(x, y, z), w)
 }
 
-/// Lists the bonds that have reached their strength, before any strengthening by rate; and perhaps
+/// Lists the bonds that have reached their strength, before any rate strengthening, and perhaps
 /// some that nearly have.
 #[inline(always)]
 fn list_failing(
@@ -371,7 +373,7 @@ mod tests {
     use crate::state::particles::Particles;
     use crate::state::partitions::divide;
 
-    /// Numbers between -1 and 1 that look random.
+    /// Pseudo-random numbers between -1 and 1.
     fn scattered(seed: u64) -> impl FnMut() -> f64 {
         let mut hash = seed;
         move || {
@@ -382,7 +384,7 @@ mod tests {
         }
     }
 
-    /// Forty particles in a row with bonds of these strengths, scattered or not.
+    /// Forty particles in a row, joined by bonds of these strengths, with or without scatter.
     fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
         let mut any = scattered(7);
         let mut particles = Particles::default();
@@ -420,7 +422,7 @@ mod tests {
         (particles, bonds)
     }
 
-    /// Bonds that have reached their strength, one by one.
+    /// Bonds that have reached their strength, checked one by one.
     fn reached(bonds: &Bonds, particles: &Particles) -> Vec<u32> {
         let is_reached = |at: &u32| {
             let at = *at as usize;
@@ -467,7 +469,7 @@ mod tests {
         }
     }
 
-    /// Several lanes give the forces of one lane, and list the bonds that have reached their
+    /// Several lanes give the same forces as one lane, and list the bonds that have reached their
     /// strength.
     fn lanes_agree(particles: &Particles, bonds: &Bonds) {
         for partitions in [1, 3] {

@@ -1,5 +1,5 @@
-//! Bonds that have reached their strength break: checked once more by themselves, with the rate of
-//! their elongation where it strengthens them.
+//! Breaks bonds that have reached their strength. Each is first checked again individually,
+//! including its strain rate where strength depends on it.
 
 use dem_scene::StrainRateMeasure;
 use nalgebra::Vector3;
@@ -19,10 +19,10 @@ use crate::state::partitions::divide_anew;
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const FAILURE_NS: f64 = 2.1;
 const SCATTER_NS: f64 = 1.2;
-/// The work is divided anew when one in so many of the bonds that are computed is broken.
+/// Work is divided again when one in this many of the computed bonds is broken.
 const STALE: u64 = 64;
 
-/// Bonds that have reached their strength.
+/// Comparison of bonds with their strength.
 pub const FAILURE: Stage = Stage {
     name: "failure",
     within: None,
@@ -37,7 +37,7 @@ pub const FAILURE: Stage = Stage {
     saving: |state| Saving::of(state.bonds.len(), 0, FAILURE_NS),
 };
 
-/// Their strength by the rate of strain.
+/// Strengths that depend on the strain rate.
 pub const RATES: Stage = Stage {
     name: "rate strengthening",
     within: Some(FAILURE.name),
@@ -70,7 +70,8 @@ pub const SCATTER: Stage = Stage {
     saving: |state| Saving::of(state.bonds.len(), size_of::<f64>(), SCATTER_NS),
 };
 
-/// Breaks the bonds that have reached their strength. Returns how many were compared with it.
+/// Breaks the bonds that have reached their strength. Returns the number of bonds compared with
+/// their strength.
 pub fn break_failed_bonds(state: &mut State) -> usize {
     let compared = state
         .scratch
@@ -96,12 +97,12 @@ pub fn break_failed_bonds(state: &mut State) -> usize {
     compared
 }
 
-/// How many bonds were looked at whose strength depends on the rate of strain.
+/// Number of bonds checked whose strength depends on the strain rate.
 pub fn count_rates(state: &mut State) -> usize {
     state.scratch.events.work.rates
 }
 
-/// How many bonds with a strength of their own were compared with it.
+/// Number of bonds compared with an individual strength.
 pub fn count_scattered(state: &mut State) -> usize {
     if state.bonds.strength_factors.is_empty() {
         return 0;
@@ -114,7 +115,7 @@ pub fn count_scattered(state: &mut State) -> usize {
         .sum()
 }
 
-/// Divides the work anew once enough bonds have broken since it was divided last.
+/// Divides the work again once enough bonds have broken since the last division.
 fn leave_out_broken(state: &mut State) {
     let computed: usize = state
         .scratch
@@ -138,8 +139,8 @@ fn leave_out_broken(state: &mut State) {
 /// of the bonds.
 ///
 /// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its
-/// force is taken back from what moves them on. Returns how many bonds were looked at whose
-/// strength depends on the rate of strain.
+/// force is subtracted from the wrenches that move them on. Returns the number of bonds checked
+/// whose strength depends on the strain rate.
 pub fn break_bonds(
     bonds: &mut Bonds,
     particles: &mut Particles,
@@ -159,8 +160,8 @@ pub fn break_bonds(
         rule.strengthening_from_1_s.is_some()
     };
     let rates = failing.iter().filter(by_rate).count();
-    // All are looked at before the first is taken away: a break changes the velocities of its ends,
-    // and rates of strain come from velocities.
+    // All are checked before the first is removed: a break changes the velocities of its ends, and
+    // strain rates depend on velocities.
     let failing: Vec<(usize, BondForces, Cause)> = failing
         .into_iter()
         .filter_map(|at| {

@@ -1,5 +1,5 @@
-//! Rigid clumps in the time step: what acts on their spheres acts on them, and their spheres go
-//! where they go.
+//! Rigid clumps in the time step: forces on their spheres act on the clumps, and the spheres move
+//! with them.
 
 use nalgebra::Vector3;
 
@@ -47,7 +47,7 @@ pub const CLUMPS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Gathers what contacts do to the spheres of clumps.
+/// Sums the contact forces on the spheres of clumps.
 pub fn gather_clumps(state: &mut State) -> usize {
     if state.contacts.is_some() {
         gather(
@@ -59,14 +59,14 @@ pub fn gather_clumps(state: &mut State) -> usize {
     0
 }
 
-/// Changes the velocities of clumps. Returns how many there are that do not sleep.
+/// Updates the velocities of clumps. Returns the number of clumps that are awake.
 pub fn kick_clumps(state: &mut State) -> usize {
     let kick_s = state.kick_s();
     kick(&mut state.clumps, state.model.gravity_m_s2, kick_s);
     awake(&state.clumps)
 }
 
-/// Moves clumps on, and those of their spheres that are near something.
+/// Moves clumps and those of their spheres that are near something.
 pub fn drift_clumps(state: &mut State) -> usize {
     let (clumps, particles) = (&mut state.clumps, &mut state.particles);
     let fastest_m_s = drift(clumps, particles, state.time_step_s);
@@ -74,13 +74,13 @@ pub fn drift_clumps(state: &mut State) -> usize {
     0
 }
 
-/// Number of clumps that do not sleep.
+/// Number of clumps that are awake.
 pub(super) fn awake(clumps: &Clumps) -> usize {
     clumps.all.iter().filter(|clump| !clump.asleep).count()
 }
 
-/// Takes down which spheres of clumps are near something, after pairs and walls have been looked
-/// through. `near`: particles that are, in any order, some twice.
+/// Records which spheres of clumps are near something, after the search for pairs and walls.
+/// `near`: particles that are, in any order, with duplicates.
 pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iterator<Item = u32>) {
     let free = particles.free as u32;
     let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
@@ -91,7 +91,7 @@ pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iter
     for clump in &clumps.all {
         let [from, to] = clump.near.map(|n| n as usize);
         for &i in &clumps.near[from..to] {
-            // Those that followed know how they moved.
+            // Spheres that were updated before already have a velocity.
             if before.binary_search(&i).is_err() {
                 let i = i as usize;
                 let place = particles.poses[i].place();
@@ -101,7 +101,7 @@ pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iter
     }
 }
 
-/// Puts all spheres of all clumps where they are. Those of clumps that sleep are there.
+/// Puts all spheres of all clumps in place. Those of sleeping clumps already are.
 pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
         let template = clumps.template(clump);
@@ -116,8 +116,8 @@ pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
     }
 }
 
-/// Sums up what acts on the spheres of each clump, and the energy that this takes from its motion
-/// in a step of `dt`, s. Nothing is left on the spheres.
+/// Sums the forces on the spheres of each clump, and the energy that they take from its motion in a
+/// step of `dt`, s. Clears the wrenches of the spheres.
 pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
     let Clumps {
         templates,
@@ -147,8 +147,8 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
     }
 }
 
-/// Velocities and angular momenta changed by what acts on the clumps and by gravity, over the time
-/// `kick_s`.
+/// Changes velocities and angular momenta by the wrenches on the clumps and by gravity, over the
+/// time `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
     for clump in all.iter_mut().filter(|clump| !clump.asleep) {
@@ -160,8 +160,8 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     }
 }
 
-/// Places and orientations after moving on for `time_step_s`, of clumps and of those of their
-/// spheres that are near something. Returns a speed that no sphere exceeds, m/s.
+/// Updates positions and orientations, over `time_step_s`, of clumps and of those of their spheres
+/// that are near something. Returns an upper bound of the speed of all spheres, m/s.
 pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -> f64 {
     let Clumps {
         templates,
@@ -195,7 +195,7 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
             let pose = &mut particles.poses[i as usize];
             let motion = &mut particles.motions[i as usize];
             let place = centre + to_space * Vector3::from(template.spheres[sphere].place_m);
-            // What contacts ask for: the way made in the step.
+            // Contacts use the displacement in the step.
             motion.velocity_m_s = ((place - pose.place()) * per_s).into();
             motion.spin_rad_s = spin_rad_s;
             pose.put_at(place.into());
@@ -204,8 +204,8 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
     fastest
 }
 
-/// Velocities and angular momenta at the time of the places, between a kick and the drift after it.
-/// One for each clump.
+/// Velocities and angular momenta at the time of the positions, between a kick and the drift after
+/// it. One for each clump.
 pub fn synchronous(clumps: &Clumps, gravity_m_s2: [f64; 3], time_step_s: f64) -> Vec<Clump> {
     let mut now = clumps.clone();
     kick(&mut now, gravity_m_s2, -0.5 * time_step_s);

@@ -1,4 +1,4 @@
-//! Forces of contacts between particles.
+//! Contact forces between particles.
 
 mod close;
 mod input;
@@ -25,7 +25,7 @@ use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
 use crate::state::particles::{Particles, Wrench};
 
-/// Contacts of particles.
+/// Contacts between particles.
 pub const CONTACTS: Stage = Stage {
     name: "particle contacts",
     within: None,
@@ -57,7 +57,7 @@ pub const CONTACTS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Overlaps of pieces that part.
+/// Overlaps of fragments as they separate.
 pub const RELAXATION: Stage = Stage {
     name: "relaxation",
     within: Some(CONTACTS.name),
@@ -110,7 +110,8 @@ fn can_break(state: &State) -> bool {
     any_bond(state, |rule| rule.criteria.is_some())
 }
 
-/// Adds the forces of contacts between particles to the wrenches. Returns how many touch.
+/// Adds the contact forces between particles to the wrenches. Returns the number of pairs in
+/// contact.
 pub fn compute_contacts(state: &mut State) -> usize {
     match &mut state.contacts {
         Some(contacts) if !contacts.model.alone => {
@@ -126,12 +127,12 @@ pub fn compute_contacts(state: &mut State) -> usize {
     }
 }
 
-/// How many pairs that were listed in this step begin their law at an overlap.
+/// Number of pairs listed in this step whose law begins at an overlap.
 pub fn count_relaxing(state: &mut State) -> usize {
     state.scratch.events.work.relaxing
 }
 
-/// How many contacts with rolling friction touch.
+/// Number of touching contacts with rolling friction.
 pub fn count_rolling(state: &mut State) -> usize {
     let partitions = state
         .contacts
@@ -140,13 +141,12 @@ pub fn count_rolling(state: &mut State) -> usize {
     partitions.map(|partition| partition.rolled).sum()
 }
 
-/// Contacts between those that are computed and those whose second particles are fetched into the
-/// cache.
+/// Prefetch distance of second particles, in contacts.
 const SOON: usize = 16;
 
-/// Adds the forces of contacts to the wrenches, books what friction and damping took, and takes
-/// down what each contact remembers: after a step of `dt`, s, in which the particles moved as their
-/// motions say.
+/// Adds the contact forces to the wrenches, records the energy lost to friction and damping, and
+/// updates the contact histories, after a step of `dt`, s, in which the particles moved with their
+/// present velocities.
 pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
     let checks_all = contacts.scratch.close_skin_left_m <= 0.0;
     if checks_all {
@@ -158,7 +158,7 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     let mut lost_j = std::mem::take(&mut contacts.lost_j);
     for partition in &mut partitions {
         partition.excessive_overlap = None;
-        // Their owners take down what comes next while others still need what was.
+        // Partitions update their own histories while others still need the previous ones.
         if checks_all {
             let remembered = partition.border.iter().map(|&at| histories[at as usize]);
             partition.border_histories.clear();
@@ -193,8 +193,8 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
     contacts.lost_j = lost_j;
 }
 
-/// Looks for near pairs again, whose surfaces are closer than `skin_m`. `clusters`: a number for
-/// each particle; those of one number do not touch each other.
+/// Searches again for near pairs, with surfaces closer than `skin_m`. `clusters`: a number for each
+/// particle; particles with the same number do not touch each other.
 pub fn list_contacts(
     contacts: &mut Contacts,
     clusters: &[u32],
@@ -214,7 +214,7 @@ pub fn list_contacts(
     contacts.skin_left_m = 0.5 * skin_m;
 }
 
-/// What a partition writes: histories of its own contacts, the rest of its own particles.
+/// Output of a partition: the histories of its own contacts, and data of its own particles.
 struct PartitionOutput<'a> {
     histories: &'a mut [ContactHistory],
     wrenches: &'a mut [Wrench],
@@ -298,7 +298,7 @@ impl LaneWork for PartitionWork<'_> {
     }
 }
 
-/// The work on the contacts of one kind in a partition.
+/// The work on the contacts of one type in a partition.
 struct KindWork<'a, 'b, T: Lanes> {
     work: &'a mut PartitionWork<'b>,
     proof: T::Proof,
@@ -315,8 +315,8 @@ impl<T: Lanes> ContactWork<T> for KindWork<'_, '_, T> {
 }
 
 impl PartitionWork<'_> {
-    /// The contacts of one kind: those of the border first, so that each particle meets its
-    /// contacts in their order.
+    /// The contacts of one type, border contacts first, so that each particle gets its contacts in
+    /// their order.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
     fn of_kind<T: Lanes>(
@@ -373,7 +373,7 @@ impl PartitionWork<'_> {
                 |lane| &histories[numbers[lane] - own.start],
             );
             if met.excessive_overlap != 0 {
-                // Lanes to spare repeat the last contact.
+                // Spare lanes repeat the last contact.
                 let pair = ends[met.excessive_overlap.trailing_zeros() as usize];
                 excessive_overlap = Some(excessive_overlap.map_or(pair, |other| other.min(pair)));
             }
@@ -408,24 +408,23 @@ impl PartitionWork<'_> {
     }
 }
 
-/// What becomes of contacts, row by row.
+/// Result for contacts, row by row.
 struct ContactOutput {
     tangential: [[f64; 4]; MOST],
     damped: [[f64; 4]; MOST],
-    /// Spring and damping of rolling. None: there is no rolling friction.
+    /// Spring and damping of rolling. None: no rolling friction.
     rolled: Option<[[[f64; 4]; MOST]; 2]>,
     friction_j: [f64; MOST],
     damping_j: [f64; MOST],
     forces: Forces,
-    /// A bit for each, from the lowest on: whether the two overlap, or did in the step before.
+    /// A bit for each contact, lowest first: whether the two overlap, or did in the previous step.
     touched: u8,
-    /// The same: whether the two are pressed into each other by more than the radius of the smaller
-    /// one.
+    /// The same: whether the two overlap by more than the radius of the smaller one.
     excessive_overlap: u8,
 }
 
-/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and a fourth
-/// that means nothing.
+/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and an
+/// unused fourth number.
 struct Forces {
     on_b: [[f64; 4]; MOST],
     torques: [[[f64; 4]; MOST]; 2],
@@ -458,7 +457,7 @@ impl Forces {
 }
 
 impl StepInput<'_> {
-    /// What contacts do to their particles, one for each lane.
+    /// Contact forces on the particles, one contact for each lane.
     #[inline(always)]
     fn meet<'a, T: Lanes, R: RollingFriction<T>>(
         &self,

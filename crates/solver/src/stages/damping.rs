@@ -39,7 +39,7 @@ pub const BOND_DAMPING: Stage = Stage {
     },
 };
 
-/// Sets the damping forces of bonds. Returns how many were computed.
+/// Sets the damping forces of bonds. Returns the number of bonds computed.
 pub fn compute_bond_damping(state: &mut State) -> usize {
     if !state.scratch.bond_resistance.is_empty() {
         let p = &state.particles;
@@ -85,7 +85,7 @@ struct PartitionWork<'a> {
     poses: &'a [Pose],
     motions: &'a [Motion],
     partition: &'a mut Partition,
-    /// Of the partition's particles only.
+    /// Those of the partition's particles.
     resisting: &'a mut [Wrench],
 }
 

@@ -1,4 +1,4 @@
-//! Bodies that come through inlets and leave through outlets.
+//! Bodies enter through inlets and leave through outlets.
 
 use super::inlets::coming;
 use super::outlets::leaving;
@@ -26,8 +26,8 @@ pub const FLOW: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Bodies come and go, between a kick and the drift after it. Returns how many inlets and outlets
-/// were looked at.
+/// Adds and removes bodies, between a kick and the drift after it. Returns the number of inlets and
+/// outlets checked.
 pub fn apply_inlets_and_outlets(state: &mut State) -> usize {
     let leaving = leaving(state);
     let coming = coming(state);
@@ -43,7 +43,7 @@ pub fn apply_inlets_and_outlets(state: &mut State) -> usize {
     state.model.rules.inlets.len() + state.model.rules.outlets.len()
 }
 
-/// Counts the bonds that are there, and those that are left out because their bodies are clumps.
+/// Counts the existing bonds, and those skipped because their bodies are clumps.
 pub fn count_bond_steps(state: &mut State) -> usize {
     if !state.model.rules.are_none() {
         let clumps = state.clumps.all.iter();

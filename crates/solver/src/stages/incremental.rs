@@ -37,8 +37,8 @@ pub const HISTORIES: Stage = Stage {
     },
 };
 
-/// Brings the histories up to date and adds their forces to the wrenches. Returns how many bonds
-/// were computed.
+/// Updates the histories and adds their forces to the wrenches. Returns the number of bonds
+/// computed.
 pub fn compute_incremental_bonds(state: &mut State) -> usize {
     let (before_s, p) = (state.previous_time_step_s, &mut state.particles);
     if !state.bonds.histories.is_empty() {
@@ -60,7 +60,7 @@ pub fn compute_incremental_bonds(state: &mut State) -> usize {
         .sum()
 }
 
-/// Brings the histories up to the present places, after a drift of `time_step_s` with these
+/// Updates the histories to the present positions, after a drift of `time_step_s` with these
 /// motions.
 pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
     let (poses, motions) = (&particles.poses, &particles.motions);

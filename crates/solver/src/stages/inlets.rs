@@ -1,4 +1,4 @@
-//! Bodies that come through inlets.
+//! Bodies that enter through inlets.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -12,12 +12,12 @@ use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;
 use dem_io::random::uniform;
 
-/// Places looked at for a body in one step.
+/// Positions tried for a body in one step.
 const TRIES: u32 = 10;
-/// Steps after which a place is looked for again.
+/// Steps until the next attempt to place a body.
 const WAIT: u64 = 50;
 
-/// Bodies that come through inlets in this step; books what they bring.
+/// Bodies that enter through inlets in this step; records their mass, momenta and energy.
 pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     let mut coming: Vec<Clump> = Vec::new();
     let (steps, time_s) = (state.steps, state.time_s);
@@ -77,12 +77,12 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     coming
 }
 
-/// What gravity adds to a velocity from the moment of the places to the half step after it, m/s.
+/// Change of velocity by gravity from the time of the positions to half a step later, m/s.
 fn half_kick(state: &State) -> Vector3<f64> {
     Vector3::from(state.model.gravity_m_s2) * (0.5 * state.time_step_s)
 }
 
-/// Whether an inlet owes a body.
+/// Whether an inlet is due to feed a body.
 fn is_due(inlet: &Inlet, come: &InletProgress, time_s: f64) -> bool {
     let [start_s, end_s] = inlet.between_s;
     if come.bodies >= inlet.count || time_s < start_s || time_s >= end_s {
@@ -95,8 +95,8 @@ fn is_due(inlet: &Inlet, come: &InletProgress, time_s: f64) -> bool {
     }
 }
 
-/// The next body of an inlet, where there is place for it: a random place of the region at which
-/// the sphere around it touches no sphere of another body, and none of its spheres a wall.
+/// The next body of an inlet, if there is room for it: a random position in the region at which its
+/// bounding sphere touches no sphere of another body, and none of its spheres touches a wall.
 fn next_body(
     n: usize,
     inlet: &Inlet,
@@ -171,7 +171,7 @@ fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
     })
 }
 
-/// Angular momentum of a clump that is turned so and spins so, kg m2/s.
+/// Angular momentum of a clump with this orientation and spin, kg m2/s.
 pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64; 3]) -> [f64; 3] {
     let turned = rotation(turned);
     let spin = turned.inverse() * Vector3::from(spin_rad_s);
@@ -179,7 +179,7 @@ pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64;
     (turned * own).into()
 }
 
-/// A rotation, uniform over all, from three numbers in (0, 1) (Shoemake 1992).
+/// A uniformly distributed random rotation, from three numbers in (0, 1) (Shoemake 1992).
 fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
     let turn = std::f64::consts::TAU;
     let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
@@ -197,7 +197,7 @@ fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) ->
         let reach = template.reach_m * template.scale.max(1.0);
         near(clump.place_m.into(), reach)
     };
-    // Those in the middle of a clump are not in the scene.
+    // Inner spheres of a clump are not in the scene.
     let in_clump = |clump: &Clump| {
         let template = state.clumps.template(clump);
         let touches = |sphere: usize| {

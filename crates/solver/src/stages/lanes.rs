@@ -1,4 +1,5 @@
-//! Several numbers at once: what the processor has for that, and how rows of memory become lanes.
+//! SIMD lanes: several numbers at once, as the processor supports, and how rows of memory become
+//! lanes.
 
 use crate::physics::number::Number;
 
@@ -9,11 +10,11 @@ mod avx512;
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests;
 
-/// A number of each of `COUNT` bonds or contacts.
+/// One number for each of `COUNT` bonds or contacts.
 pub(super) trait Lanes: Number {
-    /// Proof that the processor can do it.
+    /// Proof that the processor supports it.
     type Proof: Copy;
-    /// How many at once: 1, [`FOUR`] or [`MOST`].
+    /// Number of lanes: 1, [`FOUR`] or [`MOST`].
     const COUNT: usize;
 
     /// `COUNT` numbers from a column, from place `first` on.
@@ -22,23 +23,23 @@ pub(super) trait Lanes: Number {
     /// All lanes the same.
     fn all(proof: Self::Proof, value: f64) -> Self;
 
-    /// The lanes; those there are not are 0.
+    /// The lanes, padded with 0.
     fn values(self) -> [f64; MOST];
 
-    /// Four numbers of each of `COUNT` bonds or contacts: lane by lane what stands row by row.
+    /// Four numbers for each of `COUNT` bonds or contacts: transposes rows into lanes.
     fn columns(proof: Self::Proof, rows: impl Fn(usize) -> [f64; 4]) -> [Self; 4];
 
-    /// For each lane a bit, from the lowest on: whether it is above that of the other.
+    /// A bit for each lane, lowest first: whether it is greater than that of `other`.
     fn above(self, other: Self) -> u8;
 
-    /// The opposite of [`Lanes::columns`]: row by row what stands lane by lane. Only the first
-    /// `COUNT` rows have a meaning.
+    /// The opposite of [`Lanes::columns`]: transposes lanes into rows. Only the first `COUNT` rows
+    /// are valid.
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST];
 }
 
 /// Bonds in a block.
 pub(super) const FOUR: usize = crate::state::bonds::BLOCK;
-/// Most lanes that any processor has.
+/// Largest number of lanes of any processor.
 pub(super) const MOST: usize = 8;
 
 impl Lanes for f64 {
@@ -79,11 +80,11 @@ impl Lanes for f64 {
 
 /// Work that is done with one lane or with several.
 pub(super) trait LaneWork {
-    /// Does it.
+    /// Does the work.
     fn with<T: Lanes>(self, proof: T::Proof);
 }
 
-/// Does the work with up to four lanes. The bits of the results do not depend on how many.
+/// Does the work with up to four lanes. The results are the same, bit for bit, for any number.
 pub(super) fn with_lanes(work: impl LaneWork) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
@@ -92,7 +93,7 @@ pub(super) fn with_lanes(work: impl LaneWork) {
     work.with::<f64>(());
 }
 
-/// Does the work with up to eight lanes. The bits of the results do not depend on how many.
+/// Does the work with up to eight lanes. The results are the same, bit for bit, for any number.
 pub(super) fn with_most_lanes(work: impl LaneWork) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V4::try_new() {
@@ -101,7 +102,7 @@ pub(super) fn with_most_lanes(work: impl LaneWork) {
     with_lanes(work);
 }
 
-/// Work that is compiled for the processor that has these lanes.
+/// Work compiled for a processor with these lanes.
 #[cfg(target_arch = "x86_64")]
 struct Vectorized<W, T: Lanes>(W, T::Proof);
 

@@ -1,8 +1,8 @@
-//! Ledgers of energy and momentum: what went in and out, against what is there.
+//! Ledgers of energy and momentum: compares the totals with what was supplied and removed.
 //!
 //! Work is summed with the velocities of the leapfrog: half of each step's power at its beginning,
-//! half at its end. So the ledger is as exact as the step: its error falls with the square of the
-//! time step.
+//! half at its end. So the ledger is as accurate as the step: its error falls with the square of
+//! the time step.
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::ContactKind;
@@ -28,7 +28,7 @@ pub const LEDGER: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Checks of the limit of the step and of energy.
+/// Checks of the time step limit and of energy.
 pub const CHECKS: Stage = Stage {
     name: "checks",
     within: None,
@@ -37,19 +37,19 @@ pub const CHECKS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Books the work of the half step that ends with the kick to come.
+/// Records the work of the half step that ends with the coming kick.
 pub fn book_before_kick(state: &mut State) -> usize {
     before_kick(state);
     0
 }
 
-/// Books the kick that has just been done.
+/// Records the kick that has just been done.
 pub fn book_after_kick(state: &mut State) -> usize {
     after_kick(state);
     0
 }
 
-/// Time goes on to the end of the drift.
+/// Advances the time to the end of the drift.
 pub fn advance_time(state: &mut State) -> usize {
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;
@@ -58,8 +58,8 @@ pub fn advance_time(state: &mut State) -> usize {
     0
 }
 
-/// Energy of contacts of all particles at an overlap of a millionth of their radii, by the stiffest
-/// law of the scene, J; 0 where nothing can touch.
+/// Contact energy of all particles at an overlap of a millionth of their radii, by the stiffest law
+/// of the scene, J; 0 if nothing can touch.
 fn pressed_by_a_millionth_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -126,47 +126,46 @@ pub fn opened(state: &State) -> EnergyLedger {
 /// The ledger at a moment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Balance {
-    /// Of velocities at this moment, J.
+    /// Kinetic energy at this moment, J.
     pub kinetic_j: f64,
-    /// Of bonds, stretch, J.
+    /// Elastic energy of bonds, stretch, J.
     pub elastic_normal_j: f64,
-    /// Of bonds, shear, J.
+    /// Elastic energy of bonds, shear, J.
     pub elastic_shear_j: f64,
-    /// Of bonds, torsion, J.
+    /// Elastic energy of bonds, torsion, J.
     pub elastic_torsion_j: f64,
-    /// Of bonds, bending, J.
+    /// Elastic energy of bonds, bending, J.
     pub elastic_bending_j: f64,
-    /// In gravity, from the place at the start, J.
+    /// Potential energy in gravity, relative to the initial positions, J.
     pub gravity_j: f64,
-    /// Done by loads, J.
+    /// Work done by loads, J.
     pub load_work_j: f64,
-    /// Done by supports, J.
+    /// Work done by supports, J.
     pub support_work_j: f64,
-    /// Done by walls, J.
+    /// Work done by walls, J.
     pub wall_work_j: f64,
-    /// Dissipated by damping of bonds, J.
+    /// Dissipated by bond damping, J.
     pub bond_damping_j: f64,
-    /// Dissipated by damping of particles, J.
+    /// Dissipated by particle damping, J.
     pub local_damping_j: f64,
-    /// Elastic, of contacts, J.
+    /// Elastic energy of contacts, J.
     pub contact_elastic_j: f64,
-    /// Dissipated by damping of contacts, J.
+    /// Dissipated by contact damping, J.
     pub contact_damping_j: f64,
-    /// Dissipated by friction of contacts, sliding and rolling, J.
+    /// Dissipated by contact friction, sliding and rolling, J.
     pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub bond_breakage_j: f64,
-    /// That bodies brought which came, less what those took along that went, and what clumps and
-    /// clusters gained as they took each other's place; less the motion that bodies had when they
-    /// fell asleep, J.
+    /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
+    /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
-    /// What is there less what should be, J.
+    /// Actual minus expected energy, J.
     pub energy_error_j: f64,
-    /// The same over the largest energy or work so far.
+    /// The same, divided by the largest energy or work so far.
     pub energy_error: f64,
     /// That largest energy or work, J.
     pub energy_scale_j: f64,
-    /// Momentum that is there less what should be, over the largest sum of its parts' magnitudes so
+    /// Actual minus expected momentum, divided by the largest sum of the magnitudes of its parts so
     /// far.
     pub momentum_error: f64,
     /// The same for angular momentum about the initial centre of mass.
@@ -176,7 +175,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Of bonds, all modes, and of contacts, J.
+    /// Elastic energy of bonds, all modes, and of contacts, J.
     pub fn elastic_j(&self) -> f64 {
         self.elastic_normal_j
             + self.elastic_shear_j
@@ -186,8 +185,7 @@ impl Balance {
     }
 }
 
-/// Power of what a wall does, W, as it moved in the step just made (0) or as it will in the one to
-/// come (1).
+/// Power of a wall's forces, W, with its motion in the step just made (0) or in the next one (1).
 fn wall_power_w(wall: &Wall, push: &WallLoad, step: usize) -> f64 {
     push.power_w(wall.velocities_m_s[step], wall.spins_rad_s[step])
 }
@@ -208,7 +206,7 @@ fn powers(state: &State) -> Work {
     }
 }
 
-/// Books the work of the half step that ends with the kick to come.
+/// Records the work of the half step that ends with the coming kick.
 pub fn before_kick(state: &mut State) {
     let powers = powers(state);
     state.ledger.settle();
@@ -220,7 +218,7 @@ pub fn before_kick(state: &mut State) {
     }
 }
 
-/// Books the kick that has just been done: work of supports, work of the half step to come,
+/// Records the kick that has just been done: work of supports, work of the next half step,
 /// impulses.
 pub fn after_kick(state: &mut State) {
     let pending = powers(state);
@@ -297,7 +295,7 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
     [[fx, fy, fz], [mx, my, mz]]
 }
 
-/// The ledger between a kick and the drift after it. Remembers the largest energies and momenta.
+/// The ledger between a kick and the drift after it. Records the largest energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions(state);
     let p = &state.particles;
@@ -379,7 +377,7 @@ pub fn balance(state: &mut State) -> Balance {
     }
 }
 
-/// A ratio that is 0 where there is nothing to compare with.
+/// A ratio; 0 if there is nothing to compare with.
 pub fn over(value: f64, scale: f64) -> f64 {
     if scale == 0.0 { 0.0 } else { value / scale }
 }

@@ -1,7 +1,8 @@
-//! The lists of what is near what: particles at walls, pairs of particles, and the spheres of
-//! clumps that are in either.
+//! Neighbour lists: particles near walls, pairs of particles, and the spheres of clumps that are in
+//! either.
 //!
-//! Bodies that sleep are in none of them; those that something moving is near to wake first.
+//! Sleeping bodies are in none of them; a sleeping body wakes first when something moving is near
+//! it.
 
 use super::clumps;
 use super::contacts::list_contacts;
@@ -11,7 +12,7 @@ use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::list_near;
 use crate::state::State;
 
-/// The search for what is near.
+/// The neighbour search.
 pub const SEARCH: Stage = Stage {
     name: "neighbour search",
     within: None,
@@ -32,7 +33,7 @@ pub const SEARCH: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Takes what has moved in a drift from what may move before lists are made anew.
+/// Subtracts the displacement in a drift from the skin left until the lists are rebuilt.
 pub fn use_up_skin(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         let moved_m = state.fastest_m_s * state.time_step_s;
@@ -40,15 +41,15 @@ pub fn use_up_skin(state: &mut State) -> usize {
         contacts.scratch.close_skin_left_m -= moved_m;
         contacts.skin_left_m -= moved_m;
         if contacts.skin_left_m < moved_m {
-            // After one more such step, who is not listed could overlap.
+            // After one more step like this, unlisted particles could overlap.
             contacts.skin_left_m = -1.0;
         }
     }
     0
 }
 
-/// Makes the lists anew if something may have come near since they were made. Returns how many
-/// particles were gone through.
+/// Rebuilds the lists if something may have come near since the last time. Returns the number of
+/// particles processed.
 pub fn renew_lists(state: &mut State) -> usize {
     let Some(contacts) = &mut state.contacts else {
         return 0;
@@ -84,14 +85,14 @@ pub fn renew_lists(state: &mut State) -> usize {
     listed
 }
 
-/// Lists walls and pairs. Of two that sleep no pair is made.
+/// Lists walls and pairs, without pairs of sleeping particles.
 fn list_awake(state: &mut State) {
     let moved_m = state.fastest_m_s * state.time_step_s;
     let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
         return;
     };
-    // Room for two steps at least: who is first seen when it overlaps already would be taken for
-    // the piece of a body, and relax.
+    // The skin covers at least two steps: a pair that is first listed when it already overlaps
+    // would be treated as fragments of one body, and its overlap would relax.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
     list_near(&mut state.walls, p, skin_m);
     if contacts.model.alone {
@@ -103,7 +104,7 @@ fn list_awake(state: &mut State) {
     if p.asleep.is_empty() {
         list_contacts(contacts, of_particle, p, skin_m);
     } else {
-        // All that sleep are as one body.
+        // All sleeping bodies count as one.
         let none = clusters.map_or(0, |c| c.history.len() as u32);
         let of_one = |(&id, &asleep): (&u32, &bool)| if asleep { none } else { id };
         let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();

@@ -1,4 +1,4 @@
-//! Loads on sets of particles, and the course of loads and motions over time.
+//! Loads on particle groups, and the course of loads and motions over time.
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
@@ -28,7 +28,7 @@ pub(super) fn on_particles(count: usize) -> String {
     format!("on {count} particle{}", if count == 1 { "" } else { "s" })
 }
 
-/// Adds the loads to the wrenches. Returns on how many particles they act.
+/// Adds the loads to the wrenches. Returns the number of particles on which they act.
 pub fn apply_loads(state: &mut State) -> usize {
     let steps_s = state.steps_s();
     add_loads(
@@ -40,8 +40,8 @@ pub fn apply_loads(state: &mut State) -> usize {
     state.loads.iter().map(|load| load.particles.len()).sum()
 }
 
-/// Adds the loads of the kick at this time to the wrenches. `steps_s`: the step before and the one
-/// to come.
+/// Adds the loads of the kick at this time to the wrenches. `steps_s`: the previous step and the
+/// next.
 pub fn add_loads(loads: &[GroupLoad], time_s: f64, steps_s: [f64; 2], wrenches: &mut [Wrench]) {
     for load in loads {
         let factor = load.factor_in_kick(time_s, steps_s);
@@ -55,7 +55,7 @@ pub fn add_loads(loads: &[GroupLoad], time_s: f64, steps_s: [f64; 2], wrenches: 
     }
 }
 
-/// Power of the loads of the kick at this time on particles moving so, W.
+/// Power of the loads of the kick at this time on particles with these motions, W.
 pub fn loads_power_w(
     loads: &[GroupLoad],
     time_s: f64,
@@ -77,7 +77,7 @@ pub fn loads_power_w(
     loads.iter().map(power).sum()
 }
 
-/// Force of all loads of the kick at this time together, N, and their torque about a point, N m.
+/// Resultant force of all loads of the kick at this time, N, and their torque about a point, N m.
 pub fn loads_resultant(
     loads: &[GroupLoad],
     time_s: f64,

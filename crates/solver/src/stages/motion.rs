@@ -1,7 +1,7 @@
-//! Kick and drift: forces change velocities, velocities change places.
+//! Kick and drift: forces change velocities, velocities change positions.
 //!
-//! Velocities stand halfway between two steps (leapfrog), which is kick-drift-kick with the second
-//! kick of a step and the first of the next in one.
+//! Velocities are those halfway between two steps (leapfrog). This is kick-drift-kick with the
+//! second kick of a step merged with the first of the next.
 
 use rayon::prelude::*;
 
@@ -61,7 +61,7 @@ pub const GRAVITY: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Sets the damping forces on particles. Returns on how many they act.
+/// Sets the damping forces on particles. Returns the number of particles on which they act.
 pub fn compute_particle_damping(state: &mut State) -> usize {
     if state.scratch.particle_resistance.is_empty() {
         return 0;
@@ -76,7 +76,7 @@ pub fn compute_particle_damping(state: &mut State) -> usize {
     state.particles.free
 }
 
-/// Changes the velocities of particles. Returns of how many.
+/// Updates the velocities of particles. Returns the number of particles.
 pub fn kick_particles(state: &mut State) -> usize {
     let kick_s = state.kick_s();
     let resistance = [
@@ -92,7 +92,7 @@ pub fn kick_particles(state: &mut State) -> usize {
     state.particles.free
 }
 
-/// On how many particles and clumps gravity acts.
+/// Number of particles and clumps on which gravity acts.
 pub fn count_falling(state: &mut State) -> usize {
     if state.model.gravity_m_s2 == [0.0; 3] {
         return 0;
@@ -100,7 +100,7 @@ pub fn count_falling(state: &mut State) -> usize {
     state.particles.free + awake(&state.clumps)
 }
 
-/// Moves particles on.
+/// Moves particles.
 pub fn drift_particles(state: &mut State) -> usize {
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
     0
@@ -109,8 +109,8 @@ pub fn drift_particles(state: &mut State) -> usize {
 /// Particles handled by one task.
 pub const CHUNK: usize = 1024;
 
-/// Velocities of the particles that move by themselves, changed by the wrenches, by those that
-/// resist (each list empty or with one for each particle) and by gravity, over the time `kick_s`.
+/// Changes the velocities of the free particles by the wrenches, by the resisting wrenches (each
+/// list empty or with one for each particle) and by gravity, over the time `kick_s`.
 pub fn kick(
     particles: &mut Particles,
     resisting: [&[Wrench]; 2],
@@ -150,8 +150,8 @@ pub fn kick(
         });
 }
 
-/// Places and orientations of the particles that move by themselves after moving on for
-/// `time_step_s`. Returns the largest speed of a particle, m/s.
+/// Updates positions and orientations of the free particles over `time_step_s`. Returns the largest
+/// speed of a particle, m/s.
 pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
     let Particles {
         poses,
@@ -182,7 +182,7 @@ pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
 struct DriftWork<'a> {
     poses: &'a mut [Pose],
     motions: &'a [Motion],
-    /// Empty: none sleeps.
+    /// Empty: no particle sleeps.
     asleep: &'a [bool],
     time_step_s: f64,
     /// Square of their largest speed, m2/s2.
@@ -232,8 +232,8 @@ fn move_one(pose: &mut Pose, motion: &Motion, time_step_s: f64) -> f64 {
     square
 }
 
-/// The same of as many particles as there are lanes. None, and nothing is moved: one of them turns
-/// by more than a little.
+/// Moves as many particles as there are lanes. None: one of them turns by more than a small angle,
+/// and nothing is moved.
 #[inline(always)]
 fn move_on<T: Lanes>(
     proof: T::Proof,
@@ -268,9 +268,9 @@ fn move_on<T: Lanes>(
     Some(vx * vx + vy * vy + vz * vz)
 }
 
-/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a share `gamma` of each
-/// component of force and torque, against the motion. `total` is what moves the particle: its
-/// wrench, with gravity.
+/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a fraction `gamma` of
+/// each component of force and torque, against the motion. `total` is the driving wrench of each
+/// particle, including gravity.
 pub fn add_particle_damping(
     particles: &Particles,
     gravity_m_s2: [f64; 3],
@@ -294,7 +294,7 @@ pub fn add_particle_damping(
         });
 }
 
-/// The magnitude of a force with the sign of a velocity; nothing at rest.
+/// The magnitude of a force with the sign of a velocity; 0 at rest.
 fn against(force: f64, velocity: f64) -> f64 {
     if velocity == 0.0 {
         0.0
@@ -303,7 +303,8 @@ fn against(force: f64, velocity: f64) -> f64 {
     }
 }
 
-/// Power of wrenches on particles that move, W. The sum keeps its order for any number of threads.
+/// Power of wrenches on moving particles, W. The order of summation is the same for any number of
+/// threads.
 pub fn power_w(wrenches: &[Wrench], particles: &Particles) -> f64 {
     ordered_sum(wrenches.len(), |i| {
         if particles.sleeps(i) {

@@ -1,8 +1,8 @@
-//! Which particles may touch soon: pairs of different clusters that are closer than a skin, found
-//! with a grid of cells and listed until one of them may have crossed half the skin.
+//! The Verlet list: pairs of particles of different clusters that are closer than a skin, found
+//! with a grid of cells. The list is valid until a particle may have moved by half the skin.
 //!
-//! Particles far from every other cluster are not put into the grid: of a body that flies alone,
-//! none is.
+//! Particles far from every other cluster are not put into the grid. A body that flies alone has
+//! none in it.
 
 use rayon::prelude::*;
 
@@ -10,9 +10,9 @@ use crate::geometry::Bounds;
 use crate::stages::motion::CHUNK;
 use crate::state::particles::Pose;
 
-/// Clusters of fewer particles are not asked what they are near to: they always are in the grid.
+/// Clusters with fewer particles are not tested for near clusters: they always are in the grid.
 const SMALL: u32 = 16;
-/// Cells per particle at most: a wide, empty scene gets larger cells.
+/// Largest number of cells per particle: a wide, empty scene gets larger cells.
 const CELLS_PER_PARTICLE: usize = 4;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
@@ -36,7 +36,7 @@ pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]
     chunks.concat()
 }
 
-/// Particles that stand where another cluster may reach them, rising.
+/// Particles that another cluster may reach, in ascending order.
 fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
     let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sizes = vec![0_u32; count];
@@ -53,7 +53,7 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
         sizes[cluster as usize] += 1;
         *bounds = bounds.with(&around(pose));
     }
-    // All small clusters together are one thing that a large one may be near to.
+    // All small clusters count as one object that a large one may be near to.
     let mut small = Bounds::EMPTY;
     let mut large: Vec<usize> = Vec::new();
     for cluster in 0..count {
@@ -93,18 +93,18 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
         .collect()
 }
 
-/// Cells as wide as the largest particle with its skin, and the particles in each.
+/// Grid of cells as wide as the largest particle with its skin, and the particles in each.
 struct Grid {
     origin: [f64; 3],
     per_width: f64,
     counts: [usize; 3],
-    /// For each cell the first of its particles in `standing`; and at the end their number.
+    /// For each cell, the first of its particles in `standing`, followed by the total number.
     starts: Vec<u32>,
-    /// Cell by cell.
+    /// Sorted by cell.
     standing: Vec<Standing>,
 }
 
-/// What is asked of a particle in a cell: a copy, so that those of a cell stand together.
+/// Data of a particle in a cell: a copy, so that the particles of a cell are contiguous in memory.
 #[derive(Clone, Copy, Default)]
 struct Standing {
     /// As in its pose.
@@ -114,7 +114,7 @@ struct Standing {
 }
 
 impl Grid {
-    /// None where there are fewer than two particles.
+    /// None if there are fewer than two particles.
     fn new(poses: &[Pose], clusters: &[u32], active: &[u32], skin_m: f64) -> Option<Self> {
         if active.len() < 2 {
             return None;
@@ -174,8 +174,8 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// Adds the pairs of a particle with those of other clusters that have a larger index and are
-    /// near it, in no order.
+    /// Adds the pairs of a particle with near particles of other clusters that have a larger index,
+    /// in no order.
     fn add_above(&self, i: u32, pose: &Pose, cluster: u32, skin_m: f64, pairs: &mut Vec<[u32; 2]>) {
         let [x, y, z] = self.cell(pose);
         let around = |at: usize, k: usize| at.saturating_sub(1)..(at + 2).min(self.counts[k]);
@@ -184,7 +184,7 @@ impl Grid {
         let xs = around(x, 0);
         for z in around(z, 2) {
             for y in around(y, 1) {
-                // Cells beside each other follow one another.
+                // Neighbouring cells along x are contiguous.
                 let first = self.starts[self.number([xs.start, y, z])] as usize;
                 let end = self.starts[self.number([xs.end - 1, y, z]) + 1] as usize;
                 for other in &self.standing[first..end] {

@@ -6,10 +6,10 @@ use crate::state::State;
 use crate::state::clusters::fragments::mass_and_centre;
 use crate::state::events::PopulationEvent;
 
-/// Outlets look for what has come to them once in so many steps.
+/// Interval between checks of the outlets, in steps.
 const OUTLET_EVERY: u64 = 50;
 
-/// Clusters that have come to an outlet, and books that they go. Their numbers, rising.
+/// Clusters that have reached an outlet, in ascending order; records their removal.
 pub(super) fn leaving(state: &mut State) -> Vec<u32> {
     let mut leaving = Vec::new();
     if state.model.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
@@ -58,8 +58,8 @@ pub(super) fn leaving(state: &mut State) -> Vec<u32> {
     leaving
 }
 
-/// Books mass, momenta and energy of what leaves: kinetic energy at the moment of the places, and
-/// elastic energy of bonds.
+/// Records mass, momenta and energy of the removed clusters: kinetic energy at the time of the
+/// positions, and elastic energy of bonds.
 fn book_leaving(state: &mut State, leaving: &[u32]) {
     let gravity = state.model.gravity_m_s2;
     let leaves = |id: u32| leaving.binary_search(&id).is_ok();

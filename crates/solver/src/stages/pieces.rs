@@ -1,9 +1,9 @@
-//! The search for the pieces of clusters in which bonds have broken.
+//! The search for fragments of clusters in which bonds have broken.
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 
-/// The search for pieces.
+/// The search for fragments.
 pub const CLUSTERS: Stage = Stage {
     name: "cluster search",
     within: None,
@@ -24,8 +24,8 @@ pub const CLUSTERS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Looks for pieces if it is time to. Particles that are no more of one cluster may touch from the
-/// next step on. Returns how many clusters were searched.
+/// Searches for fragments if it is due. Particles that are no longer in the same cluster may touch
+/// from the next step on. Returns the number of clusters searched.
 pub fn find_pieces(state: &mut State) -> usize {
     if state.clusters.is_none() {
         return 0;
@@ -39,7 +39,7 @@ pub fn find_pieces(state: &mut State) -> usize {
     find_pieces_now(state)
 }
 
-/// The same, whether it is time to or not.
+/// The same, whether due or not.
 pub fn find_pieces_now(state: &mut State) -> usize {
     let Some(clusters) = &mut state.clusters else {
         return 0;
@@ -53,9 +53,9 @@ pub fn find_pieces_now(state: &mut State) -> usize {
     damaged.len()
 }
 
-/// Bytes of what is known of clusters, if the stage of this name needs it: the search for them
-/// where bonds can break; else what tells bodies apart that can touch; else clumps, or measures
-/// that count pieces.
+/// Bytes of the cluster data, if the stage of this name needs them. They belong to the search for
+/// clusters if bonds can break; otherwise to the contacts, which need to tell bodies apart;
+/// otherwise to clumps, or to measures that count fragments.
 pub(super) fn clusters_bytes(state: &State, stage: &str) -> usize {
     let breaks = (state.bonds.rules.iter()).any(|rule| rule.criteria.is_some());
     let owner = match (breaks, &state.contacts) {

@@ -1,8 +1,8 @@
-//! Bodies that come, go, or change what they are: everything that one step asks for happens at
-//! once, and everything that counts particles is counted anew.
+//! Adds, removes and replaces bodies. All changes of a step are made at once, and everything
+//! indexed by particle is then renumbered.
 //!
-//! Between a kick and the drift after it: places are those of the moment, velocities stand half a
-//! step later.
+//! Done between a kick and the drift after it: positions are those of the present time, velocities
+//! those half a step later.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::walls::Wall;
 
-/// Makes the changes. The clumps that come get their numbers among the clusters.
+/// Makes the changes. New clumps get their numbers among the clusters.
 pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {
     prepare_change(state, &changes);
     place_all(&state.clumps, &mut state.particles);
@@ -61,7 +61,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         ..
     } = rebuilt;
 
-    // Those that followed still do, under their new numbers; which they are is looked for in the
+    // Near spheres of clumps stay near, under their new numbers; they are searched for again in the
     // next step.
     renumber(&mut near, &particles);
     near.retain(|&sphere| sphere as usize >= new.free);
@@ -73,7 +73,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
         (clusters.of_particle, clusters.history) = (ids, history);
-        // They are made to belong together above.
+        // They belong together by construction.
         let _ = clusters.rebuild(&state.bonds);
     }
     for created in &created {
@@ -90,8 +90,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     }
 }
 
-/// Elastic energy that the bonds of a new cluster bring, J: a fragment has the strain that it had
-/// when it became a clump.
+/// Elastic energy of the bonds of a new cluster, J: a fragment has the strain that it had when it
+/// became a clump.
 fn strain_of(created: &NewCluster, state: &State) -> f64 {
     let poses = &state.particles.poses;
     let bonds = created.first_bond..created.first_bond + created.template.bonds.len();
@@ -100,16 +100,15 @@ fn strain_of(created: &NewCluster, state: &State) -> f64 {
         .sum()
 }
 
-/// The particles as they are counted after a change: those that move by themselves, then those that
-/// clumps carry.
+/// The particles as numbered after a change: free ones first, then those carried by clumps.
 struct Rebuilt<'a> {
     old: &'a Particles,
     new: Particles,
-    /// For each particle before, its number now, or [`REMOVED`].
+    /// For each old particle, its new number, or [`REMOVED`].
     numbers: Vec<u32>,
-    /// For each particle now, the number of its cluster.
+    /// For each new particle, the number of its cluster.
     ids: Vec<u32>,
-    /// For each particle now, its material if it was not there before.
+    /// For each new particle, its material if it did not exist before.
     materials_of_new: Vec<Option<u8>>,
 }
 
@@ -124,13 +123,14 @@ impl<'a> Rebuilt<'a> {
         }
     }
 
-    /// All that has been added since belongs to this cluster and is new, of this material, or not.
+    /// Assigns all particles added since the last call to this cluster; new ones have this
+    /// material.
     fn label(&mut self, cluster: u32, material: Option<u8>) {
         self.ids.resize(self.new.len(), cluster);
         self.materials_of_new.resize(self.new.len(), material);
     }
 
-    /// Particles that move by themselves, without those whose cluster goes.
+    /// Free particles, without those of removed clusters.
     fn keep_free(&mut self, clusters: Option<&Clusters>, goes: impl Fn(u32) -> bool) {
         for i in 0..self.old.free {
             let id = clusters.map_or(0, |clusters| clusters.of_particle[i]);
@@ -142,7 +142,7 @@ impl<'a> Rebuilt<'a> {
         self.new.free = self.new.len();
     }
 
-    /// Clumps that become clusters, whose particles move by themselves from now on.
+    /// Clumps that become clusters, whose particles are free from now on.
     fn replace_clumps(&mut self, to_clusters: &[usize], clumps: &Clumps) -> Vec<NewCluster> {
         let mut created = Vec::new();
         for &at in to_clusters {
@@ -164,7 +164,7 @@ impl<'a> Rebuilt<'a> {
         created
     }
 
-    /// Clumps that stay clumps, and their spheres.
+    /// Clumps that remain, and their spheres.
     fn keep_clumps(&mut self, clumps: &mut Clumps, to_clusters: &[usize], leaving: &[u32]) {
         let mut at = 0;
         let templates = &clumps.templates;
@@ -194,7 +194,7 @@ impl<'a> Rebuilt<'a> {
         for (id, mut clump) in to_clumps {
             let template = Arc::clone(clumps.template(&clump));
             Clumps::push_spheres(&template, &mut clump, &mut self.new);
-            // The spheres of its template stand in the order of its particles.
+            // The spheres of its template are in the order of its particles.
             let members = clusters.map_or(&[][..], |clusters| clusters.members(id));
             for (n, &sphere) in template.outer.iter().enumerate() {
                 self.numbers[members[sphere as usize] as usize] = clump.first + n as u32;
@@ -204,7 +204,7 @@ impl<'a> Rebuilt<'a> {
         }
     }
 
-    /// Clumps that come, each with a number of its own among the clusters.
+    /// New clumps, each with its own number among the clusters.
     fn receive(
         &mut self,
         clumps: &mut Clumps,
@@ -243,7 +243,7 @@ fn pressed_j(state: &State) -> f64 {
     elastic_energy_j(contacts, &state.particles) + of_walls
 }
 
-/// Numbers as they are now, without those of what has gone.
+/// New numbers, without those of removed items.
 fn renumber(numbers: &mut Vec<u32>, now: &[u32]) {
     numbers.retain_mut(|number| {
         *number = now[*number as usize];
@@ -275,11 +275,10 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
     new.free += template.spheres.len();
 }
 
-/// Bonds of particles that are still there, and those of the clusters born. Returns how they are
-/// counted now.
+/// Bonds of remaining particles, and those of new clusters. Returns the new numbers.
 fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]) -> Vec<u32> {
     let free = state.particles.free as u32;
-    // Those of clumps and of what has gone are beyond.
+    // Those of clumps and of removed particles are out of range.
     let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
     let mut count = 0;
     let bonds: Vec<u32> = (state.bonds.ends.iter())
@@ -321,8 +320,8 @@ fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]
     bonds
 }
 
-/// Everything else that counts particles and bonds. `old_radii_m`: of the particles before;
-/// `is_new`: the material of those that have come.
+/// Renumbers everything else that is indexed by particles and bonds. `old_radii_m`: of the old
+/// particles; `is_new`: the material of new ones.
 fn count_anew(
     state: &mut State,
     particles: &[u32],
@@ -403,6 +402,6 @@ fn count_anew(
     remembered.sort_unstable_by_key(|(pair, _)| *pair);
     (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
     contacts.divide(count, state.scratch.threads);
-    // The next step looks for near pairs again.
+    // The next step searches for near pairs again.
     contacts.skin_left_m = -1.0;
 }

@@ -27,8 +27,8 @@ pub const REPLACEMENT: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Replaces the clumps whose trigger has fired, between a kick and the drift after it. Returns how
-/// many clumps were looked at.
+/// Replaces the clumps whose trigger has fired, between a kick and the drift after it. Returns the
+/// number of clumps checked.
 pub fn replace_clumps(state: &mut State) -> usize {
     if state.model.rules.are_none() {
         return 0;
@@ -42,7 +42,7 @@ pub fn replace_clumps(state: &mut State) -> usize {
     if can_fire { clumps } else { 0 }
 }
 
-/// Clumps that become clusters: their numbers, and why.
+/// Clumps that become clusters: their numbers and the causes.
 fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
     let rules = &state.model.rules;
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
@@ -61,7 +61,7 @@ fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
     })
 }
 
-/// Which condition of a trigger a clump meets, or the first where it needs all and meets all.
+/// The condition of a trigger that a clump meets, or the first one if it needs all and meets all.
 fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> {
     let enters = trigger
         .enters
@@ -72,7 +72,7 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
     let energy = trigger
         .impact_energy_j
         .map(|limit| clump.impact_energy_j > limit);
-    // The time has come for good: what has become rigid again waits for something else.
+    // A trigger time has passed for good: a restored clump needs another condition.
     let is_again = state
         .population
         .base_of_cluster
@@ -96,9 +96,9 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
     }
 }
 
-/// Clumps become clusters; notes mass, momentum and energy before and after.
+/// Turns clumps into clusters; records mass, momentum and energy before and after.
 fn swap(state: &mut State, to_clusters: Vec<usize>, causes: &[&'static str]) {
-    // A body that an inlet feeds as bonded starts so.
+    // A body that an inlet feeds as bonded starts this way.
     let fired = causes.iter().filter(|cause| **cause != STARTS_BONDED);
     state.population.replaced += fired.count() as u32;
     let changes = TopologyChange {

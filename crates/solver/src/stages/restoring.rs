@@ -1,9 +1,9 @@
-//! Clusters that become rigid clumps again: whole ones and fragments that have left a region and
-//! have come to rest within themselves. Not in Platzer 2022.
+//! Clusters that become rigid clumps again: complete bodies and fragments that have left a region
+//! and come to rest internally. Not in Platzer 2022.
 //!
-//! What is between the particles is lost or frozen: motion against each other is lost; the strain
-//! of a fragment is kept in its template and comes back if the fragment becomes a cluster again;
-//! that of a whole body is lost, as it takes the shape of its file. All of it is booked.
+//! Relative motion of the particles is lost. The strain of a fragment is kept in its template and
+//! returns if the fragment becomes a cluster again; that of a complete body is lost, as the body
+//! takes the shape of its file. All of it is recorded.
 
 use std::sync::Arc;
 
@@ -24,11 +24,11 @@ use crate::state::events::TopologyChange;
 use crate::state::particles::Motion;
 use crate::state::population::FragmentTemplate;
 
-/// Clusters are looked at once in so many steps.
+/// Interval between checks of the clusters, in steps.
 const EVERY: u64 = 200;
 
-/// Makes clumps of the clusters that may be clumps again, between a kick and the drift after it.
-/// Returns 1 if it has looked for them.
+/// Turns clusters that meet the conditions back into clumps, between a kick and the drift after it.
+/// Returns 1 if it has checked for them.
 pub fn restore_clumps(state: &mut State) -> usize {
     let rules = &state.model.rules;
     if rules.are_none()
@@ -45,7 +45,7 @@ pub fn restore_clumps(state: &mut State) -> usize {
     1
 }
 
-/// What has become a clump again. None: nothing.
+/// The clusters that have become clumps again. None: there are none.
 fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let clusters = state.clusters.as_ref()?;
     let outside: Vec<(u32, usize, u32)> = (clusters.living())
@@ -54,7 +54,7 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     if outside.is_empty() {
         return None;
     }
-    // Energies are those of the moment of the places: between particles they change within a step.
+    // Energies are those at the time of the positions: between particles they change within a step.
     let motions = synchronous_motions(state);
     let clusters = state.clusters.as_ref()?;
     let mut to_clumps = Vec::new();
@@ -140,7 +140,7 @@ fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
     has_left.then_some((base, instance))
 }
 
-/// Kinetic energy that a cluster has beyond that of a rigid body with its momenta, J.
+/// Kinetic energy of a cluster in excess of that of a rigid body with the same momenta, J.
 fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], state: &State) -> f64 {
     let p = &state.particles;
     let all: f64 = (members.iter())
@@ -152,8 +152,7 @@ fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], sta
     all - 0.5 * (fragment.mass_kg * velocity.norm_squared() + turning)
 }
 
-/// The clump that takes the place of a cluster; adds its template where it is not that of the whole
-/// body.
+/// The clump that replaces a cluster; adds its template unless it is that of the complete body.
 fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     let p = &state.particles;
     let of = |i: &u32| *i as usize;
@@ -214,7 +213,7 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     }
 }
 
-/// Bonds between members of a cluster (rising) that hold, in order.
+/// Unbroken bonds between members of a cluster (ascending), in order.
 fn own_bonds(members: &[u32], state: &State) -> Vec<usize> {
     let ends = &state.bonds.ends;
     let mut found = Vec::new();

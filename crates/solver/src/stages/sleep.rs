@@ -1,8 +1,8 @@
-//! Bodies at rest fall asleep together with all that they touch, and wake together when something
-//! that moves comes near.
+//! Bodies at rest fall asleep together with all bodies that they touch, and wake together when
+//! something moving comes near.
 //!
-//! Who sleeps is decided from places, motions and contacts alone, never from what happens to be
-//! listed: a run that goes on from a checkpoint decides the same.
+//! The decision depends only on positions, motions and contacts, never on what happens to be
+//! listed, so that a run resumed from a checkpoint decides the same.
 
 use nalgebra::Vector3;
 
@@ -23,7 +23,7 @@ use crate::state::walls::{Wall, WallLoad};
 use dem_io::disjoint::{find, join};
 use dem_io::units::significant;
 
-/// Which bodies sleep.
+/// Sleeping bodies.
 pub const SLEEP: Stage = Stage {
     name: "sleep",
     within: None,
@@ -47,11 +47,11 @@ pub const SLEEP: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Steps between two looks at who is slow.
+/// Interval between checks for slow bodies, in steps.
 const EVERY: u64 = 100;
 
-/// Lets those bodies fall asleep that have been slow for long enough and touch none that has not,
-/// between a kick and the drift after it.
+/// Puts to sleep the bodies that have been slow for long enough and touch only such bodies, between
+/// a kick and the drift after it.
 pub fn update_sleep(state: &mut State) -> usize {
     if let Some(sleep) = &mut state.sleep {
         let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
@@ -86,7 +86,7 @@ pub fn update_sleep(state: &mut State) -> usize {
     1
 }
 
-/// For each cluster a speed that no point of it exceeds, m/s; none of one that has ended or sleeps.
+/// For each cluster an upper bound of the speed of its points, m/s; none if it has ended or sleeps.
 fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
@@ -115,8 +115,8 @@ fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
     speeds
 }
 
-/// Which of the clusters that may sleep can: nothing holds, loads or moves them, and all that they
-/// touch or are near to can as well. Their numbers, rising.
+/// The candidates that can sleep, in ascending order: nothing holds, loads or moves them, and all
+/// bodies that they touch or are near to can sleep as well.
 fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
@@ -149,7 +149,7 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     if !may.contains(&true) {
         return Vec::new();
     }
-    // Few come as far as this: only now is everything near looked for.
+    // Few candidates get this far: only now are all neighbours searched for.
     place_all(&state.clumps, &mut state.particles);
     let (poses, skin_m) = (&state.particles.poses, contacts.skin_m);
     for wall in state.walls.iter().filter(moving) {
@@ -168,7 +168,7 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     found.collect()
 }
 
-/// Of islands in which one is awake and may not sleep, nobody may.
+/// Removes every island that contains an awake cluster that may not sleep.
 fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>) {
     let mut can = vec![true; may.len()];
     for cluster in 0..may.len() as u32 {
@@ -180,13 +180,13 @@ fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>)
     }
 }
 
-/// Whether a wall moves in the step before or in the one that begins at this time and takes so
-/// long, s.
+/// Whether a wall moves in the previous step or in the one of this length, s, that begins at this
+/// time.
 fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
     has_moved(wall) || will_move(wall, time_s, time_step_s)
 }
 
-/// Whether somebody sleeps and a wall that rested moves from now on: then nobody may sleep on it.
+/// Whether any body sleeps and a wall at rest begins to move: then no body may sleep on it.
 pub fn begins_to_move(
     sleep: Option<&Sleep>,
     walls: &[Wall],
@@ -196,7 +196,7 @@ pub fn begins_to_move(
     sleep.is_some_and(|sleep| sleep.bodies > 0) && walls.iter().any(begins)
 }
 
-/// Puts clusters to sleep: takes their motion, and books it.
+/// Puts clusters to sleep: sets their motion to zero and records the loss.
 fn fall_asleep(state: &mut State, falling: &[u32]) {
     let motions = synchronous_motions(state);
     let now = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
@@ -220,7 +220,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 &mut state.scratch.particle_resistance,
             ];
             for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {
-                // What damping would have taken in the half step to come has been booked.
+                // The dissipation by damping in the next half step has already been recorded.
                 let power_w = power_w(wrench, &motion.velocity_m_s, &motion.spin_rad_s);
                 state.ledger.gain(-half_s * power_w);
                 *wrench = Wrench::default();
@@ -269,8 +269,7 @@ fn power_w(wrench: &Wrench, velocity_m_s: &[f64; 3], spin_rad_s: &[f64; 3]) -> f
         .sum()
 }
 
-/// Clusters that sleep and are near a particle that is awake, by the list of pairs, or near a wall
-/// that moves.
+/// Sleeping clusters near an awake particle, by the list of pairs, or near a moving wall.
 pub fn disturbed(state: &State) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
@@ -303,7 +302,7 @@ pub fn disturbed(state: &State) -> Vec<u32> {
     ids
 }
 
-/// Wakes clusters, and all that sleep with them: those that they touch, and those that these touch.
+/// Wakes clusters and all that sleep with them, through contacts, directly or indirectly.
 pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
@@ -343,8 +342,8 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     count_sleepers(state);
 }
 
-/// Wakes the bodies that are about to go or to become others, with all that sleep with them, and
-/// puts what is kept of the rest back into the lists, where it is counted anew.
+/// Wakes the bodies that are about to be removed or replaced, with all that sleep with them.
+/// Returns the frozen contacts of the others to the lists, where they are renumbered.
 pub fn prepare_change(state: &mut State, changes: &TopologyChange) {
     let Some(sleep) = &state.sleep else {
         return;
@@ -365,7 +364,7 @@ pub fn prepare_change(state: &mut State, changes: &TopologyChange) {
     }
 }
 
-/// Puts what is kept of those particles that are awake back into the lists.
+/// Returns the frozen contacts of awake particles to the lists.
 fn put_back(
     pairs: &mut Vec<FrozenContact>,
     touches: &mut Vec<FrozenWallContact>,
@@ -391,7 +390,7 @@ fn put_back(
     sum_pushes(touches, walls);
 }
 
-/// Takes what contacts of sleepers remember from the lists, and keeps it.
+/// Moves the contact histories of sleeping bodies out of the lists and keeps them.
 pub fn freeze_contacts(state: &mut State) {
     let (Some(sleep), Some(contacts)) = (&mut state.sleep, &state.contacts) else {
         return;
@@ -403,7 +402,7 @@ pub fn freeze_contacts(state: &mut State) {
     let known = sleep.pairs.len() + sleep.touches.len();
     for (at, (&pair, &history)) in contacts.pairs.iter().zip(&contacts.histories).enumerate() {
         let both_sleep = pair.iter().all(|&i| p.sleeps(i as usize));
-        // Pairs that are listed and do not touch remember nothing.
+        // Listed pairs that do not touch have no history.
         if both_sleep && history != ContactHistory::default() {
             let elastic_j = contact_energy_j(contacts, p, at);
             sleep.pairs.push(FrozenContact {
@@ -437,7 +436,7 @@ pub fn freeze_contacts(state: &mut State) {
     }
 }
 
-/// What walls do to those who sleep on them.
+/// Forces between walls and the bodies that sleep on them.
 fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
     for wall in walls.iter_mut() {
         wall.load_by_sleepers = WallLoad::default();
@@ -449,8 +448,8 @@ fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
     }
 }
 
-/// Everything that follows from who sleeps: which particles and clumps, how the work is divided,
-/// and on what gravity acts in the books.
+/// Updates everything that depends on which bodies sleep: particles, clumps, the division of work,
+/// and the gravity term of the ledger.
 pub fn count_sleepers(state: &mut State) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;

@@ -1,5 +1,5 @@
-//! What a stage of the step says of itself. Each stands at the top of its own file; the order in
-//! which they are done stands in `step.rs`.
+//! Description of a stage of the step. Each stage is declared at the top of its own file; their
+//! order is in `step.rs`.
 
 use dem_scene::Scene;
 
@@ -8,15 +8,16 @@ use crate::state::State;
 /// A stage of the step.
 #[derive(Debug, Clone, Copy)]
 pub struct Stage {
-    /// As it stands in reports.
+    /// Name in reports.
     pub name: &'static str,
-    /// The stage in whose time its own is: it is done there, for some of the same items.
+    /// The stage whose time includes that of this one: this one is done there, for some of the same
+    /// items.
     pub within: Option<&'static str>,
-    /// Whether a planned scene needs it, and why.
+    /// Whether a planned scene needs it, and the reason.
     pub need: fn(&State, &Scene) -> Need,
-    /// Bytes of the arrays that it alone needs, as they are filled now.
+    /// Bytes of the arrays that only this stage needs, at their present size.
     pub bytes: fn(&State) -> usize,
-    /// What leaving it out of a state saves. None: it depends on what the bodies would do.
+    /// The saving if a state leaves it out. None: it depends on what the bodies would do.
     pub saving: fn(&State) -> Option<Saving>,
 }
 
@@ -26,15 +27,15 @@ impl PartialEq for Stage {
     }
 }
 
-/// Of stages whose cost depends on what the bodies would do.
+/// For stages whose cost depends on what the bodies would do.
 pub const NO_SAVING: fn(&State) -> Option<Saving> = |_| None;
 
 /// Whether a scene needs a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Need {
-    /// It does, for this reason.
+    /// Needed, for this reason.
     Needed(String),
-    /// It does not, for this reason.
+    /// Not needed, for this reason.
     LeftOut(&'static str),
 }
 
@@ -49,17 +50,18 @@ impl Need {
     }
 }
 
-/// What a stage that is left out would take if the scene asked for it.
+/// Cost of a skipped stage if the scene needed it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saving {
     /// Bytes of its arrays.
     pub bytes: usize,
-    /// ns per step on one thread, by what its items take on the machine of doc/leave-out.md.
+    /// Time per step on one thread, ns, from its cost per item on the machine of doc/leave-out.md.
     pub ns: f64,
 }
 
 impl Saving {
-    /// Of so many items, each with these bytes and this time, ns. None: there are no items.
+    /// The saving for this number of items, each with these bytes and this time, ns. None: there
+    /// are no items.
     pub fn of(items: usize, bytes: usize, ns: f64) -> Option<Self> {
         (items > 0).then(|| Self {
             bytes: items * bytes,

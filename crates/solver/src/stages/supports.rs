@@ -1,4 +1,4 @@
-//! Supports: degrees of freedom that are held or moved as prescribed, and what it takes to do so.
+//! Supports: degrees of freedom that are fixed or have a prescribed motion, and the reactions.
 
 use dem_scene::Hold;
 
@@ -29,14 +29,14 @@ pub const SUPPORTS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Notes how the held particles move before the kick, and before bonds break: a break gives its
-/// ends their half of the kick at once.
+/// Records the motion of the held particles before the kick, and before bonds break: a break gives
+/// its ends their half of the kick at once.
 pub fn remember_held(state: &mut State) -> usize {
     remember(&mut state.supports, &state.particles.motions);
     0
 }
 
-/// Gives held freedoms the velocities that are prescribed. Returns of how many particles.
+/// Sets held degrees of freedom to the prescribed velocities. Returns the number of particles.
 pub fn hold_supports(state: &mut State) -> usize {
     let steps_s = state.steps_s();
     let broken = &state.scratch.events.broken;
@@ -54,7 +54,7 @@ pub fn hold_supports(state: &mut State) -> usize {
         .sum()
 }
 
-/// Notes how the held particles move before the kick.
+/// Records the motion of the held particles before the kick.
 pub fn remember(supports: &mut [GroupSupport], motions: &[Motion]) {
     for support in supports {
         for held in &mut support.held {
@@ -63,10 +63,9 @@ pub fn remember(supports: &mut [GroupSupport], motions: &[Motion]) {
     }
 }
 
-/// Gives held freedoms the velocities that are prescribed for the drift from `time_s` to `time_s +
-/// time_step_s`, and notes the reactions that this takes in a kick that makes up for half of the
-/// step before and half of the one to come, `steps_s`. The bonds that are `broken` acted in the
-/// first half only.
+/// Sets held degrees of freedom to the velocities prescribed for the drift from `time_s` to
+/// `time_s + time_step_s`, and records the reactions in a kick that covers half of the previous
+/// step and half of the next, `steps_s`. The bonds that are `broken` acted in the first half only.
 pub fn hold(
     supports: &mut [GroupSupport],
     particles: &mut Particles,
@@ -122,8 +121,8 @@ pub fn hold(
     }
 }
 
-/// Gives the freedoms of a support that has ended their own half of the kick at which it lets go of
-/// them: in the step before it held them, and exerted what that took.
+/// Gives the degrees of freedom of a support that has ended their own half of the kick at which it
+/// releases them. In the step before, the support held them and exerted the reaction.
 fn let_go(
     support: &mut GroupSupport,
     phase: SupportPhase,
@@ -170,19 +169,19 @@ fn of_broken(broken: &[Break], particle: u32) -> [f64; 6] {
     sum
 }
 
-/// Velocity of a held freedom at the moment of a kick: what the part of the kick that belongs to
-/// the step before leaves of the change.
+/// Velocity of a held degree of freedom at the moment of a kick: the velocity before it plus the
+/// part of the change that belongs to the previous step.
 ///
-/// At the first step that is the velocity before it: a support that moves from the start does so
-/// after that moment, with a blow.
+/// At the first step it is the velocity before the kick: a support that moves from the start begins
+/// after that moment, with a jump.
 pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
     let [before_s, after_s] = steps_s;
     before + (after - before) * before_s / (before_s + after_s)
 }
 
-/// Work of the reactions in the half steps before and after a kick, J: their powers, and what
-/// kinetic energy changes by beyond that, as velocities may be prescribed to jump. So a blow is
-/// booked with what it does, not with the velocity after it.
+/// Work of the reactions in the half steps before and after a kick, J: their powers, plus the
+/// remaining change of kinetic energy, as prescribed velocities may jump. So a jump is recorded
+/// with its actual work, not with the velocity after it.
 pub fn reactions_work_j(
     supports: &[GroupSupport],
     particles: &Particles,
@@ -193,7 +192,7 @@ pub fn reactions_work_j(
     for support in supports {
         let GroupSupport { holds, held, .. } = support;
         if support.phase(time_s, steps_s) != SupportPhase::Holds {
-            // Nothing jumps where freedoms are let go, and what has been over exerts nothing.
+            // Released degrees of freedom do not jump, and a support that has ended exerts nothing.
             let of_one = |held: &HeldParticle| {
                 (0..6)
                     .map(|k| held.reactions[0][k] * held.before[k])

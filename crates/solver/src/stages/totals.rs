@@ -1,4 +1,4 @@
-//! What a state has: velocities at one moment with its places, kinetic and elastic energy, momenta.
+//! Totals of a state: velocities at the time of its positions, kinetic and elastic energy, momenta.
 
 use crate::physics::bond::total::BondEnergy;
 use crate::stages::clumps::synchronous;
@@ -78,7 +78,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     motions
 }
 
-/// Kinetic energy of the particles that move by themselves, so, J.
+/// Kinetic energy of the free particles with these motions, J.
 pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
     ordered_sum(particles.free, |i| particles.kinetic_j(i, &motion(i)))
 }
@@ -101,7 +101,7 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
     }
 }
 
-/// Momentum and angular momentum about a point, N s and N m s; and the sums of the magnitudes of
+/// Momentum and angular momentum about a point, N s and N m s, and the sums of the magnitudes of
 /// their parts.
 pub fn momenta(
     particles: &Particles,
@@ -139,8 +139,8 @@ pub fn momenta(
             clump.angular_momentum,
             about_m,
         );
-        // Of its parts on either side of its centre as well, as a bonded body has it: else a clump
-        // that flies straight has none but rounding.
+        // Includes the parts on either side of the centre, as for a bonded body: otherwise a clump
+        // in straight flight would have only rounding errors.
         let gyration_m = (0.5 * template.moments_kg_m2.iter().sum::<f64>() / mass).sqrt();
         parts[7] += gyration_m * parts[6];
         for (sum, part) in sums.iter_mut().zip(parts) {

@@ -1,4 +1,4 @@
-//! Walls: how they move, and their contacts with particles.
+//! Walls: their motion, and their contacts with particles.
 
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
@@ -38,7 +38,7 @@ pub const WALLS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Adds what walls do to the wrenches. Returns how many particles are near them.
+/// Adds the wall forces to the wrenches. Returns the number of particles near walls.
 pub fn compute_wall_contacts(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         wall_wrenches(
@@ -51,7 +51,7 @@ pub fn compute_wall_contacts(state: &mut State) -> usize {
     state.walls.iter().map(|wall| wall.near.len()).sum()
 }
 
-/// Decides how the walls move in the drift to come.
+/// Determines the motion of the walls in the coming drift.
 pub fn plan_wall_motions(state: &mut State) -> usize {
     plan_motions(&mut state.walls, state.time_s, state.time_step_s);
     0
@@ -59,13 +59,13 @@ pub fn plan_wall_motions(state: &mut State) -> usize {
 
 /// Particles handled by one task.
 const CHUNK: usize = 256;
-/// A contact that moves on to another flat part of a wall keeps what it remembers if the normal
-/// turns by less than that of this cosine.
+/// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
+/// between the normals exceeds this.
 const SAME_WAY: f64 = 0.9;
-/// Fraction of what is missing that a servo makes good in a step.
+/// Fraction of the deviation that a servo corrects in a step.
 const SERVO: f64 = 0.1;
 
-/// Lists the particles whose surface is less than `skin_m` from a wall, without those that sleep.
+/// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
 pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
         let near: Vec<u32> = {
@@ -82,7 +82,7 @@ pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     }
 }
 
-/// Says of spheres whether their surface is less than `skin_m` from a wall.
+/// Test whether the surface of a sphere is less than `skin_m` from a wall.
 pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
     let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
@@ -101,7 +101,7 @@ pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
     }
 }
 
-/// Adds what walls do to the wrenches after a step of `dt`, s; and notes what that does to the
+/// Adds the wall forces to the wrenches after a step of `dt`, s, and records their reactions on the
 /// walls.
 pub fn wall_wrenches(
     walls: &mut [Wall],
@@ -164,27 +164,27 @@ pub fn wall_wrenches(
     }
 }
 
-/// What a particle and a wall do to each other at one place.
+/// Interaction of a particle and a wall at one point.
 struct Met {
     touch: WallContact,
-    /// Feature of what is remembered.
+    /// Feature whose history is continued.
     old: Option<u32>,
-    /// Where, m.
+    /// Point of contact, m.
     point: Vector3<f64>,
     /// Velocity of the belt there, m/s.
     belt: Vector3<f64>,
-    /// Force on the particle and the part that is damping, N.
+    /// Force on the particle and its damping part, N.
     forces: [Vector3<f64>; 2],
     /// Torque on the particle, N m.
     torque: Vector3<f64>,
-    /// Moment of rolling friction on the particle and the part that is damping, N m.
+    /// Moment of rolling friction on the particle and its damping part, N m.
     moments: [Vector3<f64>; 2],
     elastic_j: f64,
-    /// Taken by friction and by damping in the step just made.
+    /// Energy lost to friction and to damping in the step just made.
     lost_j: [f64; 2],
     /// Whether the centre of the particle has gone through the surface.
     crossed: bool,
-    /// Along the normal, N/m.
+    /// Stiffness along the normal, N/m.
     stiffness_n_m: f64,
 }
 
@@ -209,7 +209,8 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     }
 }
 
-/// What comes of the `touches` of a particle, in the wall's frame, and of those that have ended.
+/// Result for the `touches` of a particle, in the wall's frame, and for the contacts that have
+/// ended.
 fn meet(
     frame: &Frame,
     pose: &Pose,
@@ -225,7 +226,7 @@ fn meet(
         let old = remembered(before, touches, touch, &normal);
         found.push(at(&there, old));
     }
-    // What has ended has its losses still to be booked.
+    // The losses of contacts that have ended are still to be recorded.
     for old in before {
         let goes_on = |met: &Met| met.old == Some(old.feature);
         if !found[first_found..].iter().any(goes_on) {
@@ -240,8 +241,8 @@ fn meet(
     }
 }
 
-/// Whether a particle touches a solid from the other side than a step before: it went through one
-/// that is thinner than itself.
+/// Whether a particle touches a solid from the opposite side compared with the previous step: it
+/// went through a solid thinner than itself.
 fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
     let normal = Vector3::from(touch.normal);
     before
@@ -249,9 +250,9 @@ fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
         .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
 }
 
-/// What is remembered of a touch: that of the same feature; else, as a sphere slides from one flat
-/// part to the next, that of a feature which it touches no more and whose normal was about the
-/// same.
+/// The history of a contact: that of the same feature. When a sphere slides from one flat part to
+/// the next, it is that of a feature that the sphere no longer touches and whose normal was nearly
+/// the same.
 fn remembered<'a>(
     before: &'a [WallContact],
     touches: &[Touch],
@@ -280,7 +281,7 @@ fn meet_at(
     let i = particle as usize;
     let motion = &particles.motions[i];
     let normal = -Vector3::from(there.normal);
-    // Where force and torque of the particle say that they act: half the overlap under its surface.
+    // Point of action of the particle's force and torque: half the overlap below its surface.
     let pose = &particles.poses[i];
     let point = pose.place() - normal * (0.5 * (pose.radius_m() + there.distance_m));
     let arm = point - Vector3::from(wall.frame.position_m);
@@ -356,7 +357,7 @@ fn meet_at(
     }
 }
 
-/// What a wall at rest does to a particle at rest at one place, as it is remembered.
+/// Force of a wall at rest on a particle at rest at one point, from its contact history.
 pub fn push_at_rest(
     wall: &Wall,
     contacts: &Contacts,
@@ -388,8 +389,8 @@ pub fn push_at_rest(
     push
 }
 
-/// A particle at rest against a wall at rest, `normal` from the wall to its centre, which it
-/// overlaps by `overlap_m`.
+/// Contact of a particle at rest with a wall at rest; `normal` from the wall to its centre, overlap
+/// `overlap_m`.
 pub fn wall_contact(
     particles: &Particles,
     i: usize,
@@ -406,7 +407,7 @@ pub fn wall_contact(
     wall_contact_kinematics(&foot, particles.contact_sphere_at_rest(i), 0.0)
 }
 
-/// Elastic energy of something that touches a wall, as it was taken down, J.
+/// Elastic energy of a recorded wall contact, J.
 pub fn touch_energy_j(
     wall: &Wall,
     contacts: &Contacts,
@@ -420,7 +421,7 @@ pub fn touch_energy_j(
     kind.with(|number| number, StoredEnergy { touch, history })
 }
 
-/// Force of a wall on a particle that touches it, as it was taken down, N.
+/// Force of a wall on a particle in a recorded contact, N.
 pub fn touch_force_n(
     wall: &Wall,
     contacts: &Contacts,
@@ -434,7 +435,7 @@ pub fn touch_force_n(
     kind.with(|number| number, StoredForce { touch, history })
 }
 
-/// How far a sphere is from a wall, m; infinite where that is more than its own radius.
+/// Distance of a sphere from a wall, m; infinite if it exceeds the radius of the sphere.
 pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     let centre = wall.frame.to_wall(pose.place().into());
     let mut touches = Vec::new();
@@ -446,7 +447,7 @@ pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     gaps.fold(f64::INFINITY, f64::min)
 }
 
-/// Decides how the walls move in the step of `dt`, s, that begins at `time_s`.
+/// Determines the motion of the walls in the step of `dt`, s, that begins at `time_s`.
 pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
     for wall in walls {
         let [velocity, spin] = planned(wall, time_s, dt);
@@ -487,12 +488,13 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
             max_velocity_m_s: largest_velocity_m_s,
             factor,
         } => {
-            // Without damping, which follows from the wall's own velocity: in a circle the two
-            // would drive each other.
+            // Without damping, which depends on the wall's own velocity: the two would drive each
+            // other.
             let elastic = |k: usize| wall.push.force_n[k] - wall.scratch.damping.force_n[k];
             let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
             let missing = factor_at(factor, time_s) * force_n - pushed;
-            // Without contact there is nothing to go by: as fast as it may.
+            // Without contact there is no stiffness to work with: the servo moves at its largest
+            // speed.
             let wanted = if wall.stiffness_n_m > 0.0 {
                 SERVO * missing / (wall.stiffness_n_m * dt)
             } else {
@@ -504,7 +506,7 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
     }
 }
 
-/// Whether a wall has moved in the step before, or its surface moves as it stands.
+/// Whether a wall moved in the previous step, or its surface moves while it is at rest.
 pub fn has_moved(wall: &Wall) -> bool {
     let moving = [
         wall.velocities_m_s[0],
@@ -519,7 +521,7 @@ pub fn will_move(wall: &Wall, time_s: f64, dt: f64) -> bool {
     planned(wall, time_s, dt) != [[0.0; 3]; 2]
 }
 
-/// Moves the walls on. Returns the largest speed of a wall's point that is near particles, m/s.
+/// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.
 pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
     let mut fastest = 0.0_f64;
     for wall in walls {
@@ -544,7 +546,7 @@ pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
     fastest
 }
 
-/// Moves the walls on.
+/// Moves the walls.
 pub fn drift_walls(state: &mut State) -> usize {
     if state.contacts.is_some() {
         state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);

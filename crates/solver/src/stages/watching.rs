@@ -1,5 +1,5 @@
-//! Follows forces and contacts that measures ask for, in every step: a peak between two rows of the
-//! time series is seen.
+//! Records the forces and contacts that measures need, in every step, so that a peak between two
+//! rows of the time series is not missed.
 
 use nalgebra::Vector3;
 
@@ -25,15 +25,15 @@ pub const OUTPUT: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Contacts of what is watched, together.
+/// Sum of the contacts of a watched object.
 struct Met {
     /// Force on it, N.
     force_n: Vector3<f64>,
-    /// Deepest overlap, m; below 0 by the distance of what is near and apart.
+    /// Deepest overlap, m; for near but separate objects, minus their distance.
     overlap_m: f64,
 }
 
-/// Reads what is watched, between the forces of a step and its end.
+/// Evaluates the watches, between the forces of a step and its end.
 pub fn watch(state: &mut State) -> usize {
     if state.watches.is_empty() {
         return 0;
@@ -50,7 +50,7 @@ pub fn watch(state: &mut State) -> usize {
 }
 
 fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
-    // What is listed as near reaches so far for sure, be it listed now or in the step before.
+    // The lists cover at least this distance, whether rebuilt in this step or in the previous one.
     let longest_s = state.time_step_s.max(state.previous_time_step_s);
     let sure_m = 2.0 * state.fastest_m_s * longest_s;
     let now_m = met.overlap_m.max(-sure_m);
@@ -64,12 +64,12 @@ fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
         Quantity::ContactDuration => seen.touched_s,
         _ => met.force_n.norm(),
     };
-    // Adding 0 takes the sign from a zero.
+    // Adding 0 removes the sign of a zero.
     seen.value += 0.0;
     seen.history.note(state.time_s, seen.value);
 }
 
-/// The share of a step in which something is above 0 that goes straight from one value to another.
+/// The fraction of a step in which a value that changes linearly is above 0.
 fn share_above_0(before: f64, now: f64) -> f64 {
     match (before > 0.0, now > 0.0) {
         (true, true) => 1.0,
@@ -118,8 +118,8 @@ fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
 }
 
 impl Met {
-    /// Adds contacts between particles. `sign`: 1 where the force on the second of a pair is meant,
-    /// -1 where that on the first is, none where neither is.
+    /// Adds contacts between particles. `sign`: 1 for the force on the second of a pair, -1 for
+    /// that on the first, none if neither is watched.
     fn pairs(
         &mut self,
         state: &State,
@@ -148,7 +148,7 @@ impl Met {
         }
     }
 
-    /// Adds contacts of those of the particles that `of` has with a wall and its number.
+    /// Adds contacts of the particles selected by `of` with a wall and its number.
     fn wall(
         &mut self,
         state: &State,
@@ -173,7 +173,7 @@ impl Met {
     }
 }
 
-/// What a contact of bodies that sleep remembers, without its damping: nothing moves.
+/// Contact history of sleeping bodies, without damping: nothing moves.
 fn at_rest(history: &ContactHistory) -> ContactHistory {
     let [.., origin_m] = history.damping;
     ContactHistory {

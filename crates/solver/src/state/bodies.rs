@@ -1,11 +1,11 @@
-//! Which particles and bonds belong to which body of the scene, by the numbers of its file.
+//! Particles and bonds of each body of the scene, by the numbers of its file.
 
 use serde::{Deserialize, Serialize};
 
 use super::clumps::Clumps;
 use super::events::{NewCluster, REMOVED, Renumbering};
 
-/// Which particles and bonds of the state are those of a body.
+/// Particles and bonds of a body in the state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlacedBody {
     /// Its name in the scene.
@@ -44,8 +44,7 @@ impl PlacedBody {
     }
 }
 
-/// Bodies as they are counted now, with those that have come; without those of which nothing is
-/// left.
+/// Bodies under the new numbers, with new bodies and without those of which nothing remains.
 pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbering) {
     bodies.retain_mut(|body| {
         for particle in body.particles.iter_mut().filter(|p| **p != REMOVED) {
@@ -81,7 +80,7 @@ pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u3
     })
 }
 
-/// A particle of the state as its body's file knows it, for a person.
+/// Human-readable name of a particle of the state, by its number in the body's file.
 pub fn called(bodies: &[PlacedBody], clumps: &Clumps, particle: u32) -> String {
     let of_bodies = bodies.iter().find_map(|body| {
         let number = body.number_of(particle)?;

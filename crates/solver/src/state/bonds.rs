@@ -1,4 +1,4 @@
-//! Bonds: one entry per bond in every array, and what the loop over bonds reads of them in blocks.
+//! Bonds: one entry per bond in every array; the data for the force loop are stored in blocks.
 
 use std::ops::Range;
 
@@ -18,47 +18,47 @@ use crate::physics::number::Number;
 
 use super::particles::Pose;
 
-/// What the bonds of a kind have in common.
+/// Properties that the bonds of a rule share.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BondRule {
-    /// Forces are summed step by step instead of following from the present place.
+    /// Forces are summed step by step instead of computed from the present positions.
     pub incremental: bool,
     /// Bonds have damping coefficients.
     pub damped: bool,
-    /// Strengths. None: never breaks.
+    /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
-    /// Strain rate from which strengths rise with the rate, 1/s. None: never.
+    /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
-    /// What that rate is of.
+    /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
 }
 
 /// Bonds in a block.
 pub const BLOCK: usize = 4;
 
-/// One number of each bond of a block.
+/// One number for each bond of a block.
 pub type Column = [f64; BLOCK];
 
-/// Bonds that follow one another: what their forces come from, number by number side by side, so
-/// that a loop over them reads whole vectors.
+/// Consecutive bonds: the data that their forces depend on, number by number, so that the loop over
+/// bonds reads complete vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct BondBlock {
     /// Unit vectors from the first to the second end at the start, x, y, z.
     pub direction: [Column; 3],
-    /// Distances of the contact point from the two ends at the start, m.
+    /// Initial distances of the contact point from the two ends, m.
     pub levers_m: [Column; 2],
     /// Along the bond, N/m. A broken bond has no stiffness.
     pub normal: Column,
     /// Across the bond, N/m.
     pub shear: Column,
-    /// Bond radii, m. They give the stiffness in bending, which is the normal one times r^2/4 in
+    /// Bond radii, m. They give the bending stiffness, which is the normal stiffness times r^2/4 in
     /// every model.
     pub radii_m: Column,
 }
 
 impl BondBlock {
-    /// No bond.
+    /// A block without bonds.
     pub const EMPTY: Self = Self {
         direction: [[0.0; BLOCK]; 3],
         levers_m: [[0.0; BLOCK]; 2],
@@ -87,7 +87,7 @@ impl BondBlock {
     }
 }
 
-/// Stiffness in bending of a round bond, N m/rad, from that along it, N/m: E I/L0 from E A/L0.
+/// Bending stiffness of a round bond, N m/rad, from its normal stiffness, N/m: E I/L0 from E A/L0.
 #[inline(always)]
 pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
     normal.scale(0.25) * radius_m * radius_m
@@ -98,23 +98,23 @@ pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
 pub struct Bonds {
     /// The two particles, the smaller index first.
     pub ends: Vec<[u32; 2]>,
-    /// What their forces come from; the last block may have room left.
+    /// Data for the force loop; the last block may have room left.
     pub blocks: Vec<BondBlock>,
     /// Factor on the strengths. Empty: 1 for all.
     pub strength_factors: Vec<f64>,
-    /// Damping along, across, torsion, bending: N s/m, N s/m, N m s/rad, N m s/rad. Empty: none is
-    /// damped.
+    /// Damping coefficients of normal, shear, torsion and bending: N s/m, N s/m, N m s/rad, N m
+    /// s/rad. Empty: no bond is damped.
     pub damping: Vec<[f64; 4]>,
-    /// What incremental bonds carry. Empty: none is incremental.
+    /// Histories of incremental bonds. Empty: no bond is incremental.
     #[serde(with = "histories")]
     pub histories: Vec<History>,
-    /// Those of the model.
+    /// Rules of the model.
     #[serde(skip)]
     pub rules: Arc<[BondRule]>,
-    /// Stiffness in torsion over that in bending, for each rule that has bonds: it depends on the
-    /// material only.
+    /// Ratio of torsional to bending stiffness, for each rule that has bonds: it depends only on
+    /// the material.
     pub torsion_per_bending: Vec<f64>,
-    /// Ends of rule_runs of bonds that follow the same rule, and the rule.
+    /// Runs of consecutive bonds that follow the same rule: the end of each run, and the rule.
     pub rule_runs: Vec<(usize, usize)>,
 }
 
@@ -124,20 +124,20 @@ impl Bonds {
         self.ends.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no bonds.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// Makes room for so many bonds more, and no more than that.
+    /// Reserves room for exactly this many more bonds.
     pub fn reserve_exact(&mut self, count: usize) {
         self.ends.reserve_exact(count);
         let blocks = (self.len() + count).div_ceil(BLOCK);
         self.blocks.reserve_exact(blocks - self.blocks.len());
     }
 
-    /// Adds a bond that follows the rule of this number. Bonds are to be added in the order that
-    /// [`Bonds`] names.
+    /// Adds a bond that follows the rule with this number. Bonds must be added in the order given
+    /// at [`Bonds`].
     pub fn push(
         &mut self,
         ends: [u32; 2],
@@ -173,8 +173,8 @@ impl Bonds {
         }
     }
 
-    /// Adds a copy of bond `at` of others that follow the same rules, between these ends, with its
-    /// strength times a factor.
+    /// Adds a copy of bond `at` of another set with the same rules, between these ends, with its
+    /// strength multiplied by a factor.
     pub fn push_copy(&mut self, other: &Self, at: usize, ends: [u32; 2], factor: f64) {
         let rule = other.rule_of(at);
         let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
@@ -200,7 +200,7 @@ impl Bonds {
         }
     }
 
-    /// Stiffness along bond `at`, N/m; 0 if it is broken.
+    /// Normal stiffness of bond `at`, N/m; 0 if it is broken.
     pub fn normal(&self, at: usize) -> f64 {
         self.blocks[at / BLOCK].normal[at % BLOCK]
     }
@@ -210,13 +210,13 @@ impl Bonds {
         self.blocks[at / BLOCK].radii_m[at % BLOCK]
     }
 
-    /// Distances of the contact point of bond `at` from its two ends at the start, m.
+    /// Initial distances of the contact point of bond `at` from its two ends, m.
     pub fn levers_m(&self, at: usize) -> [f64; 2] {
         let [a, b] = &self.blocks[at / BLOCK].levers_m;
         [a[at % BLOCK], b[at % BLOCK]]
     }
 
-    /// What bond `at` answers.
+    /// Stiffnesses of bond `at`.
     pub fn stiffness(&self, at: usize) -> Stiffness {
         let (normal, radius_m) = (self.normal(at), self.radius_m(at));
         let bending = bending_stiffness(normal, radius_m);
@@ -229,7 +229,7 @@ impl Bonds {
         }
     }
 
-    /// What bond `at`, which is not broken, does to its ends.
+    /// Forces of bond `at`, which must not be broken, on its ends.
     pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
         let [a, b] = self.ends[at].map(|end| &poses[end as usize]);
         let stiffness = self.stiffness(at);
@@ -241,8 +241,8 @@ impl Bonds {
         total::bond_forces(&stiffness, &self.direction(at), &ends)
     }
 
-    /// How what bond `at`, which is not broken, does to its ends changes as they move and turn, by
-    /// the total formulation.
+    /// Derivatives of the forces of bond `at`, which must not be broken, with respect to
+    /// displacements and rotations of its ends, by the total formulation.
     pub fn tangent(&self, at: usize, poses: &[Pose]) -> BondTangent {
         let ends = self.ends[at].map(|end| poses[end as usize].end());
         bond_tangent(&self.stiffness(at), &self.direction(at), &ends)
@@ -270,7 +270,7 @@ impl Bonds {
         self.normal(at) == 0.0
     }
 
-    /// Takes all stiffness, damping and history from bond `at`.
+    /// Removes all stiffness, damping and history of bond `at`.
     pub fn set_broken(&mut self, at: usize) {
         let block = &mut self.blocks[at / BLOCK];
         block.normal[at % BLOCK] = 0.0;
@@ -283,13 +283,13 @@ impl Bonds {
         }
     }
 
-    /// Number of the rule that bond `at` follows.
+    /// Number of the rule of bond `at`.
     pub fn rule_of(&self, at: usize) -> usize {
         let stretch = self.rule_runs.partition_point(|(end, _)| *end <= at);
         self.rule_runs[stretch].1
     }
 
-    /// The rule_runs of bonds of one rule that a range of bonds consists of: rule and bonds.
+    /// The runs of bonds with the same rule in a range of bonds: rule and bonds.
     pub fn runs(&self, range: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
         let starts = std::iter::once(0).chain(self.rule_runs.iter().map(|(end, _)| *end));
         starts

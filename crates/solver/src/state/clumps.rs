@@ -1,4 +1,4 @@
-//! Rigid clumps: bodies that move as one, and what they are made of.
+//! Rigid clumps: bodies that move as one, and their spheres.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,9 +15,9 @@ use crate::shape::inertia::MassProperties;
 /// A sphere of a template.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SubSphere {
-    /// Centre, from the clump's centre along its principal axes, m. Length 3.
+    /// Centre, relative to the clump's centre along its principal axes, m. Length 3.
     pub place_m: [f64; 3],
-    /// How the sphere is turned against the principal axes: unit quaternion x, y, z, w.
+    /// Orientation of the sphere relative to the principal axes: unit quaternion x, y, z, w.
     pub turned: [f64; 4],
     /// m.
     pub radius_m: f64,
@@ -27,7 +27,7 @@ pub struct SubSphere {
     pub inertia_kg_m2: f64,
 }
 
-/// The spheres of a rigid body whose mass properties are these, from particles as they stand.
+/// The spheres of a rigid body with these mass properties, from particles at their present poses.
 pub fn sub_spheres<'a>(
     particles: impl Iterator<Item = (&'a Pose, &'a Motion)>,
     properties: &MassProperties,
@@ -59,27 +59,27 @@ pub struct Scatter {
     pub modulus: f64,
 }
 
-/// What clumps of one shape have in common. Stored once, however many there are.
+/// Data common to clumps of one shape. Stored once, whatever the number of clumps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// Name of the body in the scene.
     pub body: String,
     /// kg.
     pub mass_kg: f64,
-    /// Principal moments of inertia, rising, kg m2. Length 3.
+    /// Principal moments of inertia, ascending, kg m2. Length 3.
     pub moments_kg_m2: [f64; 3],
     /// Rotation from the principal axes to those of the body's file: unit quaternion x, y, z, w.
     pub axes: [f64; 4],
     /// Centre of mass in the axes of the file, m. Length 3.
     pub centre_m: [f64; 3],
-    /// Largest distance of a point of it from the centre of mass, m.
+    /// Largest distance of a point from the centre of mass, m.
     pub reach_m: f64,
     /// All its spheres.
     pub spheres: Vec<SubSphere>,
-    /// Those that can be touched: numbers in `spheres`, rising. Only these are in the scene while
-    /// it is a clump.
+    /// The outer spheres, which can be touched: numbers in `spheres`, ascending. Only these are in
+    /// the scene while the body is a clump.
     pub outer: Vec<u32>,
-    /// Radius of a contact sphere of the clump over that of the sphere.
+    /// Ratio of the radius of a contact sphere of the clump to that of the sphere.
     pub scale: f64,
     /// Number of its material.
     pub material: u8,
@@ -87,42 +87,42 @@ pub struct Template {
     pub bonds: Bonds,
     /// For each of `spheres`, its number in the body's file.
     pub file_number: Vec<u32>,
-    /// How strengths of bonds scatter. None: not at all.
+    /// Scatter of bond strengths. None: no scatter.
     pub scatter: Option<Scatter>,
     /// For each of `bonds`, its number in the body's file.
     pub bonds_of_file: Vec<u32>,
 }
 
-/// A rigid clump. Velocity and angular momentum stand half a step before or after its place, as
-/// those of particles do.
+/// A rigid clump. Like those of particles, velocity and angular momentum are half a step before or
+/// after its position.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clump {
-    /// Which template.
+    /// Its template.
     pub template: u32,
     /// Its number among the clusters.
     pub cluster: u32,
-    /// How many bodies of the scene came before it.
+    /// Number of bodies of the scene added before it.
     pub instance: u32,
     /// Centre of mass, m. Length 3.
     pub place_m: [f64; 3],
-    /// From its principal axes to space: unit quaternion x, y, z, w.
+    /// Rotation from its principal axes to space: unit quaternion x, y, z, w.
     pub turned: [f64; 4],
     /// Of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],
     /// About the centre of mass, along the axes of space, kg m2/s. Length 3.
     pub angular_momentum: [f64; 3],
-    /// What acts on it in this step, N. Length 3.
+    /// Force on it in this step, N. Length 3.
     pub force_n: [f64; 3],
-    /// About its centre of mass, N m. Length 3.
+    /// Torque about its centre of mass, N m. Length 3.
     pub torque_n_m: [f64; 3],
-    /// First of its spheres among the particles.
+    /// The first of its spheres among the particles.
     pub first: u32,
-    /// Which of [`Clumps::near`] are its own: from the first of these numbers to before the second.
+    /// Its range of [`Clumps::near`]: the first index and the one after the last.
     pub near: [u32; 2],
     /// Energy that contacts have taken from its motion so far, J: the sum over all times at which
     /// they slowed it down.
     pub impact_energy_j: f64,
-    /// Whether it sleeps: it is not stepped then, and nothing is near it.
+    /// Whether it sleeps: then it is skipped, and nothing is near it.
     pub asleep: bool,
 }
 
@@ -132,16 +132,16 @@ pub struct Clumps {
     /// Shapes: those of the model, then those of fragments.
     #[serde(skip)]
     pub templates: Vec<Arc<Template>>,
-    /// Those that are there.
+    /// Existing clumps.
     pub all: Vec<Clump>,
-    /// Their spheres that are near a wall or a particle, rising, as particles are counted: only
-    /// these follow in every step. The others do when somebody asks.
+    /// Their spheres that are near a wall or a particle, particle numbers in ascending order: only
+    /// these are updated in every step. The others are updated on demand.
     pub near: Vec<u32>,
 }
 
 impl Template {
-    /// The clump's sphere of this number while the clump stands so: place, radius, and how it is
-    /// turned. The radius is not scaled.
+    /// Pose of the sphere with this number for this pose of the clump: position, radius and
+    /// rotation. The radius is not scaled.
     pub fn pose(&self, sphere: usize, clump: &Clump) -> Pose {
         let sphere = &self.spheres[sphere];
         let turned = rotation(clump.turned);
@@ -153,14 +153,14 @@ impl Template {
         }
     }
 
-    /// The particles that a clump of it carries whose first is this.
+    /// The particles that a clump of this template carries, given the first.
     pub fn spheres_from(&self, first: u32) -> Range<usize> {
         let first = first as usize;
         first..first + self.outer.len()
     }
 
-    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): what contacts are told
-    /// of each of its spheres.
+    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): the values that
+    /// contacts use for each of its spheres.
     pub fn inert(&self) -> [f64; 2] {
         let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
         [1.0 / self.mass_kg, 1.0 / mean]
@@ -180,7 +180,7 @@ impl Clump {
             + kinetic_j(&self.turned, self.angular_momentum, template.moments_kg_m2)
     }
 
-    /// How one of its spheres moves with it, as far as its place is concerned.
+    /// Motion of a sphere of the clump at this position.
     pub fn motion_at(&self, template: &Template, place: &Vector3<f64>) -> Motion {
         let spin = self.spin_rad_s(template);
         let arm = place - Vector3::from(self.place_m);
@@ -205,7 +205,7 @@ impl Clumps {
         self.template(clump).spheres_from(clump.first)
     }
 
-    /// Number of the clump that carries a particle. None: it moves by itself.
+    /// Number of the clump that carries a particle. None: the particle is free.
     pub fn carrier_of(&self, particle: usize) -> Option<usize> {
         let after = self
             .all
@@ -213,8 +213,7 @@ impl Clumps {
         after.checked_sub(1)
     }
 
-    /// Takes spheres, rising, as those that are near something, and tells each clump which are its
-    /// own.
+    /// Sets the spheres, in ascending order, that are near something, and the range of each clump.
     pub fn set_near(&mut self, near: Vec<u32>) {
         for clump in &mut self.all {
             let Range { start, end } =
@@ -225,7 +224,7 @@ impl Clumps {
         self.near = near;
     }
 
-    /// Mass of all, kg.
+    /// Mass of all clumps, kg.
     pub fn mass_kg(&self) -> f64 {
         self.all
             .iter()
@@ -233,7 +232,7 @@ impl Clumps {
             .sum()
     }
 
-    /// Kinetic energy of all, as they move, J.
+    /// Kinetic energy of all clumps, J.
     pub fn kinetic_j(&self) -> f64 {
         self.all
             .iter()
@@ -241,7 +240,8 @@ impl Clumps {
             .sum()
     }
 
-    /// Adds the contact spheres of a clump at the end of the particles, and tells it where.
+    /// Appends the contact spheres of a clump to the particles and records their position in the
+    /// clump.
     pub fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
         clump.first = particles.len() as u32;
         for &sphere in &template.outer {

@@ -1,12 +1,12 @@
 //! Clusters: particles joined by bonds that are not broken (Platzer 2022, section 4.2).
 //!
-//! Stands for algorithms 2 (detection) and 3 (triggers, in [`triggers`]) there. Algorithm 2 is not
-//! taken as printed: it reads the first partner of a bond twice, and a bond between two clusters
-//! found so far adds a particle to one of them instead of joining the two. Here sets are disjoint
+//! Replaces algorithms 2 (detection) and 3 (triggers, in [`triggers`]) there. Algorithm 2 is not
+//! used as printed: it reads the first partner of a bond twice, and a bond between two clusters
+//! already found adds a particle to one of them instead of joining the two. Here sets are disjoint
 //! by construction (union-find).
 //!
-//! Only clusters with a bond broken since are searched, at a cost that grows with their particles
-//! and bonds alone.
+//! Only clusters in which a bond has broken since the last search are searched, at a cost that
+//! depends only on the number of their particles and bonds.
 
 pub mod fragments;
 pub mod triggers;
@@ -20,14 +20,14 @@ use dem_io::disjoint::{find, join};
 pub use fragments::{Fragment, fragments};
 pub use triggers::Triggers;
 
-/// A cluster that is or was.
+/// A present or former cluster.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cluster {
-    /// The cluster that it broke off; none: it was there from the start or came later whole.
+    /// The cluster that it broke off from; none: it was there from the start or was added later.
     pub parent: Option<u32>,
-    /// When it was found, s.
+    /// Time at which it was found, s.
     pub created_s: f64,
-    /// When it was found in pieces, s; none: it is whole.
+    /// Time at which it was found in pieces, s; none: it is intact.
     pub ended_s: Option<f64>,
     /// Number of its particles.
     pub particles: u32,
@@ -36,36 +36,36 @@ pub struct Cluster {
 /// A cluster found in pieces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Split {
-    /// The cluster that was.
+    /// The former cluster.
     pub parent: u32,
-    /// What it consists of now, in the order of their smallest particles.
+    /// Its fragments, in the order of their smallest particles.
     pub children: Vec<u32>,
 }
 
 /// The clusters of a scene.
 ///
-/// A number stands for the same particles as long as the run lasts and is never used again: a
-/// cluster found whole keeps its number, one found in pieces ends, and every piece, the largest as
-/// well, gets a new one.
+/// A number stands for the same particles throughout the run and is never reused: a cluster found
+/// intact keeps its number; one found in pieces ends, and every fragment, even the largest, gets a
+/// new number.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clusters {
     /// The cluster of each particle.
     pub of_particle: Vec<u32>,
     /// All clusters, by number.
     pub history: Vec<Cluster>,
-    /// Particles, those of a cluster together, in order.
+    /// Particles, sorted by cluster, then by number.
     #[serde(skip)]
     members: Vec<u32>,
-    /// Where in `members` those of each cluster begin.
+    /// Start of each cluster in `members`.
     #[serde(skip)]
     starts: Vec<u32>,
-    /// The bonds that particle i is the first end of are `first_bonds[i]..first_bonds[i + 1]`.
+    /// Particle i is the first end of the bonds `first_bonds[i]..first_bonds[i + 1]`.
     #[serde(skip)]
     first_bonds: Vec<usize>,
-    /// Sets that are being joined; between searches, each particle names itself.
+    /// Sets that are being joined; between searches, each particle is its own set.
     #[serde(skip)]
     names: Vec<u32>,
-    /// Particles looked at in all searches so far.
+    /// Particles visited in all searches so far.
     pub visited: u64,
 }
 
@@ -81,15 +81,16 @@ impl Clusters {
             + size_of_val(&self.first_bonds[..])
     }
 
-    /// The clusters of so many particles with these bonds, of which some may be broken, at time 0.
+    /// The clusters of this number of particles with these bonds, some of which may be broken, at
+    /// time 0.
     pub fn new(particles: usize, bonds: &Bonds) -> Self {
         let mut clusters = Self::default();
         clusters.extend(0.0, particles, bonds);
         clusters
     }
 
-    /// Finds the clusters of particles that have come since, for a scene of now so many particles
-    /// with these bonds in all. New bonds join new particles only.
+    /// Finds the clusters of particles added since, for a scene that now has this number of
+    /// particles and these bonds. New bonds join new particles only.
     pub fn extend(&mut self, time_s: f64, particles: usize, bonds: &Bonds) {
         let known = self.of_particle.len();
         self.first_bonds = first_bonds(bonds, particles);
@@ -101,7 +102,7 @@ impl Clusters {
         self.number(None, time_s, known..particles);
     }
 
-    /// Rebuilds from the cluster of each particle, all clusters and these bonds what else is known.
+    /// Rebuilds the remaining data from the cluster of each particle, all clusters and these bonds.
     /// None if the three do not belong together.
     pub fn rebuild(&mut self, bonds: &Bonds) -> Option<()> {
         let (of_particle, history) = (&self.of_particle, &self.history);
@@ -144,7 +145,7 @@ impl Clusters {
         }
     }
 
-    /// Numbers of the clusters that are whole, in order.
+    /// Numbers of the intact clusters, in order.
     pub fn living(&self) -> impl Iterator<Item = u32> {
         (0..self.history.len() as u32).filter(|id| self.history[*id as usize].ended_s.is_none())
     }
@@ -158,8 +159,8 @@ impl Clusters {
         ids
     }
 
-    /// Searches the clusters with these numbers, each once; those that have ended are left alone.
-    /// Returns the ones found in pieces, in order.
+    /// Searches the clusters with these numbers, each once; skips those that have ended. Returns
+    /// the ones found in pieces, in order.
     pub fn update(&mut self, time_s: f64, damaged: &[u32], bonds: &Bonds) -> Vec<Split> {
         let mut ids = damaged.to_vec();
         ids.sort_unstable();
@@ -180,7 +181,7 @@ impl Clusters {
         splits
     }
 
-    /// Joins the sets of those of `members[range]` that are bonded.
+    /// Joins the sets of bonded particles in `members[range]`.
     fn join_bonded(&mut self, range: std::ops::Range<usize>, bonds: &Bonds) {
         self.visited += range.len() as u64;
         for &p in &self.members[range] {
@@ -195,8 +196,8 @@ impl Clusters {
         }
     }
 
-    /// Makes a cluster of each set in `members[range]`, and sets them apart again. Makes none if
-    /// they are one set and have a parent: that is whole.
+    /// Makes a cluster of each set in `members[range]`, and resets the sets. Makes none if they are
+    /// one set and have a parent: that cluster is intact.
     fn number(
         &mut self,
         parent: Option<u32>,
@@ -213,7 +214,7 @@ impl Clusters {
         }
         let first = self.history.len();
         for (p, root) in members.iter().zip(&roots) {
-            // The name of a set is its smallest particle, and comes first.
+            // The name of a set is its smallest particle, which comes first.
             if p == root {
                 self.of_particle[*p as usize] = self.history.len() as u32;
                 self.history.push(Cluster {

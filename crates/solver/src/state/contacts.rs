@@ -1,5 +1,4 @@
-//! Contacts between particles: which pairs may touch, what each remembers, and what the kinds of
-//! contacts are.
+//! Contacts between particles: pairs that may touch, their histories, and the types of contacts.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,24 +7,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::physics::contact::law::ContactKind;
 
-/// What a contact remembers. Two cache lines, of which contacts without rolling friction use the
-/// first.
+/// History of a contact. Two cache lines; contacts without rolling friction use only the first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct ContactHistory {
-    /// Tangential spring x, y, z and the overlap of the law, m.
+    /// Tangential displacement x, y, z and the overlap of the law, m.
     pub tangential: [f64; 4],
     /// Damping force on the second end x, y, z, N, and the overlap at which the law begins, m,
-    /// which is 0 but for pairs that [parted overlapping](crate::physics::contact::relaxation).
+    /// which is 0 except for pairs that
+    /// [separated while overlapping](crate::physics::contact::relaxation).
     pub damping: [f64; 4],
-    /// Rolling spring x, y, z, rad, and nothing.
+    /// Rolling displacement x, y, z, rad, and an unused number.
     pub rolling: [f64; 4],
-    /// Damping moment on the second end x, y, z, N m, and nothing.
+    /// Damping moment on the second end x, y, z, N m, and an unused number.
     pub rolling_damping: [f64; 4],
 }
 
 impl ContactHistory {
-    /// Of a pair whose law begins at this overlap, m.
+    /// The history of a pair whose law begins at this overlap, m.
     pub fn separated_at(overlap_m: f64) -> Self {
         Self {
             damping: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
@@ -33,7 +32,7 @@ impl ContactHistory {
         }
     }
 
-    /// Of a pair whose law has been pressed by this overlap, m, and by nothing else.
+    /// The history of a pair with this overlap of the law, m, and nothing else.
     pub fn pressed_by(overlap_m: f64) -> Self {
         Self {
             tangential: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
@@ -41,7 +40,7 @@ impl ContactHistory {
         }
     }
 
-    /// The same of a pair that is named the other way round.
+    /// The history with the two particles exchanged.
     pub fn reversed(&self) -> Self {
         let back = |[x, y, z, last]: [f64; 4]| [-x, -y, -z, last];
         Self {
@@ -52,7 +51,7 @@ impl ContactHistory {
         }
     }
 
-    /// Overlap of the law, m; above 0 where the two press on each other.
+    /// Overlap of the law, m; above 0 if the two press on each other.
     #[inline(always)]
     pub fn overlap_m(&self) -> f64 {
         self.tangential[3]
@@ -65,94 +64,97 @@ impl ContactHistory {
     }
 }
 
-/// How particles meet.
+/// Contact model of the particles.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct ContactModel {
-    /// Kinds of contacts.
+    /// Types of contacts.
     pub kinds: Vec<ContactKind>,
-    /// For each material and each other the number of the kind: row by row, length materials
+    /// For each pair of materials the number of the contact type: row by row, length materials
     /// squared.
     pub kind_of: Vec<u8>,
-    /// No particle can ever meet another, only walls: there is one piece, and it cannot break. No
-    /// pairs are looked for.
+    /// Particles can never touch each other, only walls: there is one piece, and it cannot break.
+    /// No search for pairs.
     pub alone: bool,
-    /// Whether the overlap of a pair that is listed for the first time is the origin of its law.
+    /// Whether the overlap of a pair at its first listing is the origin of its law.
     pub relaxes: bool,
-    /// A pair that parted overlapping is ordinary below this share of its reduced radius.
+    /// A pair that separated while overlapping becomes ordinary below this fraction of its
+    /// effective radius.
     pub least_overlap: f64,
 }
 
-/// Contacts of all particles. None where the scene has one body and no other can come.
+/// Contacts of all particles. None if the scene has one body and no other can be added.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Contacts {
-    /// How particles meet: that of the model.
+    /// Contact model of the particles, that of the model.
     #[serde(skip)]
     pub model: Arc<ContactModel>,
     /// Material of each particle.
     pub materials: Vec<u8>,
     /// Pairs that touch or are near, the smaller index first, sorted.
     pub pairs: Vec<[u32; 2]>,
-    /// What each remembers. Length as `pairs`.
+    /// History of each pair. Length as `pairs`.
     pub histories: Vec<ContactHistory>,
-    /// Surfaces closer than this were near when pairs were looked for, m.
+    /// Skin of the Verlet list: pairs with surfaces closer than this were listed at the last
+    /// search, m.
     pub skin_m: f64,
-    /// What every particle may move before pairs have to be looked for again, m.
+    /// Distance that every particle may move before the next search for pairs, m.
     pub skin_left_m: f64,
-    /// What the fastest particle moved in the last step, m.
+    /// Distance that the fastest particle moved in the last step, m.
     pub moved_m: f64,
-    /// Energy that friction and that damping took so far, booked at the first particle of each
-    /// pair, J.
+    /// Energy lost to friction and to damping so far, assigned to the first particle of each pair,
+    /// J.
     pub lost_j: Vec<[f64; 2]>,
-    /// The same of particles that are no more, J.
+    /// The same for removed particles, J.
     pub lost_by_removed_j: [f64; 2],
-    /// What can be rebuilt.
+    /// Data that can be rebuilt.
     #[serde(skip)]
     pub scratch: ContactScratch,
 }
 
-/// What can be rebuilt of contacts, or holds for one step only.
+/// Contact data that can be rebuilt, or are valid for one step only.
 #[derive(Debug, Clone, Default)]
 pub struct ContactScratch {
-    /// Who works on what.
+    /// Division of the work.
     pub partitions: Vec<ContactPartition>,
-    /// Number of partitions that was asked for: few contacts make fewer.
+    /// Requested number of partitions: few contacts need fewer.
     pub wanted_partitions: usize,
-    /// Of the near pairs those that were closer than this when all were looked at are computed, m.
+    /// Only the listed pairs that were closer than this at the last check of all pairs are
+    /// computed, m.
     pub close_m: f64,
-    /// What every particle may move before all are looked at again, m: that is due at 0.
+    /// Distance that every particle may move before the next check of all pairs, m; the check is
+    /// due at 0.
     pub close_skin_left_m: f64,
-    /// The first pair that is pressed into each other by more than the radius of the smaller one,
-    /// of this step.
+    /// The first pair in this step that overlaps by more than the radius of the smaller particle.
     pub excessive_overlap: Option<[u32; 2]>,
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger
-/// index; and copies of those with smaller ones.
+/// index, and copies of those with smaller ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPartition {
     /// Its particles.
     pub particles: Range<usize>,
     /// Its contacts: their first particles are its own.
     pub own: Range<usize>,
-    /// Contacts of which only the second particle is its own.
+    /// Contacts whose second particle only is its own.
     pub border: Vec<u32>,
-    /// What those remembered before this step.
+    /// Histories of those before this step.
     pub border_histories: Vec<ContactHistory>,
-    /// For each kind the contacts that were close when all were looked at, or at the look before:
-    /// numbers in `border`, and in all.
+    /// For each type the contacts that were close at the last check of all, or at the check before
+    /// it: numbers in `border`, and in all.
     pub close: Vec<[Vec<u32>; 2]>,
-    /// Which of its contacts were close when all were looked at: a bit for each, eight to a byte.
+    /// Its contacts that were close at the last check of all: a bit for each, eight to a byte.
     pub was_close: Vec<u8>,
-    /// How many of its contacts touch in this step, or did in the one before.
+    /// Number of its contacts that touch in this step, or did in the previous one.
     pub computed: usize,
-    /// How many of those with rolling friction.
+    /// Number of those with rolling friction.
     pub rolled: usize,
     /// See [`ContactScratch::excessive_overlap`].
     pub excessive_overlap: Option<[u32; 2]>,
 }
 
 impl Contacts {
-    /// The kind of a contact between two particles.
+    /// The type of a contact between two particles.
     #[inline(always)]
     pub fn kind(&self, [a, b]: [u32; 2]) -> usize {
         if self.model.kinds.len() == 1 {
@@ -163,9 +165,9 @@ impl Contacts {
         usize::from(self.model.kind_of[a * count + b])
     }
 
-    /// Takes a new list of pairs; pairs that were listed before keep what they remember. The
-    /// overlap of one that is listed for the first time is the origin of its law: there was nothing
-    /// between the two before, be it a bond or nothing at all.
+    /// Replaces the list of pairs; pairs that were listed before keep their history. The overlap of
+    /// a newly listed pair is the origin of its law: the two had no contact before, whether they
+    /// were bonded or not.
     pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64) {
         let mut before = self.pairs.iter().zip(&self.histories).peekable();
         let histories = pairs
@@ -182,13 +184,13 @@ impl Contacts {
         self.pairs = pairs;
     }
 
-    /// How many pairs begin their law at an overlap that they parted with.
+    /// Number of pairs whose law begins at an overlap that they separated with.
     pub fn relaxing(&self) -> usize {
         let relaxes = |history: &&ContactHistory| history.origin_m() > 0.0;
         self.histories.iter().filter(relaxes).count()
     }
 
-    /// Divides the contacts into `count` partitions of about the same number each.
+    /// Divides the contacts into `count` partitions of about equal size.
     pub fn divide(&mut self, particles: usize, count: usize) {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;

@@ -1,4 +1,4 @@
-//! What happened in a step.
+//! Events of a step.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::clumps::{Clump, Template};
 use super::clusters::Split;
 use crate::physics::bond::failure::Cause;
 
-/// What happened in a step, in the order in which it did.
+/// Events of a step, in chronological order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Events {
     /// Steps done before it.
@@ -17,27 +17,27 @@ pub struct Events {
     pub broken: Vec<Break>,
     /// Clusters that were found in pieces.
     pub splits: Vec<Split>,
-    /// Bodies that came, left, or became others.
+    /// Bodies added, removed or replaced.
     pub population: Vec<PopulationEvent>,
-    /// How particles and bonds are counted after each of the changes that this took.
+    /// New numbers of particles and bonds after each of these changes.
     pub renumberings: Vec<Renumbering>,
     /// Bodies that fell asleep or woke.
     pub sleep: Vec<SleepEvent>,
-    /// Work that stages did within others.
+    /// Work that stages did as part of others.
     pub work: Work,
 }
 
-/// Work that stages did within others.
+/// Work that stages did as part of others.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Pairs that were listed and begin their law at an overlap.
+    /// Newly listed pairs whose law begins at an overlap.
     pub relaxing: usize,
-    /// Bonds that were looked at whose strength depends on the rate of strain.
+    /// Bonds checked whose strength depends on the strain rate.
     pub rates: usize,
 }
 
 impl Events {
-    /// Nothing has happened yet in a step that begins now.
+    /// Clears the events for a step that begins now.
     pub(crate) fn begin(&mut self, step: u64, time_s: f64) {
         self.step = step;
         self.time_s = time_s;
@@ -53,20 +53,20 @@ impl Events {
 /// A bond that has broken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Break {
-    /// Which bond.
+    /// Number of the bond.
     pub bond: u32,
     /// Halfway between its ends, m. Length 3.
     pub place_m: [f64; 3],
-    /// What it failed by.
+    /// Cause of failure.
     pub cause: Cause,
-    /// Elastic energy that it held, J.
+    /// Elastic energy that it stored, J.
     pub released_j: f64,
     /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted
     /// until the break.
     pub ends: [(u32, [f64; 6]); 2],
 }
 
-/// What has happened to bodies in a step.
+/// Events of bodies in a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PopulationEvent {
     /// A clump has become a bonded cluster.
@@ -75,7 +75,7 @@ pub enum PopulationEvent {
         cluster: u32,
         /// Name of its body.
         body: String,
-        /// Which condition was met: `enters`, `force`, `impact_energy`, `time`, `start`.
+        /// The condition that was met: `enters`, `force`, `impact_energy`, `time`, `start`.
         cause: &'static str,
         /// Mass before and after, kg.
         mass_kg: [f64; 2],
@@ -94,12 +94,12 @@ pub enum PopulationEvent {
         body: String,
         /// Number of its particles.
         particles: u32,
-        /// Strain and inner motion that it had, J.
+        /// Strain energy and kinetic energy of internal motion that it lost, J.
         lost_j: f64,
         /// Centre of mass, m. Length 3.
         place_m: [f64; 3],
     },
-    /// A body has come.
+    /// A body has entered through an inlet.
     Came {
         /// Its number among the clusters.
         cluster: u32,
@@ -110,7 +110,7 @@ pub enum PopulationEvent {
         /// Centre of mass, m. Length 3.
         place_m: [f64; 3],
     },
-    /// A body or a fragment has gone.
+    /// A body or a fragment has left through an outlet.
     Left {
         /// Its number among the clusters.
         cluster: u32,
@@ -123,7 +123,7 @@ pub enum PopulationEvent {
     },
 }
 
-/// Cause of the change of a body that comes through an inlet and starts as bonded.
+/// Cause of replacement for a body that comes through an inlet and starts as bonded.
 pub const STARTS_BONDED: &str = "start";
 
 /// Bodies that fell asleep or woke together.
@@ -135,9 +135,9 @@ pub struct SleepEvent {
     pub time_s: f64,
     /// `asleep` or `awake`.
     pub kind: &'static str,
-    /// Why: `rest`; `near` something that moves; `changed` into something else, or gone.
+    /// Cause: `rest`; `near` something that moves; `changed` into something else, or removed.
     pub cause: &'static str,
-    /// How many.
+    /// Number of bodies.
     pub bodies: usize,
 }
 
@@ -147,9 +147,9 @@ pub const REMOVED: u32 = u32::MAX;
 /// A clump that has become a bonded cluster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewCluster {
-    /// As it was.
+    /// Its former data.
     pub clump: Clump,
-    /// What it is made of.
+    /// Its template.
     pub template: Arc<Template>,
     /// First of its particles.
     pub first_particle: usize,
@@ -157,28 +157,28 @@ pub struct NewCluster {
     pub first_bond: usize,
 }
 
-/// How particles and bonds are counted now.
+/// New numbers of particles and bonds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Renumbering {
-    /// For each particle before, its number now, or [`REMOVED`].
+    /// For each old particle, its new number, or [`REMOVED`].
     pub particles: Vec<u32>,
-    /// For each bond before, its number now, or [`REMOVED`].
+    /// For each old bond, its new number, or [`REMOVED`].
     pub bonds: Vec<u32>,
     /// Particles from this number on are carried by clumps.
     pub free: u32,
-    /// Clusters that clumps have become.
+    /// Clusters made from clumps.
     pub created: Vec<NewCluster>,
 }
 
-/// Bodies that are to come, leave and become others.
+/// Bodies to be added, removed and replaced.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TopologyChange {
-    /// Clumps that become bonded clusters: numbers, rising.
+    /// Clumps that become bonded clusters: numbers, ascending.
     pub to_clusters: Vec<usize>,
-    /// Clusters that become clumps: their numbers, rising, and the clumps.
+    /// Clusters that become clumps: their numbers, ascending, and the clumps.
     pub to_clumps: Vec<(u32, Clump)>,
-    /// Clumps that come.
+    /// Clumps to be added.
     pub coming: Vec<Clump>,
-    /// Clusters that leave, be they clumps or not: their numbers, rising.
+    /// Clusters to be removed, clumps or not: their numbers, ascending.
     pub leaving: Vec<u32>,
 }

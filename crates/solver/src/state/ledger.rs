@@ -1,43 +1,43 @@
-//! The energy and momentum ledger: what went in and out since the start.
+//! The ledger of energy and momentum: totals supplied and removed since the start.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::walls::Wall;
 
-/// What went in and out since the start.
+/// Energy and momentum supplied and removed since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyLedger {
-    /// Whether the energy and momenta at the start have been taken down.
+    /// Whether the energy and momenta at the start have been recorded.
     pub(crate) is_open: bool,
     /// Up to the present moment; the half step after it is in `pending`.
     pub(crate) work: Work,
     pub(crate) pending: Work,
     /// Released by bonds that broke, J.
     pub(crate) released_j: f64,
-    /// Brought by bodies that came, J.
+    /// Net energy of added and removed bodies, J.
     pub(crate) brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.
     pub(crate) opening_j: f64,
-    /// Most that gravity had given, or taken, at a time, J.
+    /// Largest energy that gravity had supplied, or taken, at any time, J.
     pub(crate) fallen_j: f64,
     /// Largest energy and work seen, J.
     pub(crate) scale_j: f64,
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
-    /// millionth: less is rounding, J.
+    /// Energy at which all bonds are stretched, and all particles that can touch something are
+    /// pressed, by a millionth: anything less is rounding, J.
     pub(crate) rounding_floor_j: f64,
     /// The centre of mass at the start, about which moments are taken, m.
     pub(crate) about_m: [f64; 3],
     pub(crate) mass_kg: f64,
-    /// Sum of mass times place from `about_m`, kg m.
+    /// Sum of mass times position relative to `about_m`, kg m.
     pub(crate) first_moment: [f64; 3],
-    /// The same two of what sleeps, on which gravity does not act.
+    /// The same two for sleeping bodies, on which gravity does not act.
     pub(crate) asleep_kg: f64,
     pub(crate) asleep_moment: [f64; 3],
-    /// What momentum and angular momentum should be, N s and N m s.
+    /// Expected momentum and angular momentum, N s and N m s.
     pub(crate) momentum: [f64; 3],
     pub(crate) angular_momentum: [f64; 3],
-    /// Largest sums of magnitudes seen, N s and N m s.
+    /// Largest sums of magnitudes so far, N s and N m s.
     pub(crate) momentum_scale: f64,
     pub(crate) angular_momentum_scale: f64,
 }
@@ -52,8 +52,8 @@ pub(crate) struct Work {
 }
 
 impl EnergyLedger {
-    /// Energy of all bonds stretched, and of all particles that can touch something pressed, by a
-    /// millionth: less is rounding, J.
+    /// Energy at which all bonds are stretched, and all particles that can touch something are
+    /// pressed, by a millionth: anything less is rounding, J.
     pub fn rounding_floor_j(&self) -> f64 {
         self.rounding_floor_j
     }
@@ -63,8 +63,8 @@ impl EnergyLedger {
         self.mass_kg
     }
 
-    /// What a run could have in energy at most: that of the start, what loads, supports, walls and
-    /// gravity gave, J.
+    /// Upper bound of the energy of a run: that at the start plus that supplied by loads, supports,
+    /// walls, gravity and added bodies, J.
     pub fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
@@ -73,7 +73,7 @@ impl EnergyLedger {
         self.opening_j.abs() + given + self.rounding_floor_j
     }
 
-    /// Size of what gravity has given until now, J.
+    /// Magnitude of the energy supplied by gravity up to now, J.
     pub(crate) fn fallen_now_j(&self, gravity_m_s2: [f64; 3]) -> f64 {
         let fallen: f64 = (0..3).map(|k| gravity_m_s2[k] * self.first_moment[k]).sum();
         fallen.abs()
@@ -84,10 +84,9 @@ impl EnergyLedger {
         self.work.add(&pending, 1.0);
     }
 
-    /// Books something that comes (1) or goes (-1) between a kick and the drift after it: of this
-    /// mass, kg, at this place, m, with the velocity, m/s, and own angular momentum that it has
-    /// after the kick, and with this energy at the moment of the places, that in gravity left out,
-    /// J.
+    /// Records a body that is added (1) or removed (-1) between a kick and the drift after it: its
+    /// mass, kg, position, m, velocity, m/s, and own angular momentum after the kick, and its
+    /// energy at the time of the positions without the potential energy in gravity, J.
     pub fn bring(
         &mut self,
         sign: f64,
@@ -108,14 +107,14 @@ impl EnergyLedger {
         }
     }
 
-    /// Books energy that was gained without a cause that has a place of its own, J.
+    /// Records a gain of energy without an entry of its own, J.
     pub fn gain(&mut self, energy_j: f64) {
         self.brought_j += energy_j;
     }
 
-    /// Books something that stops where it is, between a kick and the drift after it: of this mass,
-    /// kg, at this place, m, with the velocity, m/s, and own angular momentum that it has after the
-    /// kick, and with this kinetic energy at the moment of the places, J.
+    /// Records a body that stops at its place, between a kick and the drift after it: its mass, kg,
+    /// position, m, velocity, m/s, and own angular momentum after the kick, and its kinetic energy
+    /// at the time of the positions, J.
     pub fn stop(
         &mut self,
         [mass_kg, kinetic_j]: [f64; 2],
@@ -130,7 +129,7 @@ impl EnergyLedger {
         }
     }
 
-    /// Takes down what sleeps from now on: masses, kg, and places, m.
+    /// Sets the sleeping bodies: masses, kg, and positions, m.
     pub fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
         self.asleep_kg = 0.0;
         self.asleep_moment = [0.0; 3];
@@ -142,7 +141,7 @@ impl EnergyLedger {
         }
     }
 
-    /// Where the centre of mass should be after a drift.
+    /// Advances the expected centre of mass by a drift.
     pub fn drift(&mut self, time_step_s: f64) {
         for k in 0..3 {
             self.first_moment[k] += time_step_s * self.momentum[k];
@@ -164,7 +163,7 @@ pub(crate) fn walls_work_j(walls: &[Wall]) -> f64 {
     walls.iter().map(|wall| wall.work_j).sum()
 }
 
-/// Momentum and angular momentum about a point of something of this mass, kg, place, m, velocity,
+/// Momentum and angular momentum about a point of a body with this mass, kg, position, m, velocity,
 /// m/s, and own angular momentum; and their magnitudes.
 pub(crate) fn momenta_of(
     mass_kg: f64,

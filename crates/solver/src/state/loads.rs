@@ -9,20 +9,20 @@ use serde::{Deserialize, Serialize};
 pub struct GroupLoad {
     /// The particles.
     pub particles: Vec<u32>,
-    /// On each, N. Length 3.
+    /// Force on each, N. Length 3.
     pub force_n: [f64; 3],
-    /// On each, N m. Length 3.
+    /// Torque on each, N m. Length 3.
     pub torque_n_m: [f64; 3],
-    /// Over time.
+    /// Course over time.
     pub factor: Factor,
-    /// From this time on it is zero, s; infinite: never.
+    /// Time from which on the load is zero, s; infinite: never.
     pub end_s: f64,
 }
 
 impl GroupLoad {
-    /// What the load is multiplied by in the kick at `time_s`, which makes up for half of the step
-    /// before and half of the one to come, `steps_s`. Where the load ends in between, its share of
-    /// that time: so its impulse is the same whatever the steps.
+    /// Factor on the load in the kick at `time_s`, which covers half of the previous step and half
+    /// of the next, `steps_s`. If the load ends in between, the factor is reduced to its fraction
+    /// of that time, so that its impulse does not depend on the steps.
     pub fn factor_in_kick(&self, time_s: f64, steps_s: [f64; 2]) -> f64 {
         let factor = factor_at(&self.factor, time_s);
         if self.end_s.is_infinite() {

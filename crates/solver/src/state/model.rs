@@ -1,4 +1,4 @@
-//! What the plan fixed: no step changes it.
+//! Data fixed by the plan: no step changes them.
 
 use std::sync::Arc;
 
@@ -12,27 +12,28 @@ use super::rules::Rules;
 use super::sleep::SleepRule;
 use super::walls::WallModel;
 
-/// What the plan fixed: no step changes it.
+/// Data fixed by the plan: no step changes them.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Model {
     /// m/s2. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// gamma of Chen et al. 2022, eqs. 11 and 12. 0: none.
     pub particle_damping: f64,
-    /// Kinds of bonds, in the order of their names.
+    /// Bond rules, in the order of their names.
     pub bond_rules: Arc<[BondRule]>,
-    /// How particles meet. None: nothing can touch.
+    /// Contact model of the particles. None: nothing can touch.
     pub contacts: Option<Arc<ContactModel>>,
     /// Walls, in the order of their names.
     pub walls: Vec<Arc<WallModel>>,
     /// Shapes of clumps.
     pub templates: Vec<Arc<Template>>,
-    /// What the outer spheres of clumps are for, m: see [`crate::shape::outer_layer::outer_layer`].
+    /// Ball radius that determines the outer spheres of clumps, m: see
+    /// [`crate::shape::outer_layer::outer_layer`].
     pub ball_m: f64,
-    /// When bodies come, go, and become others.
+    /// Rules for adding, removing and replacing bodies.
     pub rules: Rules,
-    /// When clusters are searched.
+    /// Triggers of the search for fragments.
     pub search: Triggers,
-    /// When bodies fall asleep. None: never.
+    /// Rule by which bodies fall asleep. None: they never do.
     pub sleep: Option<SleepRule>,
 }

@@ -1,7 +1,7 @@
-//! An order of particles in which near ones stand near each other, by halving: cut across the
-//! longest side of their box, sort each half likewise.
+//! A spatial order of particles in which near ones are near each other in memory, by bisection: cut
+//! across the longest side of their box, then sort each half likewise.
 
-/// Particles that are not divided further.
+/// Number of particles that are not divided further.
 const FEW: usize = 8;
 
 /// Indices of the positions in that order. Equal input gives equal order.

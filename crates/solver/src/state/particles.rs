@@ -8,11 +8,11 @@ use crate::physics::contact::kinematics::ContactSphere;
 use crate::physics::number::Vec3;
 use crate::physics::rotation::rotation;
 
-/// Where a particle is and how it is turned. One cache line.
+/// Position and rotation of a particle. One cache line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct Pose {
-    /// Centre x, y, z and, beside it for all who ask who is near, the radius of the sphere, m.
+    /// Centre x, y, z and, next to it for the neighbour search, the radius of the sphere, m.
     pub position_m: [f64; 4],
     /// Rotation since the start as a unit quaternion x, y, z, w. Length 4.
     pub turned: [f64; 4],
@@ -32,13 +32,13 @@ impl Pose {
         self.position_m[3]
     }
 
-    /// Puts the centre elsewhere, m.
+    /// Moves the centre to this position, m.
     #[inline(always)]
     pub fn put_at(&mut self, [x, y, z]: [f64; 3]) {
         self.position_m = [x, y, z, self.radius_m()];
     }
 
-    /// As the end of a bond.
+    /// The particle as the end of a bond.
     pub fn end(&self) -> End {
         End {
             position_m: self.place(),
@@ -53,8 +53,7 @@ impl Pose {
     }
 }
 
-/// How a particle moves, half a step after its pose (leapfrog), and how easily that changes. One
-/// cache line.
+/// Motion of a particle, half a step after its pose (leapfrog), and its inertia. One cache line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct Motion {
@@ -69,14 +68,14 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Velocity x, y, z, m/s, and one over the mass, 1/kg: as they stand in memory.
+    /// Velocity x, y, z, m/s, and inverse mass, 1/kg: as in memory.
     #[inline(always)]
     pub fn velocity_row(&self) -> [f64; 4] {
         let [x, y, z] = self.velocity_m_s;
         [x, y, z, self.inverse_mass]
     }
 
-    /// Spin x, y, z, rad/s, and one over the moment of inertia, 1/(kg m2): as they stand in memory.
+    /// Spin x, y, z, rad/s, and inverse moment of inertia, 1/(kg m2): as in memory.
     #[inline(always)]
     pub fn spin_row(&self) -> [f64; 4] {
         let [x, y, z] = self.spin_rad_s;
@@ -84,13 +83,13 @@ impl Motion {
     }
 }
 
-/// What acts on a particle.
+/// Force and torque on a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Wrench {
-    /// N: x, y, z and a fourth that means nothing.
+    /// Force, N: x, y, z and an unused fourth number.
     pub force_n: [f64; 4],
-    /// About the centre, N m: x, y, z and a fourth that means nothing.
+    /// Torque about the centre, N m: x, y, z and an unused fourth number.
     pub torque_n_m: [f64; 4],
 }
 
@@ -105,20 +104,20 @@ impl Wrench {
     }
 }
 
-/// All particles of a scene. Those of a body stand together, near ones near each other; those that
-/// clumps carry come last.
+/// All particles of a scene. Those of a body are contiguous, with near ones near each other; those
+/// carried by clumps come last.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Particles {
-    /// Where they are.
+    /// Positions and rotations.
     pub poses: Vec<Pose>,
-    /// How they move, and how easily that changes.
+    /// Motions and inertia.
     pub motions: Vec<Motion>,
-    /// What acts on them in this step.
+    /// Forces and torques in this step.
     #[serde(skip)]
     pub wrenches: Vec<Wrench>,
-    /// Number of those that move by themselves.
+    /// Number of free particles, which are not carried by clumps.
     pub free: usize,
-    /// For each whether its body sleeps. Empty: none does.
+    /// For each particle whether its body sleeps. Empty: none does.
     pub asleep: Vec<bool>,
 }
 
@@ -128,7 +127,7 @@ impl Particles {
         self.poses.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
     }
@@ -139,20 +138,20 @@ impl Particles {
         self.asleep.get(i).is_some_and(|asleep| *asleep)
     }
 
-    /// Kinetic energy of particle `i` when it moves so, J.
+    /// Kinetic energy of particle `i` with this motion, J.
     pub fn kinetic_j(&self, i: usize, motion: &Motion) -> f64 {
         let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
         0.5 * (square(&motion.velocity_m_s) / self.motions[i].inverse_mass
             + square(&motion.spin_rad_s) / self.motions[i].inverse_inertia)
     }
 
-    /// Radius of the smallest sphere, m; infinite where there is none.
+    /// Radius of the smallest sphere, m; infinite if there is none.
     pub fn smallest_radius_m(&self) -> f64 {
         let radii = self.poses.iter().map(Pose::radius_m);
         radii.fold(f64::INFINITY, f64::min)
     }
 
-    /// Radius of the largest sphere, m; 0 where there is none.
+    /// Radius of the largest sphere, m; 0 if there is none.
     pub fn largest_radius_m(&self) -> f64 {
         self.poses.iter().map(Pose::radius_m).fold(0.0, f64::max)
     }
@@ -163,7 +162,7 @@ impl Particles {
         1.0 / (self.motions[i].inverse_mass * volume)
     }
 
-    /// Particle `i` as contacts see it, at rest.
+    /// Particle `i` as a contact sphere at rest.
     pub fn contact_sphere_at_rest(&self, i: usize) -> ContactSphere {
         ContactSphere {
             velocity_m_s: Vec3(0.0, 0.0, 0.0),
@@ -174,7 +173,7 @@ impl Particles {
         }
     }
 
-    /// Makes room for so many particles more, and no more than that.
+    /// Reserves room for exactly this many more particles.
     pub fn reserve_exact(&mut self, count: usize) {
         self.poses.reserve_exact(count);
         self.motions.reserve_exact(count);

@@ -1,9 +1,9 @@
-//! Which particles and bonds each thread works on.
+//! Division of particles and bonds among threads.
 //!
 //! A partition is a range of particles. It computes every bond that has an end in its range, in the
-//! order of the bonds; bonds across the border of two partitions are computed by both. Bonds that
-//! are broken or of bodies that sleep belong to none. So no two threads write to the same place,
-//! and every sum keeps its order for any number of partitions.
+//! order of the bonds; bonds across the border of two partitions are computed by both. Broken bonds
+//! and bonds of sleeping bodies belong to no partition. So no two threads write to the same place,
+//! and the order of every sum is the same for any number of partitions.
 
 use std::ops::Range;
 
@@ -12,53 +12,53 @@ use super::bonds::Bonds;
 /// Bonds of one rule that a partition computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
-    /// Which of [`Bonds::rules`] they follow.
+    /// Number in [`Bonds::rules`].
     pub rule: usize,
-    /// Which they are.
+    /// The bonds.
     pub which: BondSelection,
 }
 
-/// Which bonds a batch holds.
+/// Selection of the bonds of a batch.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BondSelection {
-    /// One after another, none of them broken; their first ends are in the partition.
+    /// Consecutive bonds, none of them broken; their first ends are in the partition.
     Run(Range<usize>),
-    /// These; their first ends are in the partition.
+    /// Listed bonds; their first ends are in the partition.
     Own(Vec<u32>),
-    /// These; only their second ends are in the partition.
+    /// Listed bonds; only their second ends are in the partition.
     Border(Vec<u32>),
 }
 
-/// What one thread works on at a time.
+/// The work of one thread at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Partition {
     /// Its particles.
     pub particles: Range<usize>,
-    /// Those of them that do not sleep: as numbers within the partition.
+    /// Those of them that are awake: as numbers within the partition.
     pub awake: Vec<Range<usize>>,
-    /// Its bonds: those of the border first, so that each particle meets its bonds in their order.
+    /// Its bonds, border bonds first, so that each particle gets its bonds in their order.
     pub batches: Vec<Batch>,
-    /// Bonds of its own that have reached their strength in this step, in order.
+    /// Its own bonds that have reached their strength in this step, in order.
     pub failing: Vec<u32>,
-    /// How many bonds it has computed in this step.
+    /// Number of bonds that it has computed in this step.
     pub computed: Computed,
 }
 
-/// How many bonds a partition has computed.
+/// Number of bonds that a partition has computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Computed {
     /// Forces, by the total formulation.
     pub total: usize,
     /// Forces, by the incremental one.
     pub incremental: usize,
-    /// Compared with their strength.
+    /// Comparisons with the strength.
     pub compared: usize,
     /// Damping forces.
     pub damped: usize,
 }
 
 impl BondSelection {
-    /// How many of them are listed one by one.
+    /// Number of bonds that are listed individually.
     pub fn listed(&self) -> usize {
         match self {
             Self::Run(_) => 0,
@@ -66,7 +66,7 @@ impl BondSelection {
         }
     }
 
-    /// Number of bonds; those of a border are counted by the partition whose own they are.
+    /// Number of bonds; border bonds are counted by the partition that owns them.
     pub fn count(&self) -> usize {
         match self {
             Self::Run(range) => range.len(),
@@ -84,12 +84,12 @@ impl Partition {
 }
 
 /// Divides particles and bonds into `count` partitions with about the same number of bonds each;
-/// fewer where there are not enough particles.
+/// fewer if there are not enough particles.
 pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
     divide_awake(bonds, particles, count, &[])
 }
 
-/// Divides those particles and bonds that are not `asleep` (one for each particle; empty: none is).
+/// Divides the particles and bonds that are not `asleep` (one for each particle; empty: none is).
 pub fn divide_awake(
     bonds: &Bonds,
     particles: usize,
@@ -130,7 +130,7 @@ fn sleeps(asleep: &[bool], i: usize) -> bool {
     asleep.get(i).is_some_and(|asleep| *asleep)
 }
 
-/// The particles of a partition that do not sleep, as numbers within it.
+/// The awake particles of a partition, as numbers within it.
 fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for i in particles.clone().filter(|&i| !sleeps(asleep, i)) {
@@ -143,8 +143,8 @@ fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Gives the partitions their bonds once more, without those that have broken since and those of
-/// bodies that sleep.
+/// Reassigns the bonds to the partitions, without those that have broken since and those of
+/// sleeping bodies.
 pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
     let particles = partitions
         .last()
@@ -156,8 +156,8 @@ pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool])
     add_batches(bonds, partitions, &first_bond, asleep);
 }
 
-/// For each particle the first of the bonds that it is the first end of; and at the end the number
-/// of bonds. Length particles + 1.
+/// For each particle the first of the bonds whose first end it is, followed by the number of bonds.
+/// Length particles + 1.
 pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     let mut first_bond = vec![0_usize; particles + 1];
     for &[a, _] in &bonds.ends {
@@ -192,12 +192,12 @@ fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize]
     }
 }
 
-/// Whether nobody computes a bond: it is broken, or its body sleeps.
+/// Whether a bond is skipped: it is broken, or its body sleeps.
 fn is_left_out(bonds: &Bonds, at: usize, asleep: &[bool]) -> bool {
     bonds.is_broken(at) || sleeps(asleep, bonds.ends[at][0] as usize)
 }
 
-/// Gives each bond whose ends lie in two partitions to the partition of its second end as well.
+/// Assigns each bond whose ends lie in two partitions to the partition of its second end as well.
 fn add_borders(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
     let mut of_first = 0;
     for (at, &[a, b]) in bonds.ends.iter().enumerate() {

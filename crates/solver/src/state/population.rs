@@ -1,4 +1,4 @@
-//! Bodies that came, went and became others so far.
+//! Bodies added, removed and replaced so far.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::clumps::Template;
 
-/// How far replacement, inlets and outlets have come.
+/// Progress of replacement, inlets and outlets.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Population {
-    /// For each inlet what has come through it. Length as [`super::rules::Rules::inlets`].
+    /// Progress of each inlet. Length as [`super::rules::Rules::inlets`].
     pub inlets: Vec<InletProgress>,
-    /// For each outlet what has left through it. Length as [`super::rules::Rules::outlets`].
+    /// Totals of each outlet. Length as [`super::rules::Rules::outlets`].
     pub outlets: Vec<OutletTotals>,
     /// Shapes of fragments that became clumps. Their numbers follow those of the model's templates.
     pub fragments: Vec<FragmentTemplate>,
@@ -25,8 +25,7 @@ pub struct Population {
     pub replaced: u32,
     /// Clusters that became clumps again.
     pub restored: u32,
-    /// Bonds that were there times steps, and those that were left out because their bodies were
-    /// clumps.
+    /// Bond updates done, and those skipped because their bodies were clumps.
     pub bond_steps: [u64; 2],
 }
 
@@ -35,29 +34,29 @@ pub struct Population {
 pub struct FragmentTemplate {
     /// The template of the scene that it comes from.
     pub base: u32,
-    /// Its own.
+    /// Its own template.
     pub template: Arc<Template>,
 }
 
-/// How far an inlet has come.
+/// Progress of an inlet.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct InletProgress {
-    /// Bodies that have come.
+    /// Number of bodies fed.
     pub bodies: u32,
     /// Their mass, kg.
     pub mass_kg: f64,
-    /// Places that were looked at for the next body and were taken.
+    /// Positions tried for the next body that were occupied.
     pub tries: u32,
-    /// Step at which a place is looked for again.
+    /// Step of the next attempt.
     pub next_try: u64,
-    /// Bodies that had to wait for a place.
+    /// Bodies that had to wait for a free position.
     pub delayed: u32,
 }
 
 /// What an outlet has removed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutletTotals {
-    /// Bodies and fragments.
+    /// Number of bodies and fragments.
     pub bodies: u32,
     /// Their mass, kg.
     pub mass_kg: f64,

@@ -1,4 +1,4 @@
-//! Regions of space in which something is done.
+//! Regions of space used by the rules of a scene.
 
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub enum Region {
 }
 
 impl Region {
-    /// Whether a point is in it; m.
+    /// Whether it contains a point, m.
     pub fn contains(&self, point_m: [f64; 3]) -> bool {
         match self {
             Self::Box(bounds) => is_in(bounds, point_m),
@@ -76,7 +76,7 @@ impl Region {
         }
     }
 
-    /// A point of it for numbers in (0, 1), or none where they lead beside it: ask again with
+    /// A point of it from numbers in (0, 1), or none if they give a point outside: try again with
     /// others.
     pub fn point(&self, [u, v, w]: [f64; 3]) -> Option<[f64; 3]> {
         let Bounds { low, high } = self.bounds();
@@ -90,7 +90,7 @@ fn is_in(bounds: &Bounds, point: [f64; 3]) -> bool {
     (0..3).all(|k| (bounds.low[k]..=bounds.high[k]).contains(&point[k]))
 }
 
-/// How often a closed surface winds around a point: 1 inside, 0 outside (solid angles by van
+/// Winding number of a closed surface around a point: 1 inside, 0 outside (solid angles by van
 /// Oosterom and Strackee 1983).
 fn turns(triangles: &[[[f64; 3]; 3]], point: &Vector3<f64>) -> f64 {
     let mut angle = 0.0;

@@ -1,40 +1,40 @@
-//! When bodies come, go, and become others: what the scene says of regions, replacement, inlets and
-//! outlets.
+//! Rules for adding, removing and replacing bodies: regions, replacement, inlets and outlets of the
+//! scene.
 
 use serde::Serialize;
 
 use super::population::InletProgress;
 use super::regions::Region;
 
-/// When a clump becomes a bonded cluster (BPRM: Platzer 2022, section 4.5.4).
+/// Condition under which a clump becomes a bonded cluster (BPRM: Platzer 2022, section 4.5.4).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trigger {
     /// Its centre of mass is in this region: number in [`Rules::regions`].
     pub enters: Option<usize>,
-    /// Contacts push it with more than this together, N.
+    /// The resultant contact force exceeds this, N.
     pub force_n: Option<f64>,
     /// Contacts have taken more than this from its motion so far, J.
     pub impact_energy_j: Option<f64>,
     /// From this time on, s.
     pub time_s: Option<f64>,
-    /// All of these have to be true at once; else one is enough.
+    /// All of these must hold at once; otherwise one is enough.
     pub needs_all: bool,
 }
 
-/// When a cluster becomes a clump again.
+/// Conditions under which a cluster becomes a clump again.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Restore {
-    /// Its centre of mass is outside of this region: number in [`Rules::regions`].
+    /// Its centre of mass is outside this region: number in [`Rules::regions`].
     pub leaves: usize,
-    /// It has so many particles at least.
+    /// It has at least this many particles.
     pub min_particles: u32,
-    /// Its bonds hold less than this per mass, J/kg.
+    /// The elastic energy of its bonds per mass is below this, J/kg.
     pub strain_energy_j_kg: f64,
-    /// Its particles move against each other more slowly than this, root mean square, m/s.
+    /// The relative speed of its particles, root mean square, is below this, m/s.
     pub inner_speed_m_s: f64,
 }
 
-/// How fast bodies come.
+/// Feed rate of an inlet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Feed {
     /// Bodies per second.
@@ -43,16 +43,16 @@ pub enum Feed {
     Mass(f64),
 }
 
-/// Where bodies come from.
+/// A source of bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inlet {
     /// Its name in the scene.
     pub name: String,
-    /// Templates and their proportions by number, which add up to 1.
+    /// Templates and their proportions by number, which sum to 1.
     pub templates: Vec<(u32, f64)>,
-    /// Where centres of mass are put: number in [`Rules::regions`].
+    /// Region of the centres of mass: number in [`Rules::regions`].
     pub region: usize,
-    /// How fast.
+    /// Feed rate.
     pub feed: Feed,
     /// m/s. Length 3.
     pub velocity_m_s: [f64; 3],
@@ -67,7 +67,8 @@ pub struct Inlet {
 }
 
 impl Inlet {
-    /// Number of bodies that should have come by now and have not: more than one waits for a place.
+    /// Number of bodies that are due by now but have not been added: more than one waits for a free
+    /// position.
     pub fn owed(&self, progress: &InletProgress, time_s: f64) -> u32 {
         let [start_s, end_s] = self.between_s;
         let since_s = time_s.min(end_s) - start_s;
@@ -79,7 +80,7 @@ impl Inlet {
             Feed::Mass(_) if progress.bodies == 0 => 0.0,
             Feed::Mass(kg_s) => kg_s / progress.mass_kg * f64::from(progress.bodies),
         };
-        // The first is due at once, and none at the end.
+        // The first is due at once; none is due at the end.
         let should = if time_s < end_s {
             (since_s * per_s).floor() + 1.0
         } else {
@@ -89,27 +90,28 @@ impl Inlet {
     }
 }
 
-/// Where bodies go.
+/// A sink of bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outlet {
     /// Its name in the scene.
     pub name: String,
     /// Number in [`Rules::regions`].
     pub region: usize,
-    /// What is outside of the region goes; else what is inside.
+    /// Removes bodies outside the region; otherwise those inside.
     pub removes_outside: bool,
 }
 
-/// All of it.
+/// All rules of a scene.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Rules {
     /// Regions, in the order of their names.
     pub regions: Vec<Region>,
-    /// For each template, when its clumps become clusters. None: never.
+    /// For each template, the condition under which its clumps become clusters. None: never.
     pub triggers: Vec<Option<Trigger>>,
-    /// For each template, when clusters that come from it become clumps again. None: never.
+    /// For each template, the conditions under which clusters made from it become clumps again.
+    /// None: never.
     pub restores: Vec<Option<Restore>>,
-    /// For each template, whether bodies of it start as bonded clusters; and how they stand.
+    /// For each template, whether its bodies start as bonded clusters, and their orientation.
     pub starts: Vec<Start>,
     /// Inlets, in the order of their names.
     pub inlets: Vec<Inlet>,
@@ -119,19 +121,19 @@ pub struct Rules {
     pub seed: u64,
 }
 
-/// How bodies of a template start.
+/// Initial form of the bodies of a template.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Start {
-    /// As bonded clusters; else as clumps.
+    /// As bonded clusters; otherwise as clumps.
     pub bonded: bool,
-    /// How the scene turns the body: unit quaternion x, y, z, w, from the axes of its file to
-    /// space.
+    /// Orientation of the body in the scene: unit quaternion x, y, z, w, from the axes of its file
+    /// to space.
     pub turned: [f64; 4],
 }
 
 impl Rules {
-    /// When a fragment of a template that became a clump becomes a cluster: as the body does, but
-    /// not by the time, which has come already. None: never.
+    /// The condition under which a fragment of a template that became a clump becomes a cluster:
+    /// the same as for the body, but without the time, which has passed. None: never.
     pub fn trigger_of_fragment(&self, base: usize) -> Option<Trigger> {
         let trigger = self.triggers.get(base)?.clone()?;
         let asks = trigger.enters.is_some()
@@ -143,7 +145,7 @@ impl Rules {
         })
     }
 
-    /// Whether there is nothing to be done.
+    /// Whether there are no rules.
     pub fn are_none(&self) -> bool {
         self.inlets.is_empty()
             && self.outlets.is_empty()

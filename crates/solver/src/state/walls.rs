@@ -1,4 +1,4 @@
-//! Walls: where they stand, how they move, what touches them and what that does to them.
+//! Walls: their position and motion, their contacts and the resulting loads.
 
 use std::sync::Arc;
 
@@ -9,62 +9,62 @@ use super::contacts::ContactHistory;
 use crate::geometry::{Bounds, Frame, Shape};
 use crate::physics::contact::law::ContactKind;
 
-/// What the scene says of a wall.
+/// Definition of a wall in the scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct WallModel {
     /// Its name in the scene.
     pub name: String,
-    /// In its own frame, whose origin is the pivot.
+    /// Shape in its own frame, whose origin is the pivot.
     pub shape: Shape,
-    /// How it moves.
+    /// Its motion.
     pub motion: WallMotion,
     /// Velocity of a belt, m/s. Length 3.
     pub surface_velocity_m_s: [f64; 3],
-    /// How it meets each material: numbers in `kinds`. Length materials.
+    /// Contact type with each material: numbers in `kinds`. Length materials.
     pub kind_of: Vec<u8>,
-    /// Kinds of contacts.
+    /// Types of contacts.
     pub kinds: Vec<ContactKind>,
 }
 
-/// A wall of the scene, as it stands and moves.
+/// A wall of the scene, with its present position and motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Wall {
-    /// What the scene says of it: that of the model.
+    /// Its definition, that of the model.
     #[serde(skip)]
     pub model: Arc<WallModel>,
-    /// Where it stands now.
+    /// Its present position.
     pub frame: Frame,
-    /// Velocity of the pivot in the step just made and in the one to come, m/s.
+    /// Velocity of the pivot in the step just made and in the next, m/s.
     pub velocities_m_s: [[f64; 3]; 2],
-    /// Spin in the step just made and in the one to come, rad/s.
+    /// Spin in the step just made and in the next, rad/s.
     pub spins_rad_s: [[f64; 3]; 2],
-    /// Particles that are near, rising.
+    /// Particles near it, ascending.
     pub near: Vec<u32>,
-    /// What touches it, by particle and then by feature.
+    /// Contacts, by particle and then by feature.
     pub touching: Vec<WallContact>,
-    /// What it does to the particles that touch it.
+    /// Its load on the particles that touch it.
     pub push: WallLoad,
-    /// What it does to the particles that touch it and sleep, which are not among those.
+    /// Its load on sleeping particles that touch it, which is not in `push`.
     pub load_by_sleepers: WallLoad,
-    /// Stiffness of its contacts along their normals, together, N/m.
+    /// Sum of the stiffnesses of its contacts along their normals, N/m.
     pub stiffness_n_m: f64,
-    /// Energy that friction took so far, J.
+    /// Energy lost to friction so far, J.
     pub friction_j: f64,
-    /// Energy that damping took so far, J.
+    /// Energy lost to damping so far, J.
     pub damping_j: f64,
-    /// Work that it did on the particles up to the present, and in the half step to come, J.
+    /// Work on the particles up to the present, and in the next half step, J.
     pub work_j: f64,
     /// See `work_j`.
     pub pending_j: f64,
-    /// What holds for one step only.
+    /// Data valid for one step only.
     #[serde(skip)]
     pub scratch: WallScratch,
 }
 
-/// What holds of a wall for one step only.
+/// Data of a wall valid for one step only.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WallScratch {
-    /// The part of its push which is damping.
+    /// The damping part of `push`.
     pub damping: WallLoad,
     /// Elastic energy of its contacts, J.
     pub elastic_j: f64,
@@ -73,7 +73,7 @@ pub struct WallScratch {
 }
 
 impl Wall {
-    /// A wall that nothing touches yet.
+    /// A wall without contacts.
     pub fn new(model: Arc<WallModel>, frame: Frame) -> Self {
         Self {
             model,
@@ -93,7 +93,7 @@ impl Wall {
         }
     }
 
-    /// A wall that stands still and that nothing touches, of no material.
+    /// A wall at rest without contacts and without materials.
     pub fn standing(shape: Shape, frame: Frame) -> Self {
         let model = WallModel {
             shape,
@@ -102,7 +102,7 @@ impl Wall {
         Self::new(Arc::new(model), frame)
     }
 
-    /// Box around it in space, m: without end for a plane.
+    /// Bounding box in space, m: infinite for a plane.
     pub fn bounds_in_space(&self) -> Bounds {
         if matches!(self.model.shape, Shape::Plane(_)) {
             return self.model.shape.bounds();
@@ -111,8 +111,7 @@ impl Wall {
         Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
     }
 
-    /// Force, N, and torque about the pivot, N m, on all particles that touch it, be they awake or
-    /// asleep.
+    /// Force, N, and torque about the pivot, N m, on all particles that touch it, awake or asleep.
     pub fn total_load(&self) -> [[f64; 3]; 2] {
         let (awake, asleep) = (&self.push, &self.load_by_sleepers);
         let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
@@ -122,33 +121,33 @@ impl Wall {
         ]
     }
 
-    /// How it meets a material of this number, which it is known to meet.
+    /// Contact type with the material of this number, for which there must be one.
     pub fn kind(&self, material: u8) -> &ContactKind {
         &self.model.kinds[usize::from(self.model.kind_of[usize::from(material)])]
     }
 }
 
-/// A particle that touches a wall, and what is remembered of it.
+/// A contact between a particle and a wall, with its history.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WallContact {
-    /// Which particle.
+    /// Number of the particle.
     pub particle: u32,
-    /// Where on the wall: see [`crate::geometry::Touch`].
+    /// Feature of the wall: see [`crate::geometry::Touch`].
     pub feature: u32,
     /// Unit vector from the wall to the centre. Length 3.
     pub normal: [f64; 3],
-    /// Springs, overlap and origin.
+    /// Displacements, overlap and origin.
     pub history: ContactHistory,
 }
 
-/// What a wall does to the particles that touch it, together.
+/// Resultant load of a wall on the particles that touch it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct WallLoad {
     /// N.
     pub force_n: [f64; 3],
     /// About the wall's pivot, N m.
     pub torque_n_m: [f64; 3],
-    /// Power that the surface velocity of a belt takes, W.
+    /// Power supplied by the surface velocity of a belt, W.
     pub belt_w: f64,
 }
 
@@ -162,7 +161,7 @@ impl WallLoad {
         self.belt_w += belt_w;
     }
 
-    /// Power of the wall with the particles while it moves so, W.
+    /// Power that the wall supplies to the particles while it has this motion, W.
     pub fn power_w(&self, velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> f64 {
         let moving: f64 = (0..3)
             .map(|k| self.force_n[k] * velocity_m_s[k] + self.torque_n_m[k] * spin_rad_s[k])

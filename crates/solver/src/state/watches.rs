@@ -1,25 +1,25 @@
-//! What measures follow in every step: forces, and the contacts between two.
+//! Quantities that measures record in every step: forces, and contacts between two objects.
 
 use dem_scene::Quantity;
 use serde::{Deserialize, Serialize};
 
-/// A measure that is read in every step.
+/// A measure that is evaluated in every step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
-    /// What it is of.
+    /// The quantity.
     pub quantity: Quantity,
-    /// Whose forces and contacts.
+    /// The object whose forces and contacts it records.
     pub of: WatchTarget,
-    /// What it has seen.
+    /// The record.
     pub seen: Seen,
 }
 
-/// Whose forces and contacts are followed.
+/// Objects whose forces and contacts are recorded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WatchTarget {
-    /// A wall, by number, with all that touches it.
+    /// A wall, by number, with everything that touches it.
     Wall(usize),
-    /// Particles, for each of the state whether it is one of them, with all else.
+    /// Particles (a flag for each particle of the state), with everything else.
     Particles(Vec<bool>),
     /// Particles with a wall, by number.
     WithWall(Vec<bool>, usize),
@@ -27,21 +27,21 @@ pub enum WatchTarget {
     Between([Vec<bool>; 2]),
 }
 
-/// What has been seen so far.
+/// The record so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
     /// The present value, in the unit of the quantity.
     pub value: f64,
     /// All values.
     pub history: History,
-    /// Deepest overlap in the step before, m; below 0 by the distance of what is apart. None: there
-    /// was no step.
+    /// Deepest overlap in the previous step, m; for separate objects, minus their distance. None:
+    /// there was no step.
     pub overlap_m: Option<f64>,
-    /// How long the two have touched, s.
+    /// Total time of contact, s.
     pub touched_s: f64,
 }
 
-/// What a measure has shown so far. Values that are no numbers count as the last value alone.
+/// Statistics of a measure so far. Values that are not numbers only count as the last value.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct History {
     /// Time, s, and value.
@@ -52,12 +52,12 @@ pub struct History {
     pub smallest: Option<f64>,
     /// Integral over time.
     pub integral: f64,
-    /// Time that the integral is over, s.
+    /// Duration of the integral, s.
     pub duration_s: f64,
 }
 
 impl History {
-    /// Takes down the value at a time, s.
+    /// Records the value at a time, s.
     pub fn note(&mut self, time_s: f64, value: f64) {
         if let Some((before_s, before)) = self.last
             && !(before.is_nan() || value.is_nan())

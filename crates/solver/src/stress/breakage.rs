@@ -1,4 +1,4 @@
-//! Bodies that come apart all at once, and particles that are bodies by themselves.
+//! Bodies that break completely at once, and bodies of a single particle.
 
 use std::f64::consts::PI;
 
@@ -11,12 +11,12 @@ use super::trial::Trial;
 
 /// kg/m3
 const DENSITY: f64 = 2500.0;
-/// Strain of the bonds at the start: 10 kPa, and their strength is 1 Pa.
+/// Initial strain of the bonds: 10 kPa, while their strength is 1 Pa.
 const STRAIN: f64 = 1e-5;
 
-/// Blocks that spin, whose bonds all fail at the start. Each sphere flies on as it was: two that
-/// flew apart on a circle never come nearer, so relaxation leaves them nothing to push with.
-/// Without relaxation they explode, and the run is stopped.
+/// Spinning blocks whose bonds all fail at the start. Each sphere keeps its motion: two spheres
+/// that separate on a circle never approach each other, so with relaxation they never push each
+/// other. Without relaxation they explode, and the run is stopped.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -42,7 +42,7 @@ pub fn overlaps() -> Result<Vec<Member>> {
     Ok(members)
 }
 
-/// A large block of that kind.
+/// A large block of the same type.
 ///
 /// # Errors
 /// None: this is a body.
@@ -55,8 +55,8 @@ pub fn shatter() -> Result<Vec<Member>> {
     )])
 }
 
-/// A body that spins at 1000 rad/s and all of whose bonds fail at once: kinetic energy, momenta and
-/// pieces are known.
+/// A body that spins at 1000 rad/s and whose bonds all fail at once: kinetic energy, momenta and
+/// fragments are known.
 fn breaks(what: String, body: Body, end_time: &str) -> Member {
     let spin_rad_s = 1e3;
     let kinetic_j = kinetic_j(&body, spin_rad_s);
@@ -71,7 +71,7 @@ measures.largest_kinetic_energy = {{ quantity = \"kinetic_energy\", statistic = 
 measures.smallest_kinetic_energy = {{ quantity = \"kinetic_energy\", statistic = \"smallest\" }}
 "
     );
-    // Sums over all particles, each rounded.
+    // Sums over all particles, each with rounding errors.
     let rounding = 2.0 * body.radii.len() as f64 * f64::EPSILON;
     let prediction = Prediction::Ends(vec![
         Shown::measure(
@@ -121,7 +121,7 @@ fn kinetic_j(body: &Body, spin_rad_s: f64) -> f64 {
     0.5 * inertia * spin_rad_s.powi(2)
 }
 
-/// A sphere without bonds as a cluster and as a clump; a body of three that no bond joins.
+/// A sphere without bonds as a cluster and as a clump; a body of three spheres without bonds.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -149,7 +149,7 @@ measures.across = {{ of = \"last\", quantity = \"displacement_y\" }}
 measures.turned = {{ of = \"last\", quantity = \"rotation_z\" }}
 "
     );
-    // Straight on, at 3 mm times 1000 rad/s for 1 ms, and turning on by 1 rad.
+    // Straight on, at 3 mm times 1000 rad/s for 1 ms, with a rotation of 1 rad.
     let rounding = 1e-12;
     members.push(Member {
         what: "three loose spheres".to_owned(),

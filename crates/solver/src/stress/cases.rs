@@ -1,4 +1,4 @@
-//! The cases of the suite: what is extreme about each, and its members.
+//! The cases of the suite: their extreme feature, and their members.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,19 +10,19 @@ use super::{breakage, families, impact, limit_map, long};
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
-    /// Its name, as it is asked for.
+    /// Its name on the command line.
     pub name: &'static str,
-    /// What is extreme about it, a sentence.
+    /// Its extreme feature, a sentence.
     pub extreme: &'static str,
     members: fn(&AtomicBool) -> Result<Vec<Member>>,
 }
 
 impl Case {
-    /// Its members with what is predicted of each, from closed forms and from plans; where one run
-    /// is predicted from another, that other is run.
+    /// Its members with their predictions, from closed forms and from plans; if one run is
+    /// predicted from another, that other is run.
     ///
     /// # Errors
-    /// A scene that cannot be planned although it should; interrupted.
+    /// A scene that cannot be planned although it should be; interrupted.
     pub fn members(&self, interrupted: &AtomicBool) -> Result<Vec<Member>> {
         (self.members)(interrupted)
     }
@@ -107,10 +107,10 @@ pub const CASES: [Case; 15] = [
     },
 ];
 
-/// The cases of these names, in the order of the suite; all for no names.
+/// The cases with these names, in the order of the suite; all if no names are given.
 ///
 /// # Errors
-/// A name that no case has.
+/// An unknown name.
 pub fn chosen(names: &[String]) -> Result<Vec<Case>> {
     if let Some(unknown) = names
         .iter()

@@ -11,8 +11,8 @@ use crate::physics::bond::stiffness::BondModel;
 
 const TIMOSHENKO: (BondModel, &str) = (BondModel::Timoshenko, "timoshenko");
 
-/// Three equal spheres, the second bond so much thinner than the first that it is stiffness_ratio
-/// by the ratio.
+/// Three equal spheres, the second bond so much thinner than the first that it is softer by the
+/// ratio.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -30,7 +30,7 @@ pub fn stiffness_ratios() -> Result<Vec<Member>> {
     [1e2, 1e4, 1e6].into_iter().map(member).collect()
 }
 
-/// A small sphere and a large one, bonded; and the same two that meet.
+/// A small sphere and a large one, bonded; and the same two in an impact.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -54,7 +54,7 @@ pub fn mass_ratios() -> Result<Vec<Member>> {
 }
 
 /// A pair and an impact of spheres of 0.1 m far from the origin, where a coordinate is rounded to
-/// 1e-10 m; and of 1 um so far that nothing would be left of a radius.
+/// 1e-10 m; and of 1 um so far away that rounding would exceed the radius.
 ///
 /// # Errors
 /// None: these are bodies.
@@ -133,8 +133,8 @@ pub fn moduli() -> Result<Vec<Member>> {
     Ok(members)
 }
 
-/// Spheres almost at one place. The limit is the program's, as its linearisation must not step over
-/// such a bond; the swing is in closed form.
+/// Spheres with nearly the same centre. The limit is the program's, as its linearisation must not
+/// step over such a bond; the oscillation has a closed form.
 ///
 /// # Errors
 /// None: these are bodies.

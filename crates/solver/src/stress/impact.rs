@@ -1,9 +1,9 @@
-//! A sphere that hits a wall or another sphere head-on: overlap, duration and rebound in closed
-//! form.
+//! A head-on impact of a sphere on a wall or another sphere: overlap, duration and rebound in
+//! closed form.
 //!
-//! Hertz: F = 4/3 E* sqrt(R*) d^(3/2) stops a reduced mass m* at the overlap (15 m* v^2 / (16 E*
-//! sqrt(R*)))^(2/5) and lets it go after 2.943 275 times that over v (Johnson 1985,
-//! section 11.4). The restitution asked for is that of the speeds.
+//! Hertz: F = 4/3 E* sqrt(R*) d^(3/2) stops an effective mass m* at the overlap (15 m* v^2 / (16 E*
+//! sqrt(R*)))^(2/5) and releases it after 2.943 275 times that over v (Johnson 1985, section 11.4).
+//! The required restitution is the ratio of the speeds.
 
 use std::f64::consts::PI;
 
@@ -13,17 +13,17 @@ use super::trial::Trial;
 /// Duration of an elastic impact times speed over largest overlap: 2 sqrt(pi) Gamma(7/5) /
 /// Gamma(9/10).
 const DURATION: f64 = 2.943_275_4;
-/// How well speeds are met, over that of the impact: with some ten steps to an impact, the loss
-/// hangs on the moment within a step at which the ends meet.
+/// Tolerance of speeds relative to the impact speed: with about ten steps per impact, the loss
+/// depends on the moment within a step at which the ends meet.
 const SPEED: f64 = 1e-2;
-/// The same without damping: the step of an impact keeps its energy to some 3e-3, so its speeds to
-/// half of that.
+/// The same without damping: the step of an impact conserves its energy to about 3e-3, so its
+/// speeds to half of that.
 const ELASTIC_SPEED: f64 = 2e-3;
-/// How well overlaps and durations are met: with a quarter of the largest step, w dt = 0.5,
-/// leapfrog's frequency is off by (w dt)^2 / 24.
+/// Tolerance of overlaps and durations: with a quarter of the largest step, w dt = 0.5, the error
+/// of leapfrog's frequency is (w dt)^2 / 24.
 const TIME: f64 = 0.01;
 
-/// What is hit.
+/// Target of an impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
     /// A plane wall.
@@ -41,19 +41,19 @@ pub struct Impact {
     pub radius_m: f64,
     /// kg/m3
     pub density_kg_m3: f64,
-    /// Of all that meets, Pa.
+    /// Modulus of both, Pa. Poisson's ratio is 0.3.
     pub young_modulus_pa: f64,
-    /// Poisson's ratio is 0.3. m/s, downwards.
+    /// Speed, m/s, downwards.
     pub speed_m_s: f64,
-    /// In (0, 1].
+    /// Restitution, in (0, 1].
     pub restitution: f64,
-    /// What is hit.
+    /// Target of the impact.
     pub target: Target,
-    /// Height of what is hit, m.
+    /// Height of the target, m.
     pub at_m: f64,
-    /// Speed of a sphere that is hit, upwards, m/s.
+    /// Speed of a target sphere, upwards, m/s.
     pub other_m_s: f64,
-    /// Free way before the impact, over the radius.
+    /// Distance before the impact, over the radius.
     pub gap: f64,
     /// "bonded" or "clump".
     pub start_as: &'static str,
@@ -76,8 +76,8 @@ impl Impact {
         }
     }
 
-    /// Fraction of the relative velocity that each of the two loses and gains, times (1 + e): m*
-    /// over the mass of the first, and over that of the second.
+    /// Velocity change of each of the two, divided by the relative velocity and by (1 + e): m* over
+    /// the mass of the first, and over that of the second.
     fn fractions(&self) -> [f64; 2] {
         match self.target {
             Target::Plane | Target::Sheet => [1.0, 0.0],
@@ -112,13 +112,13 @@ impl Impact {
         DURATION * self.overlap_m() / self.closing_m_s()
     }
 
-    /// When the two touch, s.
+    /// Time at which the two touch, s.
     fn touched_s(&self) -> f64 {
         self.gap * self.radius_m / self.closing_m_s()
     }
 
-    /// When it is looked at, s: some time after the two have parted, also where damping makes that
-    /// take longer.
+    /// Time of the evaluation, s: some time after the two have separated, even if damping makes
+    /// that take longer.
     fn end_s(&self) -> f64 {
         self.touched_s() + 3.0 * self.duration_s()
     }
@@ -174,8 +174,8 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         }
     }
 
-    /// It comes back with the restitution asked for; an elastic one also after the time of Hertz,
-    /// and from a wall at rest from the depth of Hertz.
+    /// It rebounds with the required restitution; an elastic one also after the duration of Hertz,
+    /// and from a wall at rest from the overlap of Hertz.
     pub fn member(&self, what: String) -> Member {
         let closing = self.closing_m_s();
         let fractions = self.fractions();
@@ -206,7 +206,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
             ));
         }
         if self.restitution == 1.0 {
-            // While the two touch, their common centre of mass goes on.
+            // While the two touch, their common centre of mass moves on.
             let (touched_s, together_s) = (self.touched_s(), self.duration_s());
             let centre = before + fractions[0] * closing;
             let start = self.at_m + (1.0 + self.gap) * self.radius_m;
@@ -223,7 +223,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
         }
     }
 
-    /// It is stopped, or with `is_refused` not even begun, with these words. `time_step`: of
+    /// It is stopped, or with `is_refused` not even started, with these words. `time_step`: of
     /// `[run]`.
     pub fn ended_by(&self, what: String, trial: Trial, is_refused: bool, words: &[&str]) -> Member {
         let words = words.iter().map(|word| (*word).to_owned()).collect();
@@ -240,7 +240,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
     }
 }
 
-/// A square sheet of this half width, m, at this height, m, as the text of an STL file.
+/// A square sheet with this half-width, m, at this height, m, as the text of an STL file.
 fn sheet(half_m: f64, at_m: f64) -> String {
     let corner = |x: f64, y: f64| format!("vertex {:e} {:e} {at_m:e}\n", x * half_m, y * half_m);
     let facet = |a: String, b: String, c: String| {
@@ -255,7 +255,8 @@ fn sheet(half_m: f64, at_m: f64) -> String {
     )
 }
 
-/// At 300 m/s: of glass as Hertz has it; of a gel, whose centre would go through the surface.
+/// At 300 m/s: of glass, as predicted by Hertz; of a gel, whose centre would go through the
+/// surface.
 pub fn impacts() -> Vec<Member> {
     let hard = Impact {
         speed_m_s: 300.0,
@@ -274,8 +275,8 @@ pub fn impacts() -> Vec<Member> {
         };
         members.push(ball.member(format!("on a sphere, restitution {restitution}")));
     }
-    // A little more or less way before the impact: nothing may depend on when the two are first
-    // seen to be near.
+    // Slightly different distances before the impact: the result must not depend on when the two
+    // are first listed as near.
     for n in 0..36 {
         let gap = 1.03 + f64::from(n) * 0.002;
         let gel = Impact {
@@ -314,8 +315,8 @@ pub fn impacts() -> Vec<Member> {
     members
 }
 
-/// A sheet that a sphere would jump over with the step asked for, which is refused; by force, the
-/// run is stopped. With its own step it comes back.
+/// A sheet that a sphere would jump over with the requested step, which is refused; with force, the
+/// run is stopped. With its own step the sphere rebounds.
 pub fn at_mesh() -> Vec<Member> {
     let mut members = Vec::new();
     for restitution in [1.0, 0.5] {

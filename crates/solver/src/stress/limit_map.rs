@@ -1,9 +1,9 @@
-//! The largest stable step as it is seen: the one below which a small disturbance stays small, and
-//! above which it grows.
+//! The largest stable step as observed: below it a small disturbance stays small, and above it, the
+//! disturbance grows.
 //!
-//! Neither the program's limit nor its watchdog has a say in it: the scene's state is stepped as it
-//! is, and its energy is looked at. Both sides of the map, five bond models by damping from none to
-//! ten times the critical one, have to agree within a hundredth.
+//! Neither the program's limit nor its watchdog is used: the scene's state is stepped as it is, and
+//! its energy is observed. Both must agree to a hundredth for all entries of the map: five bond
+//! models with damping from none to ten times the critical value.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,25 +15,27 @@ use crate::stages::totals::{elastic_energy, kinetic_energy};
 use crate::state::State;
 use crate::step::step;
 
-/// How near the largest stable and the smallest unstable step come to each other, over the step.
+/// Smallest distance between the largest stable and the smallest unstable step, relative to the
+/// step.
 const RESOLUTION: f64 = 0.002;
-/// Energy over that of the start at which a disturbance has grown: a thousandfold amplitude. So
-/// small a disturbance is still linear then.
+/// Ratio of energy to the initial energy at which a disturbance has grown: a thousandfold
+/// amplitude. So small a disturbance is then still linear.
 const GROWN: f64 = 1e6;
-/// Strain of the bonds at the start.
+/// Initial strain of the bonds.
 const DISTURBANCE: f64 = 1e-8;
-/// Steps after which what has not grown is taken for stable. Slowest to grow is a mode with damping
-/// alone: by 2 `RESOLUTION` a step where the step is longer than the limit by `RESOLUTION`. With a
-/// thousandth of the disturbance in it, the whole has grown a thousandfold when it has grown a
-/// millionfold, after ln(1e6) / (2 `RESOLUTION`) = 3450 steps.
+/// Number of steps after which a disturbance that has not grown counts as stable. A mode with
+/// damping only grows slowest: by 2 `RESOLUTION` a step if the step exceeds the limit by
+/// `RESOLUTION`. With a thousandth of the disturbance in it, the disturbance has grown a
+/// thousandfold when the mode has grown a millionfold, after ln(1e6) / (2 `RESOLUTION`) = 3450
+/// steps.
 const STEPS: usize = 3500;
-/// Steps between two looks at the energy.
+/// Interval between checks of the energy, in steps.
 const EVERY: usize = 25;
-/// By how much predicted and observed limits may differ.
+/// Largest difference between predicted and observed limits.
 const AGREEMENT: f64 = 0.01;
 
 /// Largest stable step of a scene, s, within `RESOLUTION`, from half the program's limit to twice
-/// that; not a number where all of those steps are stable, or none.
+/// that; NaN if all of those steps are stable, or none.
 ///
 /// # Errors
 /// Interrupted; a scene that is refused.
@@ -43,7 +45,7 @@ pub fn largest_step_s(trial: &Trial, interrupted: &AtomicBool) -> Result<f64> {
     let mut bracket = [0.5 * predicted_s, 2.0 * predicted_s];
     let nearby = [0.995, 1.005].map(|fraction| fraction * predicted_s);
     let grows = |step_s: f64| grows(&plan.state, step_s, interrupted);
-    // Most are near: two runs instead of a dozen.
+    // Most limits are near the prediction: two runs instead of a dozen.
     for near_s in nearby {
         bracket[usize::from(grows(near_s)?)] = near_s;
     }
@@ -73,7 +75,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
         for _ in 0..EVERY {
             step(&mut state);
         }
-        // What is no number has grown as well.
+        // NaN counts as grown.
         let is_small = energy_j(&state) <= GROWN * start_j;
         if !is_small {
             return Ok(true);
@@ -85,8 +87,8 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: five models in both formulations, damped by nothing, lightly, critically and far
-/// beyond; other kinds of damping beside.
+/// The map: five models in both formulations, with no, light, critical and very high damping; also
+/// other types of damping.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -130,7 +132,7 @@ pub fn map() -> Result<Vec<Member>> {
     Ok(members)
 }
 
-/// A disturbed block with bonds of a model and a formulation, damped so.
+/// A disturbed block with bonds of this model, formulation and damping.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -158,7 +160,7 @@ bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
     program_limit(format!("{name}, {damping}{of_particles}"), trial)
 }
 
-/// The limit that the program finds for a scene is predicted to be the one observed.
+/// Predicts that the program's limit for a scene equals the observed one.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -178,10 +180,10 @@ pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
     })
 }
 
-/// A block of `side` spheres each way on a cubic grid, about 1 mm in radius, no two alike, bonded
-/// to their neighbours along the edges and the diagonals of the faces of the grid; neighbours
-/// overlap as spheres do that touch at r/(1 + overlap). Bonds are stretched by `strain`, each
-/// second one pressed.
+/// A block of `side` spheres each way on a cubic grid, about 1 mm in radius with varying sizes,
+/// bonded to their neighbours along the edges and the face diagonals of the grid; neighbours
+/// overlap like spheres that touch at r/(1 + overlap). Bonds are stretched by `strain`, every
+/// second one compressed.
 ///
 /// # Errors
 /// None, as the body is one.
@@ -192,7 +194,7 @@ pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
     for n in 0..side * side * side {
         let cell = [n % side, n / side % side, n / (side * side)];
         let [x, y, z] = cell.map(|k| k as f64 * pitch_m);
-        // Seven sizes in turn: no two neighbours are alike.
+        // Seven sizes in turn: neighbours always differ.
         let radius_m = 1.0e-3 * (1.0 - 0.02 * (n * 3 % 7) as f64);
         spheres.push([x, y, z, radius_m]);
         cells.push(cell);
@@ -219,7 +221,7 @@ pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
     Ok(body)
 }
 
-/// A step just below the limit, just above it, and the latter by force.
+/// A step just below the limit, one just above it, and the latter with force.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -249,7 +251,7 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"larges
         let start_j = elastic_energy(&plan.state).total();
         let fraction = 0.98;
         let end_s = STEPS as f64 * limit_s;
-        // What leapfrog keeps of a mode is its energy less (w dt / 2)^2 of the elastic part.
+        // For a mode, leapfrog conserves its energy minus (w dt / 2)^2 of the elastic part.
         let most_j = start_j / (1.0 - fraction * fraction);
         members.push(Member {
             what: format!("0.98, damping {eta}"),

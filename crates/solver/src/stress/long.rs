@@ -1,4 +1,4 @@
-//! Runs of many steps: what must not drift does not.
+//! Runs of many steps: conserved quantities must not drift.
 
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -12,21 +12,22 @@ use crate::physics::bond::damping_models::Chen;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 
-/// Of the spin.
+/// Number of steps of the spinning pair.
 const STEPS: f64 = 1e6;
 /// s
 const DAY: f64 = 86_400.0;
 /// s
 const HOUR: f64 = 3600.0;
 
-/// Of what rests, s: the same for an hour and for a day, as friction holds bodies where they came
-/// to rest, step by step.
+/// Time step of resting bodies, s: the same for an hour and for a day, as friction holds bodies
+/// where they came to rest, step by step.
 const REST_STEP_S: f64 = 0.05;
 
-/// Two bonded spheres of 1 mm turn about the middle between them. Undamped, they swing about the
-/// stretch at which the bond holds them on their circle, to twice that; damped, they come to it,
-/// but for what damping carries: it goes by velocities half a step old, which on a circle point
-/// outwards by w dt / 2, and so takes the share c dt / m of what the bond would have to hold.
+/// Two bonded spheres of 1 mm rotate about the point midway between them. Without damping, they
+/// oscillate about the elongation at which the bond holds them on their circle, up to twice that.
+/// With damping, they reach it, except for the damping force: it uses velocities half a step old,
+/// which on a circle point outwards by w dt / 2, and so takes the fraction c dt / m of the bond
+/// force.
 ///
 /// # Errors
 /// None.
@@ -43,7 +44,8 @@ pub fn spin() -> Result<Vec<Member>> {
     let answer = stiffness(BondModel::Timoshenko, &shape, young_pa, 0.25);
     let step_s =
         0.25 * frequencies(&answer, [1.0 / mass_kg; 2], [1.0 / own_kg_m2; 2]).critical_step_s();
-    // The stretch at which k x = m w^2 (L + x) / 2, where w falls as the moment of inertia grows.
+    // The elongation at which k x = m w^2 (L + x) / 2, where w falls as the moment of inertia
+    // grows.
     let inertia = |stretch_m: f64| 2.0 * own_kg_m2 + 0.5 * mass_kg * (length_m + stretch_m).powi(2);
     let mut stretch_m = 0.0;
     for _ in 0..100 {
@@ -55,7 +57,7 @@ pub fn spin() -> Result<Vec<Member>> {
         mass_kg: 0.5 * mass_kg,
         inertia_kg_m2: 0.5 * own_kg_m2,
     };
-    // A turn of w dt in a step: of its square are the errors of a circle that is stepped through.
+    // A rotation of w dt in a step: stepping along a circle has errors of the order of its square.
     let turn = spin_rad_s * step_s;
     let member = |eta: f64| {
         let scene = format!(
@@ -88,8 +90,8 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
                 2.0 * turn.powi(2) * at_rest_j,
             )
         } else {
-            // A swing of twice the stretch is off by its share of the length, and a row of the time
-            // series can miss its top.
+            // An oscillation of twice the elongation has an error of that fraction of the length,
+            // and a row of the time series can miss its peak.
             Shown::measure(
                 "elastic_energy",
                 "J",
@@ -103,7 +105,7 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
             way: ObservationMethod::Run,
             prediction: Prediction::Ends(vec![
                 stored,
-                // Each step rounds.
+                // Each step has rounding errors.
                 Shown::at_most(Quantity::AngularMomentumError, STEPS * f64::EPSILON),
                 Shown::at_most(Quantity::EnergyError, turn.powi(2)),
             ]),
@@ -112,9 +114,9 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
     Ok(vec![member(0.0), member(0.1)])
 }
 
-/// Large soft spheres under their weight for a day, so that a step is some milliseconds: one, which
-/// stands as deep as Hertz says; and a tetrahedron on a slope, bonded and as a clump, which
-/// friction holds. Where that stands after a day is predicted from where it stands after an hour.
+/// Large soft spheres under their own weight for a day, so that a step is some milliseconds: one,
+/// with the overlap of Hertz; and a tetrahedron on a slope, bonded and as a clump, held by
+/// friction. Its position after a day is predicted from that after an hour.
 ///
 /// # Errors
 /// Interrupted.
@@ -139,7 +141,7 @@ measures.way = {{ quantity = \"position_x\" }}
     let ball = format!(
         "bodies.ball = {{ particles = [[0, 0, {radius_m}, {radius_m}]], material = \"m\" }}\n"
     );
-    // Where forces balance, but for the rounding of the place.
+    // Equilibrium of forces, except for the rounding of the position.
     let rounding_m = 100.0 * f64::EPSILON * radius_m;
     // Every step rounds every coordinate once.
     let grown_m = DAY / REST_STEP_S * f64::EPSILON * 4.0 * radius_m;

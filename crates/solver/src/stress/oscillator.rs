@@ -1,8 +1,8 @@
-//! Spheres on a line that swing along it: their places in closed form, also as leapfrog steps them,
-//! which leaves nothing but rounding.
+//! Oscillations of spheres on a line: their positions in closed form, as stepped by leapfrog, so
+//! that only rounding errors remain.
 //!
-//! A bond answers to stretch along a line linearly. Kick-drift-kick turns x'' = -w^2 x from rest
-//! into x_n = x_0 cos(n theta) with sin(theta / 2) = w dt / 2 exactly (Hairer et al. 2003).
+//! A bond is linear in elongation along a line. Kick-drift-kick takes x'' = -w^2 x from rest to
+//! x_n = x_0 cos(n theta) with sin(theta / 2) = w dt / 2 exactly (Hairer et al. 2003).
 
 use std::f64::consts::PI;
 
@@ -13,13 +13,13 @@ use super::trial::Trial;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 
-/// Spheres that touch along x, the first at `at_m`, joined by bonds, of which the last is
+/// Spheres that touch along x, the first at `at_m`, joined by bonds, the last of which is
 /// stretched.
 #[derive(Debug, Clone)]
 pub struct Row {
-    /// Radii, m: of two spheres or three.
+    /// Radii of two or three spheres, m.
     pub radii_m: Vec<f64>,
-    /// Distances of neighbours at the start, m. One less than spheres.
+    /// Initial distances of neighbours, m. One fewer than spheres.
     pub distances_m: Vec<f64>,
     /// Radii of the bonds, m. Length as `distances_m`.
     pub bond_radii_m: Vec<f64>,
@@ -29,11 +29,11 @@ pub struct Row {
     pub density_kg_m3: f64,
     /// Centre of the first, m.
     pub at_m: f64,
-    /// How far the last bond is stretched over its length at rest.
+    /// Initial strain of the last bond.
     pub strain: f64,
-    /// Step over that of the bond's two particles alone, of the fastest bond.
+    /// Ratio of the step to the limit of the bond's two particles alone, for the fastest bond.
     pub fraction: f64,
-    /// Swings of the slowest mode. A quarter more shows best how long they take.
+    /// Oscillations of the slowest mode. An additional quarter shows the period best.
     pub oscillations: f64,
 }
 
@@ -88,22 +88,22 @@ impl Row {
         self.fraction * bonds.map(of_bond).fold(f64::INFINITY, f64::min)
     }
 
-    /// Modes of the rule_runs of the bonds: square of the circular frequency, 1/s2, and what the
-    /// last stretched bond puts into each stretch by it, over that stretch.
+    /// Modes of the elongations of the bonds: square of the circular frequency, 1/s2, and their
+    /// contribution to each elongation, relative to the initial elongation of the last bond.
     fn modes(&self) -> Vec<(f64, Vec<f64>)> {
         let m = |sphere: usize| self.mass_kg(sphere);
         let k = |bond: usize| self.normal_n_m(bond);
         if self.distances_m.len() == 1 {
             return vec![(k(0) * (1.0 / m(0) + 1.0 / m(1)), vec![1.0])];
         }
-        // s'' = -[[a, -b], [-c, d]] s of the two rule_runs.
+        // s'' = -[[a, -b], [-c, d]] s of the two elongations.
         let a = k(0) * (1.0 / m(0) + 1.0 / m(1));
         let b = k(1) / m(1);
         let c = k(0) / m(1);
         let d = k(1) * (1.0 / m(1) + 1.0 / m(2));
         let fast = 0.5 * (a + d + (a - d).hypot(2.0 * (b * c).sqrt()));
         let slow = (a * d - b * c) / fast;
-        // Eigenvectors by the row in which nothing cancels, for a bond 0 that is the stiffer.
+        // Eigenvectors from the row without cancellation, if bond 0 is the stiffer one.
         let of_fast = [fast - d, -c];
         let of_slow = [b, a - slow];
         let determinant = of_fast[0] * of_slow[1] - of_fast[1] * of_slow[0];
@@ -114,7 +114,7 @@ impl Row {
         vec![mode(fast, of_fast, parts[0]), mode(slow, of_slow, parts[1])]
     }
 
-    /// A scene of it, with bonds of this model, and where each sphere will have gone.
+    /// Its scene, with bonds of this model, and the final displacement of each sphere.
     ///
     /// # Errors
     /// What the reader of bodies refuses.
@@ -137,7 +137,7 @@ impl Row {
             .collect();
         let moved_m = self.moved_m(&gained_m);
         // Every step rounds every coordinate once, by half a unit in the last place at most, and
-        // moves what was rounded before to and fro.
+        // earlier rounding errors oscillate.
         let extent_m = self.at_m.abs() + self.distances_m.iter().sum::<f64>();
         let rounding_m = steps * f64::EPSILON * extent_m;
         let names = ["first_moved", "second_moved", "third_moved"];
@@ -152,8 +152,8 @@ impl Row {
         })
     }
 
-    /// How far each sphere has moved once the rule_runs are longer by this, m: the centre of mass
-    /// stays.
+    /// Displacement of each sphere once the bonds are longer by this, m: the centre of mass does
+    /// not move.
     fn moved_m(&self, gained_m: &[f64]) -> Vec<f64> {
         let mut moved = vec![0.0];
         for gained in gained_m {

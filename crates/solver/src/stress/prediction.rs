@@ -1,20 +1,20 @@
-//! What is predicted of a scene of the suite before it is run, and what its run shows.
+//! Predictions for a scene of the suite, made before its run, and the values that its run gives.
 
 use serde::Serialize;
 
 use super::trial::Trial;
 use crate::output::summary::Summary;
 
-/// A scene of a case and what is predicted of it.
+/// A scene of a case and its prediction.
 #[derive(Debug, Clone)]
 pub struct Member {
-    /// What sets it apart from the others of its case.
+    /// Its difference from the others of its case.
     pub what: String,
     /// The scene.
     pub trial: Trial,
-    /// What is observed of it.
+    /// The method of observation.
     pub way: ObservationMethod,
-    /// What will come of it.
+    /// The prediction.
     pub prediction: Prediction,
 }
 
@@ -23,36 +23,36 @@ pub struct Member {
 pub enum ObservationMethod {
     /// It is run, once.
     Run,
-    /// It is stepped with larger and smaller steps, see [`limit_map`](super::limit_map).
+    /// It is stepped with larger and smaller steps; see [`limit_map`](super::limit_map).
     LargestStep,
 }
 
-/// What will come of a scene.
+/// Predicted outcome of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Prediction {
-    /// The run ends and shows these values.
+    /// The run ends and gives these values.
     Ends(Vec<Shown>),
-    /// It is refused before it starts (exit code 2), and the message has these words.
+    /// It is refused before it starts (exit code 2), with these words in the message.
     Refused(Vec<String>),
-    /// It is stopped (exit code 3), and the message has these words.
+    /// It is stopped (exit code 3), with these words in the message.
     Stopped(Vec<String>),
 }
 
-/// A value that a run shows.
+/// A predicted value of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shown {
-    /// What it is of.
+    /// The quantity.
     pub quantity: Quantity,
     /// SI unit; empty for plain numbers.
     pub unit: &'static str,
-    /// What it will be, in that unit.
+    /// Predicted value, in that unit.
     pub value: f64,
-    /// By how much it may be off, in that unit.
+    /// Largest deviation, in that unit.
     pub tolerance: f64,
 }
 
-/// What a value is of.
+/// Quantity of a value.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -83,7 +83,7 @@ impl Shown {
         }
     }
 
-    /// A plain number that is 0 but for this, at most.
+    /// A plain number that should be 0 and may be at most this.
     pub fn at_most(quantity: Quantity, limit: f64) -> Self {
         Self {
             quantity,
@@ -93,7 +93,7 @@ impl Shown {
         }
     }
 
-    /// A count, which must be met.
+    /// A count, which must be exact.
     pub fn count(quantity: Quantity, count: usize) -> Self {
         Self {
             value: count as f64,
@@ -101,7 +101,7 @@ impl Shown {
         }
     }
 
-    /// How far a value is off, in tolerances; infinite for what is no number.
+    /// Deviation of a value, in tolerances; infinite for NaN.
     pub fn deviation(&self, observed: f64) -> f64 {
         let off = (observed - self.value).abs();
         match off {
@@ -113,7 +113,7 @@ impl Shown {
 }
 
 impl Quantity {
-    /// For a person.
+    /// Human-readable name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Measure(name) => name,
@@ -126,7 +126,7 @@ impl Quantity {
         }
     }
 
-    /// What a run shows of it; not a number where it shows nothing.
+    /// Its value in a run; NaN if there is none.
     pub fn of(&self, summary: &Summary) -> f64 {
         match self {
             Self::Measure(name) => {

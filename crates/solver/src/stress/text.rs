@@ -1,4 +1,5 @@
-//! The suite as a table for a person, in Markdown: of each case the run that is farthest off.
+//! The suite as a human-readable table in Markdown: for each case, the run with the largest
+//! deviation.
 
 use std::fmt::Write;
 
@@ -7,7 +8,7 @@ use dem_io::units::significant;
 use super::prediction::{Prediction, Shown};
 use super::verdict::{CaseResult, Judged, Observation};
 
-/// Fraction of the largest deviation from which on runs count as equally far off.
+/// Deviations above this fraction of the largest count as equal to it.
 const AS_FAR: f64 = 0.99;
 
 /// The head of the table.
@@ -25,8 +26,8 @@ pub fn row(result: &CaseResult) -> String {
     )
 }
 
-/// What was predicted and observed: in the run that is farthest off, and how many were refused and
-/// stopped.
+/// Predicted and observed values of the run with the largest deviation, and the number of refused
+/// and stopped runs.
 fn cells(result: &CaseResult) -> [String; 2] {
     let ends = |m: &&Judged| matches!(m.predicted, Prediction::Ends(_));
     let ended: Vec<&Judged> = result.members.iter().filter(ends).collect();
@@ -35,7 +36,7 @@ fn cells(result: &CaseResult) -> [String; 2] {
     let off: Vec<_> = off.collect();
     let farthest = off.iter().map(|(_, (.., deviation))| *deviation);
     let farthest = farthest.fold(0.0, f64::max);
-    // The first of those that are as far off, but for rounding.
+    // The first of those with equal deviations, except for rounding.
     let mut off = off.into_iter();
     let worst = off.find(|(_, (.., deviation))| *deviation >= AS_FAR * farthest);
     let mut cells = [String::new(), String::new()];
@@ -101,7 +102,7 @@ fn end_observed(observation: &Observation) -> &'static str {
     }
 }
 
-/// The value of a run that is farthest off, and how far in tolerances.
+/// The value of a run with the largest deviation, and that deviation in tolerances.
 fn worst_of(member: &Judged) -> Option<(&Shown, f64, f64)> {
     let (Prediction::Ends(all), Observation::Ended(values)) = (&member.predicted, &member.observed)
     else {

@@ -1,4 +1,4 @@
-//! A scene of the suite, run as a user would run it: from files in a folder.
+//! A scene of the suite, run like a user's scene: from files in a folder.
 
 use std::sync::atomic::AtomicBool;
 
@@ -14,7 +14,7 @@ use crate::output::summary::Summary;
 use crate::plan::{Plan, plan};
 use crate::run::{RunSettings, run};
 
-/// A scene and the files that it names.
+/// A scene and its files.
 #[derive(Debug, Clone, Default)]
 pub struct Trial {
     /// Its text.
@@ -23,24 +23,23 @@ pub struct Trial {
     pub bodies: Vec<(&'static str, Body)>,
     /// Surfaces, by the names of their files (`.stl`): their text.
     pub surfaces: Vec<(&'static str, String)>,
-    /// As `--force-step`: the scene's time step is taken even if it is above the largest stable
-    /// one.
+    /// Like `--force-step`: accepts a time step of the scene above the largest stable one.
     pub force_step: bool,
 }
 
-/// How a run came to its end.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It did.
+    /// It ended.
     Ended(Box<Summary>),
-    /// It was refused before it started (exit code 2): what was said.
+    /// It was refused before it started (exit code 2): the message.
     Refused(String),
-    /// It was stopped (exit code 3): what was said.
+    /// It was stopped (exit code 3): the message.
     Stopped(String),
 }
 
 impl Trial {
-    /// Of a scene that names no files.
+    /// For a scene without files.
     pub fn of(scene: String) -> Self {
         Self {
             scene,
@@ -48,10 +47,10 @@ impl Trial {
         }
     }
 
-    /// The scene, its plan, and the folder of its files, which goes with the last value.
+    /// The scene, its plan, and the folder of its files, which is removed with the last value.
     ///
     /// # Errors
-    /// What reading and planning refuse; a folder that cannot be written.
+    /// Errors of reading and planning; a folder that cannot be written.
     pub fn planned(&self) -> Result<(Scene, Plan, TempDir)> {
         let folder = tempfile::tempdir().map_err(|error| {
             let problem = format!("no folder for the files of the suite: {error}");

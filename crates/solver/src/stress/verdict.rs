@@ -1,4 +1,4 @@
-//! What comes of the members of a case, against what was predicted of them.
+//! Comparison of the members of a case with their predictions.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -12,32 +12,31 @@ use super::limit_map::largest_step_s;
 use super::prediction::{Member, ObservationMethod, Prediction};
 use super::trial::Outcome;
 
-/// What was seen of a scene.
+/// Observed outcome of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Observation {
-    /// The run ended, and showed these values: those of the prediction, in its order; none where an
-    /// end was not predicted.
+    /// The run ended with these values: those of the prediction, in its order; none if an end was
+    /// not predicted.
     Ended(Vec<f64>),
-    /// It was refused before it started: what was said.
+    /// It was refused before it started: the message.
     Refused(String),
-    /// It was stopped: what was said.
+    /// It was stopped: the message.
     Stopped(String),
 }
 
 /// A member of a case after its run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
-    /// What sets it apart from the others of its case.
+    /// Its difference from the others of its case.
     pub what: String,
-    /// What was predicted.
+    /// The prediction.
     pub predicted: Prediction,
-    /// What was seen.
+    /// The observation.
     pub observed: Observation,
-    /// How far the worst value is off, in tolerances; 0 for what was refused or stopped as
-    /// predicted.
+    /// Deviation of the worst value, in tolerances; 0 if it was refused or stopped as predicted.
     pub deviation: f64,
-    /// What is wrong; None: it did as predicted.
+    /// The problem; None: as predicted.
     pub wrong: Option<String>,
 }
 
@@ -46,7 +45,7 @@ pub struct Judged {
 pub struct CaseResult {
     /// Its name.
     pub name: &'static str,
-    /// What is extreme about it.
+    /// Its extreme feature.
     pub extreme: &'static str,
     /// Its members.
     pub members: Vec<Judged>,
@@ -55,7 +54,7 @@ pub struct CaseResult {
 }
 
 impl CaseResult {
-    /// Members that did not do as predicted.
+    /// Members that differ from their prediction.
     pub fn wrong(&self) -> impl Iterator<Item = &Judged> {
         self.members.iter().filter(|member| member.wrong.is_some())
     }
@@ -64,7 +63,7 @@ impl CaseResult {
 /// Predicts, runs and judges all members of a case, on all threads.
 ///
 /// # Errors
-/// Interrupted, or files that cannot be written. A member that goes wrong is no error.
+/// Interrupted, or files that cannot be written. A member that goes wrong is not an error.
 pub fn run_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
     let clock = Instant::now();
     let members = case.members(interrupted)?;
@@ -77,7 +76,7 @@ pub fn run_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
     })
 }
 
-/// Runs a member and compares.
+/// Runs a member and compares it with its prediction.
 ///
 /// # Errors
 /// As [`run_case`].
@@ -105,7 +104,7 @@ pub fn judge(member: &Member, interrupted: &AtomicBool) -> Result<Judged> {
     })
 }
 
-/// How far what was seen is off, in tolerances, and what is wrong with it.
+/// Deviation of the observation, in tolerances, and the problem.
 pub fn compare(predicted: &Prediction, observed: &Observation) -> (f64, Option<String>) {
     let (words, said) = match (predicted, observed) {
         (Prediction::Ends(all), Observation::Ended(values)) => {

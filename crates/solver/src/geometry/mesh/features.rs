@@ -1,5 +1,5 @@
-//! The features of a mesh: flat parts, straight edges, corners. What a modeller made as one face or
-//! edge is one feature, however it is tiled.
+//! The features of a mesh: flat parts, straight edges, corners. A face or edge of the model is one
+//! feature, however it is tiled.
 
 use nalgebra::Vector3;
 
@@ -7,15 +7,15 @@ use dem_io::disjoint::{find, join};
 
 use super::triangle::Triangle;
 
-/// Corners of a flat part may lie off its plane by this share of the diagonal: what single
-/// precision costs, a few times over.
+/// Corners of a flat part may be off its plane by this fraction of the diagonal: a few times the
+/// rounding error of single precision.
 const ROUGHNESS: f64 = 3e-7;
 
-/// Sine of the angle between two directions that are one, beside what roughness does to short
-/// lengths.
+/// Sine of the largest angle between two directions that count as one, besides the effect of
+/// roughness on short lengths.
 const STRAIGHT: f64 = 1e-5;
 
-/// What each triangle consists of.
+/// Features of each triangle.
 #[derive(Debug, Default)]
 pub(super) struct Features {
     /// The feature of each region of each triangle. Flat parts come first, then edges, then
@@ -24,11 +24,11 @@ pub(super) struct Features {
     pub(super) flat_parts: u32,
     pub(super) straight_edges: u32,
     pub(super) corners: u32,
-    /// Edges of one triangle only.
+    /// Edges that belong to one triangle only.
     pub(super) open_edges: usize,
-    /// Edges of more than two triangles.
+    /// Edges that belong to more than two triangles.
     pub(super) crowded_edges: usize,
-    /// Edges along which not as many triangles run one way as the other.
+    /// Edges with different numbers of triangles in the two directions.
     pub(super) unpaired_edges: usize,
 }
 
@@ -39,7 +39,7 @@ struct Edges {
     starts: Vec<u32>,
     /// The edges of each triangle: from its first, second, third corner.
     of: Vec<[u32; 3]>,
-    /// Edges along which not as many triangles run one way as the other.
+    /// Edges with different numbers of triangles in the two directions.
     unpaired: usize,
 }
 
@@ -101,7 +101,7 @@ impl Edges {
         triangles.len() > 1 && triangles.iter().all(|t| part(*t) == part(triangles[0]))
     }
 
-    /// Number of edges of as many triangles as `wanted` accepts.
+    /// Number of edges whose number of triangles satisfies `wanted`.
     fn count(&self, wanted: impl Fn(u32) -> bool) -> usize {
         let counts = self.starts.windows(2).map(|w| w[1] - w[0]);
         counts.filter(|count| wanted(*count)).count()
@@ -112,7 +112,7 @@ impl Edges {
 pub(super) fn features(triangles: &[Triangle], indices: &[[u32; 3]], diagonal: f64) -> Features {
     let edges = Edges::new(indices);
     let (part_of, flat_parts) = flat_parts(triangles, &edges, diagonal);
-    // Corners of triangles, sorted by vertex: vertex, triangle, which corner.
+    // Corners of triangles, sorted by vertex: vertex, triangle, corner of the triangle.
     let mut corners: Vec<(u32, u32, u8)> = indices
         .iter()
         .enumerate()
@@ -174,7 +174,7 @@ pub(super) fn features(triangles: &[Triangle], indices: &[[u32; 3]], diagonal: f
     }
 }
 
-/// What a vertex is.
+/// Type of a vertex.
 enum Vertex {
     /// In the middle of this flat part.
     Within(u32),
@@ -183,7 +183,7 @@ enum Vertex {
     Corner,
 }
 
-/// What the vertex is that these corners of triangles share.
+/// Type of the vertex that these corners of triangles share.
 fn vertex(
     fan: &[(u32, u32, u8)],
     triangles: &[Triangle],
@@ -219,7 +219,7 @@ fn vertex(
     }
 }
 
-/// The flat part of each triangle, and how many there are. Each grows from its largest triangle
+/// The flat part of each triangle, and the number of parts. Each grows from its largest triangle
 /// over edges, as long as it stays in that plane.
 fn flat_parts(triangles: &[Triangle], edges: &Edges, diagonal: f64) -> (Vec<u32>, u32) {
     const NONE: u32 = u32::MAX;
@@ -265,7 +265,7 @@ fn flat_parts(triangles: &[Triangle], edges: &Edges, diagonal: f64) -> (Vec<u32>
     (part_of, parts)
 }
 
-/// Area, and height over the longest side.
+/// Area, and height above the longest side.
 fn area_and_height(triangle: &Triangle) -> [f64; 2] {
     let [a, b, c] = &triangle.corners;
     let twice_area = (b - a).cross(&(c - a)).norm();

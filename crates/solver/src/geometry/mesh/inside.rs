@@ -1,4 +1,4 @@
-//! What a closed surface that is wound one way encloses.
+//! The inside of a closed, consistently oriented surface.
 
 use nalgebra::Vector3;
 
@@ -6,19 +6,19 @@ use super::super::Touch;
 use super::Mesh;
 use super::triangle::Triangle;
 
-/// Rays begin so far beside the point, in shares of the diagonal: none runs along a face, or
-/// through an edge or a corner, of those that people draw. Two of three that agree are right.
+/// Offsets of rays from the point, in fractions of the diagonal: with them no ray runs along a
+/// face, or through an edge or a corner, of typical models. The majority of three rays is right.
 const BESIDE: [[f64; 2]; 3] = [[3.1e-10, 7.3e-10], [-8.7e-10, 2.9e-10], [5.3e-10, -9.1e-10]];
 
-/// The first distance in which the nearest triangle is looked for, as a share of the diagonal.
+/// The first search distance for the nearest triangle, as a fraction of the diagonal.
 const FIRST_LOOK: f64 = 1e-3;
 
 impl Mesh {
-    /// Whether the surface encloses something as solids do, with its normals outwards. Where shells
-    /// lie in each other, those that look inwards are hollows.
+    /// Whether the point is inside the surface, as in a solid with its normals outwards. In nested
+    /// shells, those with normals inwards are hollows.
     ///
-    /// A surface that is open, or not wound one way, has no inside; neither has one that is inside
-    /// out: it is a container.
+    /// A surface that is open, or not consistently oriented, has no inside; neither has one with
+    /// its normals inwards: it is a container.
     pub fn holds(&self, point: [f64; 3]) -> bool {
         if self.content.unpaired_edges > 0 || !self.bounds().is_near(&point, 0.0) {
             return false;
@@ -31,8 +31,7 @@ impl Mesh {
         if one == other { one } else { is_in(BESIDE[2]) }
     }
 
-    /// The nearest point of the surface as a solid tells it whose inside `centre` is in: at a
-    /// distance below 0.
+    /// The nearest point of the surface for a centre inside its solid: at a distance below 0.
     pub fn touch_from_inside(&self, centre: [f64; 3]) -> Touch {
         let c = Vector3::from(centre);
         let mut reach_m = FIRST_LOOK * self.diagonal_m;
@@ -58,8 +57,8 @@ impl Mesh {
         }
     }
 
-    /// How often the surface goes around a point: by a ray along z, +1 where it leaves the solid,
-    /// -1 where it enters.
+    /// Winding number of the surface around a point: by a ray along z, +1 where it leaves the
+    /// solid, -1 where it enters.
     fn winding(&self, point: [f64; 3]) -> i32 {
         let p = Vector3::from(point);
         let mut sum = 0;
@@ -70,8 +69,8 @@ impl Mesh {
     }
 }
 
-/// 1 where a ray from `p` along z goes out through the triangle, -1 where it comes in, 0 where it
-/// does not meet it. Triangles that share an edge leave no gap.
+/// 1 if a ray from `p` along z leaves through the triangle, -1 if it enters, 0 if it does not meet
+/// it. Triangles that share an edge leave no gap.
 fn crossing(triangle: &Triangle, p: &Vector3<f64>) -> i32 {
     let [a, b, c] = triangle.corners.map(|corner| corner - p);
     let across = |u: &Vector3<f64>, v: &Vector3<f64>| u.x * v.y - u.y * v.x;

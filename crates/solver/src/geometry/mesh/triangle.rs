@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::super::Touch;
 
-/// Where on a triangle a point lies: 0 its face; 1, 2, 3 the edges from its first, second, third
-/// corner; 4, 5, 6 its corners.
+/// Regions of a triangle: 0 its face; 1, 2, 3 the edges from its first, second, third corner; 4, 5,
+/// 6 its corners.
 pub(super) const REGIONS: u32 = 7;
 
 /// A triangle with its normal.
@@ -18,7 +18,7 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// Not for corners on one line.
+    /// Requires corners that are not on one line.
     pub(super) fn new(corners: [Vector3<f64>; 3]) -> Self {
         let [a, b, c] = corners;
         Self {
@@ -59,7 +59,7 @@ impl Triangle {
         (p - from_a.dot(&self.normal) * self.normal, 0)
     }
 
-    /// At the foot of `c` on its plane.
+    /// Touch at the foot of `c` on its plane.
     pub(super) fn over(&self, c: &Vector3<f64>, feature: u32) -> Touch {
         let height = (c - self.corners[0]).dot(&self.normal);
         let inward = -self.normal * 1.0_f64.copysign(height);

@@ -1,5 +1,5 @@
-//! What is to be seen of a state: its particles, coloured by the piece that they belong to, and its
-//! walls.
+//! The visible objects of a state: its particles, coloured by the fragment that they belong to, and
+//! its walls.
 
 use dem_pictures::colours::{SINGLE, of_fragment};
 use dem_pictures::surface::HalfSpace;
@@ -11,7 +11,7 @@ use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 
-/// All particles: by cluster, or where there are none by body.
+/// All particles: by cluster, or by body if there are no clusters.
 pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
     let (of_particle, colours) = match &state.clusters {
         Some(clusters) => (clusters.of_particle.clone(), of_clusters(&clusters.history)),
@@ -27,8 +27,8 @@ pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
         .collect()
 }
 
-/// All walls where they stand. Planes have no end: drawn is what lies around a scene, up to where
-/// others begin.
+/// All walls in their present position. Planes are infinite: only the part around a scene is drawn,
+/// up to other walls.
 pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
     let planes: Vec<HalfSpace> = walls.iter().filter_map(half_space).collect();
     let surface = |wall: &Wall| match half_space(wall) {
@@ -48,7 +48,7 @@ fn half_space(wall: &Wall) -> Option<HalfSpace> {
     }
 }
 
-/// A wall where it stands. None: a plane has no end.
+/// A wall in its present position. None: a plane is infinite.
 pub(super) fn finite(wall: &Wall) -> Option<Surface> {
     let in_its_frame = match &wall.model.shape {
         Shape::Plane(_) => return None,
@@ -65,8 +65,8 @@ pub(super) fn finite(wall: &Wall) -> Option<Surface> {
     Some(in_its_frame.moved(&|point_m| wall.frame.to_space(point_m)))
 }
 
-/// The colour of each cluster. The largest piece of one that broke keeps its colour, so that a body
-/// which loses a crumb does not flicker.
+/// The colour of each cluster. The largest fragment of a broken one keeps its colour, so that a
+/// body that loses a crumb does not flicker.
 fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
     let mut heirs: Vec<Option<usize>> = vec![None; history.len()];
     for (id, cluster) in history.iter().enumerate() {
@@ -77,8 +77,8 @@ fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
             *heir = Some(id);
         }
     }
-    // Number of the colour, and particles of the body that it comes from. A parent comes before its
-    // pieces.
+    // Number of the colour, and number of particles of the original body. A parent precedes its
+    // fragments.
     let mut known: Vec<(u32, u32)> = Vec::with_capacity(history.len());
     for (id, cluster) in history.iter().enumerate() {
         let parent = cluster.parent.map(|parent| parent as usize);
@@ -113,7 +113,7 @@ fn by_body(particles: usize, bodies: &[PlacedBody]) -> (Vec<u32>, Vec<[u8; 3]>) 
     (of_particle, colours.collect())
 }
 
-/// The colour of a piece of so many of the particles of its body.
+/// The colour of a fragment with this number of the particles of its body.
 fn colour(number: u32, particles: u32, whole: u32) -> [u8; 3] {
     if particles == 1 {
         SINGLE

@@ -1,4 +1,4 @@
-//! From where a run is seen: one camera from its first picture to its last.
+//! View of a run: one camera from its first picture to its last.
 
 use dem_pictures::label::{label, scale_bar, time_text};
 use dem_pictures::{Camera, Image, Surface, render};
@@ -11,13 +11,13 @@ use crate::state::bodies::PlacedBody;
 /// Width and height of a picture, px.
 pub const SIZE_PX: [u32; 2] = [960, 540];
 
-/// How far planes are drawn beyond the particles, as a share of how wide these stand.
+/// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
 const ROOM: f64 = 0.55;
 
-/// Upwards in a picture.
+/// Upward direction in a picture.
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// The camera of a run, and how far planes are drawn.
+/// The camera of a run, and the extent of planes.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     camera: Camera,
@@ -25,9 +25,9 @@ pub struct View {
 }
 
 impl View {
-    /// Takes in all particles, inlets and walls of a state at its start, of planes a patch around
-    /// the rest. `from`: where to look from, of any length; None: from the front, the right and
-    /// above.
+    /// Shows all particles, inlets and walls of a state at its start, and of planes a patch around
+    /// the rest. `from`: direction of the viewer, of any length; None: from the front, the right
+    /// and above.
     pub fn of(state: &State, from: Option<[f64; 3]>) -> Self {
         let poses = &state.particles.poses;
         let mut points_m: Vec<[f64; 3]> = (poses.iter())
@@ -60,10 +60,10 @@ impl View {
     }
 }
 
-/// A box with room at its sides, for what will fall over or break.
+/// A box with room at its sides, for parts that will fall over or break.
 fn with_room(bounds: Bounds) -> Bounds {
     let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
-    // Not so where there is nothing.
+    // No room if there is nothing.
     let room = if x > 0.0 && y > 0.0 {
         ROOM * (x * y).sqrt()
     } else {
@@ -77,7 +77,7 @@ fn with_room(bounds: Bounds) -> Bounds {
     }
 }
 
-/// The ends of a ball along the axes, m. Shape 6 x 3.
+/// The extreme points of a ball along the axes, m. Shape 6 x 3.
 fn outermost(centre_m: [f64; 3], radius_m: f64) -> [[f64; 3]; 6] {
     [0, 1, 2, 3, 4, 5].map(|end| {
         let mut point_m = centre_m;

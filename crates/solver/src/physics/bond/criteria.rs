@@ -1,5 +1,5 @@
-//! Failure criteria, a file each, and the one place that lists them. `doc/adding-a-model.md` tells
-//! how another one is added.
+//! Failure criteria, one per file, and the one place that lists them. See `doc/adding-a-model.md`
+//! for how to add another.
 
 mod compression;
 mod shear;

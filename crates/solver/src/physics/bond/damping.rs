@@ -1,5 +1,5 @@
-//! Viscous damping of bonds: four coefficients, one for each mode, whatever model they come from,
-//! and what they do. The models stand in `damping_models`, a file each.
+//! Viscous damping of bonds: four coefficients, one for each mode, from any model, and the
+//! resulting forces. The models are in `damping_models`, one per file.
 //!
 //! Sources: Chen et al. 2022, eqs. 9 and 10; Platzer 2022, eqs. 7, 9 and 10.
 
@@ -11,13 +11,13 @@ use std::ops::Add;
 /// Damping force or moment per relative speed at the contact point, mode by mode.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DampingCoefficients<T = f64> {
-    /// Along the bond, N s/m.
+    /// Normal, N s/m.
     pub normal: T,
-    /// Across it, N s/m.
+    /// Shear, N s/m.
     pub shear: T,
-    /// About the bond, N m s/rad.
+    /// Torsion, N m s/rad.
     pub torsion: T,
-    /// About axes across it, N m s/rad.
+    /// Bending, N m s/rad.
     pub bending: T,
 }
 
@@ -43,8 +43,8 @@ pub struct ReducedInertia {
     pub inertia_kg_m2: f64,
 }
 
-/// Reduced mass and inertia of two ends, from one over mass and one over moment of inertia: 0 for
-/// an end that is held. Between two held ends both are 0, so nothing is damped.
+/// Reduced mass and inertia of two ends, from inverse masses and inverse moments of inertia: 0 for
+/// a held end. Between two held ends both are 0, so there is no damping.
 #[inline(always)]
 pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> ReducedInertia {
     let reduced = |[a, b]: [f64; 2]| if a + b > 0.0 { 1.0 / (a + b) } else { 0.0 };
@@ -54,13 +54,13 @@ pub fn reduced(inverse_masses: [f64; 2], inverse_inertias: [f64; 2]) -> ReducedI
     }
 }
 
-/// A rule for how much a bond is damped.
+/// A model for the damping coefficients of a bond.
 pub trait DampingModel {
     /// Coefficients of a bond of this stiffness between ends of these reduced masses.
     fn coefficients(&self, stiffness: &Stiffness, reduced: &ReducedInertia) -> DampingCoefficients;
 }
 
-/// How an end of a bond moves.
+/// Motion of an end of a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndMotion {
     /// Velocity of the centre, m/s.
@@ -69,7 +69,7 @@ pub struct EndMotion {
     pub spin_rad_s: Vector3<f64>,
 }
 
-/// What damping does to the ends of a bond.
+/// Damping forces on the ends of a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampingForces {
     /// Force on the second end, N. The first end feels the opposite.
@@ -78,10 +78,10 @@ pub struct DampingForces {
     pub torques: [Vector3<f64>; 2],
 }
 
-/// Damping of a bond now `length_m` long along the unit vector `c` from a to b. Its contact point
-/// splits the length as the `levers_m` do the initial one.
+/// Damping of a bond that is now `length_m` long along the unit vector `c` from a to b. Its contact
+/// point divides the length in the same ratio as the `levers_m` divide the initial one.
 ///
-/// The bond is turned by nothing as a whole, gives no force while it moves as a rigid body, and
+/// Damping exerts no net moment on the bond, gives no force while it moves as a rigid body, and
 /// never adds energy.
 pub fn damping_forces(
     coefficients: &DampingCoefficients,

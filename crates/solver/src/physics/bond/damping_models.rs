@@ -1,4 +1,4 @@
-//! Damping models of bonds, a file each. `doc/adding-a-model.md` tells how another one is added.
+//! Damping models of bonds, one per file. See `doc/adding-a-model.md` for how to add another.
 
 mod chen;
 mod platzer;

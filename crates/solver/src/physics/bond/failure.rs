@@ -1,12 +1,12 @@
-//! When a bond breaks: stresses from its own forces and moments against strengths.
+//! Failure of bonds: stresses from their forces and moments, compared with strengths.
 //!
 //! Sources: MUSEN's elastic solid bond (normal and shear strength); Platzer 2022, eqs. 11-13 (von
 //! Mises).
 //!
 //! MUSEN's normal force is a magnitude. Here it has its sign: bending pulls one edge of the section
-//! and presses the opposite one, and each of the two edges has a strength of its own. Platzer 2022,
-//! eqs. 11 and 12, speaks of strains of the bond; here the same stresses come from its forces and
-//! moments, each with its own stiffness.
+//! and presses the opposite one, and each of the two edges has its own strength. Platzer 2022, eqs.
+//! 11 and 12, uses strains of the bond; here the same stresses follow from its forces and moments,
+//! each with its own stiffness.
 
 use std::f64::consts::PI;
 
@@ -18,17 +18,17 @@ pub use super::causes::CauseCounts;
 pub use super::criteria::Cause;
 pub use super::stresses::{Criteria, Stresses, stresses};
 
-/// What raises strengths. None is below 0.
+/// Factors on strengths. None is below 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
-    /// Scatter from bond to bond: of all strengths.
+    /// Scatter from bond to bond, for all strengths.
     pub scatter: f64,
-    /// Strengthening by the rate of strain, 1 or more: of all strengths but that in compression.
+    /// Strengthening by the strain rate, 1 or more, for all strengths except the compressive one.
     pub rate: f64,
 }
 
 impl Factors {
-    /// Strengths that scatter, and do not depend on the rate.
+    /// Strengths with scatter that do not depend on the strain rate.
     pub fn scattered(scatter: f64) -> Self {
         Self { scatter, rate: 1.0 }
     }
@@ -40,10 +40,10 @@ pub fn has_strength(criteria: &Criteria) -> bool {
     strengths.any(|(strength_pa, _)| strength_pa.is_finite())
 }
 
-/// Largest share of a strength that is used; the bond breaks at 1.
+/// Utilisation: the largest ratio of stress to strength; the bond breaks at 1.
 ///
-/// As neither the stresses nor the strengths depend on the factors, a loop over bonds may leave out
-/// a factor that is never below 1, and compute it for the few bonds that would break without it.
+/// As neither the stresses nor the strengths depend on the factors, a loop over bonds may skip a
+/// factor that is never below 1, and compute it only for the few bonds that would break without it.
 #[inline(always)]
 pub fn utilisation(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> f64 {
     let used = fractions(criteria, stresses);
@@ -54,11 +54,11 @@ pub fn utilisation(criteria: &Criteria, stresses: &Stresses, factors: Factors) -
     used.into_iter().fold(0.0, f64::max)
 }
 
-/// The criterion of which the largest share is used.
+/// The criterion with the largest utilisation.
 pub fn cause(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> Cause {
     let mut most = (f64::NEG_INFINITY, Cause::Tension);
     for (cause, (used, rises)) in Cause::ALL.into_iter().zip(fractions(criteria, stresses)) {
-        // Where the rate does not strengthen, more is used by so much than where it does.
+        // Without rate strengthening, the utilisation is higher by this factor.
         let used = if rises { used } else { used * factors.rate };
         if used > most.0 {
             most = (used, cause);
@@ -67,7 +67,7 @@ pub fn cause(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> Caus
     most.1
 }
 
-/// Stresses over strengths, and whether the rate of strain raises those.
+/// Ratios of stress to strength, and whether the strain rate increases the strength.
 #[inline(always)]
 fn fractions(criteria: &Criteria, stresses: &Stresses) -> [(f64, bool); COUNT] {
     let (squared, strengths) = (squared(stresses), strengths(criteria));
@@ -77,7 +77,7 @@ fn fractions(criteria: &Criteria, stresses: &Stresses) -> [(f64, bool); COUNT] {
     })
 }
 
-/// A stress over a strength, neither below 0; nothing of no strength is 0.
+/// Ratio of a stress to a strength, neither below 0; a stress of 0 with a strength of 0 gives 0.
 #[inline(always)]
 fn fraction(stress: f64, strength: f64) -> f64 {
     if stress == 0.0 {
@@ -87,17 +87,17 @@ fn fraction(stress: f64, strength: f64) -> f64 {
     }
 }
 
-/// Largest number by which [`Screen`] multiplies: finite, so that 0 times it is 0.
+/// Largest factor that [`Screen`] uses: finite, so that 0 times it is 0.
 const LARGEST: f64 = 1e300;
 
-/// By how much [`Screen`] overrates bending at the edges. Where axial force and bending nearly
-/// cancel, their rounding, a few 1e-16 of either, is large beside what is left.
+/// Factor by which [`Screen`] overestimates bending at the edges. If axial force and bending nearly
+/// cancel, their rounding errors, a few 1e-16 of either, are large compared with the difference.
 const CANCELLATION: f64 = 1.0 + 1e-14;
 
-/// Finds the few bonds that may have reached their strength, without a root or a division.
+/// Finds the few bonds that may have reached their strength, without a square root or a division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screen {
-    /// One over the square of each strength, 1/Pa2; [`LARGEST`] for strengths of 0.
+    /// Inverse squares of the strengths, 1/Pa2; [`LARGEST`] for strengths of 0.
     per_strength_squared: [f64; COUNT],
 }
 
@@ -110,8 +110,8 @@ impl Screen {
         }
     }
 
-    /// Square of the utilisation, but for the factor (pi r^3)^2 that is given beside it: stresses
-    /// times pi r^3 are F r + 4 M and S r + 2 T.
+    /// Square of the utilisation times the factor (pi r^3)^2, and this factor: stresses times pi
+    /// r^3 are F r + 4 M and S r + 2 T.
     #[inline(always)]
     pub fn utilisation_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
         let squared = squared(&Stresses {

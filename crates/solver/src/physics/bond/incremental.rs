@@ -1,17 +1,17 @@
-//! The incremental formulation: shear force and moment are summed up step by step from the relative
+//! The incremental formulation: shear force and moment are summed step by step from the relative
 //! motion at the contact point.
 //!
 //! Sources: Chen et al. 2022, eqs. 1-7, tables 1, 2 and 8; MUSEN's elastic solid bond. One kernel
-//! for all five models, which differ in stiffness and contact point only. Offered for comparison:
+//! for all five models, which differ only in stiffness and contact point. Offered for comparison:
 //! the [total formulation](super::total) needs no history.
 //!
-//! Where this is not what is printed:
-//! - The increment is taken with the axis halfway through the step, and half of it before and half
-//!   after the turn about the axis: the step is the same backwards. With the axis at the end of the
-//!   step, energy grows.
-//! - The history is turned with the axis and also with the mean spin of the ends about it; MUSEN's
-//!   T turns it with the axis only.
-//! - The normal force comes from the length (as in MUSEN), not from a sum of increments, which
+//! Differences from the printed formulas:
+//! - The increment uses the axis halfway through the step, half of it before and half after the
+//!   rotation about the axis: the step is time-reversible. With the axis at the end of the step,
+//!   energy grows.
+//! - The history is rotated with the axis and also with the mean spin of the ends about it; MUSEN's
+//!   T rotates it with the axis only.
+//! - The normal force follows from the length (as in MUSEN), not from a sum of increments, which
 //!   would drift.
 //! - MUSEN's relative spin has the opposite sense to its relative velocity, and its last product is
 //!   a cross product: here everything is b relative to a.
@@ -21,7 +21,7 @@ use super::stiffness::Stiffness;
 use super::total::{BondEnergy, BondForces};
 use nalgebra::Vector3;
 
-/// What a bond remembers. Both are 0 when it is made.
+/// History of a bond. Both values are 0 when it is created.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct History {
     /// Shear force on the second end, across the bond, N.
@@ -46,7 +46,7 @@ pub struct Step {
     pub apart_before: Vector3<f64>,
     /// The same at its end, m.
     pub apart_after: Vector3<f64>,
-    /// Spins halfway through the step, as leapfrog has them, times the time step, rad.
+    /// Spins halfway through the step (leapfrog), times the time step, rad.
     pub turns: [Vector3<f64>; 2],
 }
 
@@ -58,8 +58,8 @@ pub fn advance(stiffness: &Stiffness, history: &History, step: &Step) -> History
     let before = step.apart_before.normalize();
     let middle = (before + step.apart_after.normalize()).normalize();
 
-    // Displacement and turn of b relative to a at the contact point, which splits the present
-    // length as the levers do the initial one.
+    // Displacement and rotation of b relative to a at the contact point, which divides the present
+    // length in the ratio of the levers.
     let apart = 0.5 * (step.apart_before + step.apart_after);
     let carried = (lever_a * turn_a + lever_b * turn_b) / (lever_a + lever_b);
     let moved = step.apart_after - step.apart_before - carried.cross(&apart);
@@ -69,8 +69,8 @@ pub fn advance(stiffness: &Stiffness, history: &History, step: &Step) -> History
     let half_force = -0.5 * stiffness.shear * across;
     let half_moment = -0.5 * (stiffness.bending * turned + middle * (excess * turned.dot(&middle)));
 
-    // To the middle of the axis' turn, about the axis there, and on to its end: the same turn
-    // twice, as the middle halves the angle.
+    // To the middle of the rotation of the axis, rotated about the axis there, and on to its end:
+    // the same rotation twice, as the middle halves the angle.
     let rotation = before.cross(&middle);
     let per_rotation = 1.0 / (1.0 + before.dot(&middle));
     let spin = middle * (0.25 * (turn_a + turn_b).dot(&middle));
@@ -86,7 +86,8 @@ pub fn advance(stiffness: &Stiffness, history: &History, step: &Step) -> History
     }
 }
 
-/// Forces of a bond with this history whose second end's centre lies `apart` from the first's.
+/// Forces of a bond with this history; `apart` is the vector from the first end's centre to the
+/// second's.
 #[inline(always)]
 pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f64>) -> BondForces {
     let [lever_a, lever_b] = stiffness.levers_m;
@@ -119,8 +120,8 @@ pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f
     }
 }
 
-/// A vector turned as one unit vector is into another whose cross product is `rotation`;
-/// `per_rotation` is one over (1 + their product).
+/// A vector under the rotation that takes one unit vector to another; `rotation` is their cross
+/// product and `per_rotation` is one over (1 + their dot product).
 #[inline(always)]
 fn rotated(vector: &Vector3<f64>, rotation: &Vector3<f64>, per_rotation: f64) -> Vector3<f64> {
     let once = rotation.cross(vector);

@@ -1,4 +1,4 @@
-//! Bond models, a file each.
+//! Bond models, one per file.
 
 pub mod elastic_solid;
 pub mod euler_bernoulli;

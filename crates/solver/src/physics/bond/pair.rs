@@ -1,9 +1,9 @@
-//! Two particles joined by one bond: how they swing, in closed form, and the largest time step they
-//! allow.
+//! Two particles joined by one bond: their frequencies, in closed form, and the largest time step.
 //!
-//! Small motion about the unloaded bond, undamped. A particle with several bonds swings faster than
-//! any of its pairs: the critical step of a body is smaller than the least of its pairs (down to
-//! 0.71 of it in a chain of equal spheres), and only an eigenvalue of the whole body is the limit.
+//! Small undamped motion about the unloaded bond. A particle with several bonds oscillates faster
+//! than any of its pairs: the critical step of a body is smaller than the smallest of its pairs
+//! (down to 0.71 of it in a chain of equal spheres), and only an eigenvalue of the entire body
+//! gives the limit.
 
 use super::stiffness::Stiffness;
 
@@ -31,12 +31,11 @@ impl Frequencies {
     }
 }
 
-/// Frequencies of two ends, from one over mass and one over moment of inertia: 0 for an end that is
-/// held.
+/// Frequencies of two ends, from inverse masses and inverse moments of inertia: 0 for a held end.
 ///
-/// Bending and shear: with the shear u and the bend phi of the bond as coordinates, the inverse
-/// masses are W_uu = 1/m + sum of l^2/I, W_phi = sum of 1/I, W_u,phi = l_a/I_a - l_b/I_b, and
-/// omega^2 are the eigenvalues of diag(k_s, k_ben) W.
+/// Bending and shear: with the shear displacement u and the bending angle phi of the bond as
+/// coordinates, the inverse masses are W_uu = 1/m + sum of l^2/I, W_phi = sum of 1/I, W_u,phi =
+/// l_a/I_a - l_b/I_b, and omega^2 are the eigenvalues of diag(k_s, k_ben) W.
 pub fn frequencies(
     stiffness: &Stiffness,
     inverse_masses: [f64; 2],
@@ -54,8 +53,8 @@ pub fn frequencies(
     let product = stiffness.shear * stiffness.bending;
     let apart = (shear - bend).hypot(2.0 * product.sqrt() * coupling);
     let fast = 0.5 * (shear + bend + apart);
-    // The other root from the product of both, written without a difference: near the fast one
-    // nothing would be left of it.
+    // The other root from the product of both, written without a difference: close to the fast one,
+    // it would be lost in rounding.
     let length = lever_a + lever_b;
     let determinant =
         product * (per_mass * per_inertia + length * length * per_inertia_a * per_inertia_b);

@@ -1,4 +1,4 @@
-//! A bond as a round rod: what bond models have in common.
+//! A bond as a round rod: the common part of the bond models.
 
 use std::f64::consts::PI;
 
@@ -13,8 +13,8 @@ pub struct BondShape {
     pub end_radii_m: [f64; 2],
 }
 
-/// What a bond answers to being stretched, sheared, twisted and bent, and where its contact point
-/// lies.
+/// Stiffness of a bond in tension, shear, torsion and bending, and the position of its contact
+/// point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stiffness<T = f64> {
     /// Along the bond, N/m.
@@ -25,7 +25,7 @@ pub struct Stiffness<T = f64> {
     pub torsion: T,
     /// Bending, N m/rad.
     pub bending: T,
-    /// Distances of the contact point from the two centres, m; together the bond's length.
+    /// Distances of the contact point from the two centres, m; their sum is the bond's length.
     pub levers_m: [T; 2],
 }
 
@@ -61,13 +61,13 @@ impl Rod {
         self.young_modulus_pa * self.area_m2() / self.shape.length_m
     }
 
-    /// 12 E I/L^3, N/m: across a slender beam whose ends do not turn.
+    /// 12 E I/L^3, N/m: transverse stiffness of a slender beam whose ends do not rotate.
     pub fn beam_n_m(&self) -> f64 {
         12.0 * self.young_modulus_pa * self.second_moment_m4() / self.shape.length_m.powi(3)
     }
 
-    /// Stiffness with this one across, N/m, along, in torsion and in bending that of a round rod
-    /// (J = 2 I, I = A r^2/4), and shear in the middle.
+    /// Stiffness with this shear stiffness, N/m, those of a round rod in tension, torsion and
+    /// bending (J = 2 I, I = A r^2/4), and shear in the middle.
     pub fn with_shear(&self, shear_n_m: f64) -> Stiffness {
         let length = self.shape.length_m;
         let second_moment = self.second_moment_m4();
@@ -81,8 +81,8 @@ impl Rod {
     }
 }
 
-/// A bond model: what it takes a rod for.
+/// A bond model: the stiffness of a rod.
 pub trait RodModel {
-    /// Stiffness of the rod in its four modes, and where along it shear acts.
+    /// Stiffness of the rod in its four modes, and the position along it where shear acts.
     fn stiffness(&self, rod: &Rod) -> Stiffness;
 }

@@ -1,5 +1,5 @@
-//! The bond models: the one place that lists them. `doc/adding-a-model.md` tells how another one is
-//! added.
+//! The bond models: the one place that lists them. See `doc/adding-a-model.md` for how to add
+//! another.
 
 use super::models::elastic_solid::ElasticSolid;
 use super::models::euler_bernoulli::EulerBernoulli;
@@ -9,13 +9,13 @@ use super::models::timoshenko::Timoshenko;
 pub use super::rod::{BondShape, Stiffness};
 use super::rod::{Rod, RodModel};
 
-/// Which beam a bond is taken for.
+/// Beam model of a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BondModel {
-    /// Parallel bond: shear stiffness is the normal stiffness over `kappa`, 2 (1 + nu) unless
+    /// Parallel bond: shear stiffness is the normal stiffness divided by `kappa`, 2 (1 + nu) unless
     /// given. Shear acts halfway between the surfaces of the spheres.
     Parallel {
-        /// Normal over shear stiffness.
+        /// Ratio of normal to shear stiffness.
         kappa: Option<f64>,
     },
     /// Slender beam: no shear deformation.
@@ -24,7 +24,7 @@ pub enum BondModel {
     Timoshenko,
     /// MUSEN's bond: each mode as for a rod of the bond's length.
     ElasticSolid,
-    /// Beam of Platzer 2022: as the elastic solid bond, with the shear stiffness times a
+    /// Beam of Platzer 2022: like the elastic solid bond, with the shear stiffness multiplied by a
     /// coefficient.
     ShearCoefficient {
         /// Shear coefficient, 0.9 for a circular section.
@@ -32,7 +32,7 @@ pub enum BondModel {
     },
 }
 
-/// Stiffness of a bond of Young's modulus `young_modulus_pa` and Poisson's ratio `poisson_ratio`.
+/// Stiffness of a bond with Young's modulus `young_modulus_pa` and Poisson's ratio `poisson_ratio`.
 pub fn stiffness(
     model: BondModel,
     shape: &BondShape,

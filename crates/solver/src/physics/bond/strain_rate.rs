@@ -1,12 +1,12 @@
-//! Strength that rises with the rate of strain: the dynamic increase factor.
+//! Strength that rises with the strain rate: the dynamic increase factor.
 //!
 //! Source: Platzer 2022, eqs. 20 and 21, after Zhou and Hao 2008.
 //!
-//! Printed eq. 20 lacks parentheses: 1 + 0.0225 (lg rate + 5.3333) is meant, which is 1 at
+//! Printed eq. 20 lacks parentheses: it means 1 + 0.0225 (lg rate + 5.3333), which is 1 at
 //! 4.64e-6/s and meets the second branch at 0.1/s. The second branch is a parabola whose lowest
-//! point, 1.079 at 0.144/s, lies inside it: the factor falls a little above 0.1/s before it rises.
-//! It is left as printed. Printed eq. 21 takes the whole relative velocity, which gives a rate
-//! where the bond only turns; here it is the part along the bond.
+//! point, 1.079 at 0.144/s, lies inside it: the factor falls slightly above 0.1/s before it rises.
+//! It is left as printed. Printed eq. 21 uses the full relative velocity, which gives a rate even
+//! if the bond only rotates; here it is the part along the bond.
 
 use nalgebra::Vector3;
 
@@ -14,14 +14,14 @@ use nalgebra::Vector3;
 const LOWEST_1_S: f64 = 4.64e-6;
 /// Above this rate the factor no longer rises, /s.
 const HIGHEST_1_S: f64 = 50.0;
-/// Where the second branch begins, /s.
+/// Start of the second branch, /s.
 const BRANCH_1_S: f64 = 0.1;
 
-/// The rate below which Platzer 2022, section 4.5.1.8, strengthens nothing, so that the small
-/// oscillations of a quasi-static test are not, /s.
+/// The rate below which Platzer 2022, section 4.5.1.8, applies no strengthening, so that the small
+/// oscillations of a quasi-static test have no effect, /s.
 pub const PLATZER_LOWEST_RATE_1_S: f64 = 1.1;
 
-/// Rate at which a bond along the unit vector `c` from a to b gets longer, in initial lengths per
+/// Rate of elongation of a bond along the unit vector `c` from a to b, in initial lengths per
 /// second.
 #[inline(always)]
 pub fn elongation_rate(
@@ -33,11 +33,12 @@ pub fn elongation_rate(
     (b - a).dot(c) / initial_length_m
 }
 
-/// Dynamic over static strength at this rate of elongation: 1 while the bond gets shorter and below
-/// the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at 1.1/s).
+/// Ratio of dynamic to static strength at this rate of elongation: 1 while the bond gets shorter
+/// and below the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at 1.1/s).
 /// Never below 1: the printed fit gives 0.999996 at its lower end.
 ///
-/// One logarithm. The factor is never below 1, so only a bond that would break without it needs it.
+/// It costs one logarithm. The factor is never below 1, so only bonds that would break without it
+/// need it.
 #[inline(always)]
 pub fn dynamic_increase_factor(rate_1_s: f64, from_1_s: f64) -> f64 {
     let lg = rate_1_s.clamp(LOWEST_1_S, HIGHEST_1_S).log10();

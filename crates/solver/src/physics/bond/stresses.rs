@@ -1,4 +1,4 @@
-//! Stresses in the section of a bond, its strengths, and what a failure criterion says of the two.
+//! Stresses in the section of a bond, its strengths, and failure criteria.
 //!
 //! A round bond: A = pi r^2, I = A r^2 / 4, J = 2 I.
 
@@ -9,17 +9,17 @@ use serde::Serialize;
 use super::BondLoad;
 use crate::physics::number::Number;
 
-/// Strengths of a bond, none below 0. An infinite strength is not asked for; of a strength of 0 any
-/// load takes more than all, and none takes nothing. Several may act together.
+/// Strengths of a bond, none below 0. An infinite strength is not checked. With a strength of 0,
+/// any load breaks the bond, and no load does not. Several may act together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Criteria {
     /// Largest stress at the tensile edge: F_n / A + M_ben r / I, tension positive, Pa.
     pub tensile_strength_pa: f64,
-    /// Largest stress at the pressed edge: -F_n / A + M_ben r / I, Pa.
+    /// Largest stress at the compressed edge: -F_n / A + M_ben r / I, Pa.
     pub compressive_strength_pa: f64,
-    /// MUSEN's shear strength: largest shear stress of shear force and torsion, Pa.
+    /// MUSEN's shear strength: largest shear stress from shear force and torsion, Pa.
     pub shear_strength_pa: f64,
-    /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only while it pulls, Pa.
+    /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only in tension, Pa.
     pub von_mises_strength_pa: f64,
 }
 
@@ -37,13 +37,15 @@ pub struct Stresses<T = f64> {
 }
 
 impl<T: Number> Stresses<T> {
-    /// At the edge that is pulled most; below 0 if the whole section is pressed, Pa.
+    /// Stress at the edge with the largest tension; below 0 if the entire section is in
+    /// compression, Pa.
     #[inline(always)]
     pub fn tensile_edge_pa(&self) -> T {
         self.bending_pa + self.axial_pa
     }
 
-    /// At the edge that is pressed most; below 0 if the whole section is pulled, Pa.
+    /// Stress at the edge with the largest compression; below 0 if the entire section is in
+    /// tension, Pa.
     #[inline(always)]
     pub fn pressed_edge_pa(&self) -> T {
         self.bending_pa - self.axial_pa
@@ -70,13 +72,13 @@ pub trait FailureCriterion {
     const NAME: &'static str;
     /// How bonds fail by it, in words: "by equivalent stress".
     const PHRASE: &'static str;
-    /// Whether the rate of strain raises its strength.
+    /// Whether its strength rises with the strain rate.
     const RISES_WITH_RATE: bool;
 
-    /// Its strength, Pa; infinite: not asked for.
+    /// Its strength, Pa; infinite: not checked.
     fn strength_pa(criteria: &Criteria) -> f64;
 
-    /// Square of the stress that it compares, Pa2: squares need no root while many bonds are looked
-    /// at. Stresses and square may be multiplied by a number above 0 and its square.
+    /// Square of the stress that it compares, Pa2: squares avoid a root while many bonds are
+    /// checked. Stresses and square may be multiplied by a number above 0 and its square.
     fn squared<T: Number>(stresses: &Stresses<T>) -> T;
 }

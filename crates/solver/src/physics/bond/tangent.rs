@@ -1,5 +1,6 @@
-//! The tangent of a bond: how its forces and torques change as its ends move and turn, from the
-//! very formulas of the forces ([`bond_response`]), differentiated exactly.
+//! The tangent of a bond: derivatives of its forces and torques with respect to displacements and
+//! rotations of its ends, by exact differentiation of the same formulas as for the forces
+//! ([`bond_response`]).
 
 use nalgebra::Vector3;
 
@@ -8,24 +9,24 @@ use super::total::{End, bond_response};
 use crate::physics::dual::Dual;
 use crate::physics::number::{Rotation, Vec3};
 
-/// Freedoms of the two ends of a bond: moves along x, y, z of the first (0..3), turns about x, y, z
-/// of the first (3..6), then those of the second.
+/// Number of degrees of freedom of the two ends of a bond: translations along x, y, z of the first
+/// (0..3), rotations about x, y, z of the first (3..6), then those of the second.
 pub const DEGREES_OF_FREEDOM: usize = 12;
 
-/// Rows: forces, N, and torques, N m, in the order of [`FREEDOMS`]. Columns: moves, m, and turns,
-/// rad. Its entries are what a small move or turn takes: minus the derivatives of what the bond
-/// exerts.
+/// Rows: forces, N, and torques, N m, in the order of [`DEGREES_OF_FREEDOM`]. Columns:
+/// displacements, m, and rotations, rad. Its entries are the external forces for a small
+/// displacement or rotation: minus the derivatives of the bond's forces.
 pub type BondTangent = [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
 
-/// Variables: where the second end stands from the first, the turns of the first and those of the
-/// second.
+/// Variables: the position of the second end relative to the first, the rotations of the first and
+/// those of the second.
 type Number = Dual<9>;
 
 /// The tangent of a bond of the total formulation.
 ///
-/// Turns are rotation vectors in space that are applied after the present rotation, q <- exp(turn)
-/// q. Where a torque acts on an end, the tangent is not symmetric in the turns of that end: K - K^T
-/// = the cross product with the torque that the bond exerts there.
+/// Rotations are rotation vectors in space, applied after the present rotation, q <- exp(turn) q.
+/// If a torque acts on an end, the tangent is not symmetric in the rotations of that end: K - K^T =
+/// the cross product with the torque that the bond exerts there.
 pub fn bond_tangent(
     stiffness: &Stiffness,
     direction: &Vector3<f64>,
@@ -67,8 +68,8 @@ pub fn bond_tangent(
     tangent
 }
 
-/// How an end is turned, with the derivatives by a further turn: half of the turn times the present
-/// rotation. Variables from `first` on.
+/// Rotation of an end, with the derivatives with respect to a further rotation: half of it times
+/// the present rotation. Variables from `first` on.
 fn turning(end: &End, first: usize) -> Rotation<Number> {
     let (v, w) = (end.turned.imag(), end.turned.w);
     let mut parts = [v.x, v.y, v.z, w].map(Number::constant);
@@ -85,7 +86,7 @@ fn turning(end: &End, first: usize) -> Rotation<Number> {
     Rotation(Vec3(x, y, z), w)
 }
 
-/// A row of the tangent from derivatives by the nine variables, times a factor.
+/// A row of the tangent from derivatives with respect to the nine variables, times a factor.
 fn spread(slopes: &[f64; 9], factor: f64) -> [f64; DEGREES_OF_FREEDOM] {
     let mut row = [0.0; DEGREES_OF_FREEDOM];
     for k in 0..3 {

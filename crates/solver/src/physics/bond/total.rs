@@ -1,6 +1,6 @@
-//! The total formulation: force and torques are the exact gradient of an energy of the present
-//! positions and orientations. There is no history, so nothing has to be rotated along, stored or
-//! can drift.
+//! The total formulation: force and torques are the exact gradient of an energy that depends on the
+//! present positions and orientations. There is no history, so nothing needs to be rotated or
+//! stored, and nothing can drift.
 //!
 //! With c the unit vector from a to b, a_a and a_b the bond's initial direction carried by each
 //! particle, levers l_a + l_b = L0, s = l_a a_a + l_b a_b, w = c x s, e the direction of a_a + a_b,
@@ -9,19 +9,19 @@
 //! U = 1/2 k_n (L - L0)^2 + 1/2 k_s |w|^2 + 1/2 k_ben |phi|^2 + 1/2 (k_tor - k_ben) (phi . e)^2
 //!
 //! phi is twice the vector part of the relative quaternion: 2 sin(angle/2) along the axis. It needs
-//! no trigonometry and differs from the rotation vector in third order only.
+//! no trigonometry and differs from the rotation vector only in third order.
 
 use super::BondLoad;
 use super::stiffness::Stiffness;
 use crate::physics::number::{Number, Rotation, Vec3};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// An end of a bond: where its particle is and how it is turned.
+/// An end of a bond: position and rotation of its particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End {
     /// Centre, m.
     pub position_m: Vector3<f64>,
-    /// Rotation since the bond was made.
+    /// Rotation since the bond was created.
     pub turned: UnitQuaternion<f64>,
 }
 
@@ -45,7 +45,7 @@ impl BondEnergy {
     }
 }
 
-/// What a bond does to its ends.
+/// Forces of a bond on its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondForces {
     /// Force on the second end, N. The first end feels the opposite.
@@ -54,21 +54,20 @@ pub struct BondForces {
     pub torques: [Vector3<f64>; 2],
     /// Energy stored, J.
     pub energy: BondEnergy,
-    /// What it carries, mode by mode: each stiffness times its deformation, so half of load times
+    /// Its load, mode by mode: each stiffness times its deformation, so half of load times
     /// deformation is the energy of the mode.
     pub load: BondLoad,
 }
 
-/// The direction of a bond whose ends are `apart`, a unit vector: by the same operations as in
-/// [`bond_forces`], so that a bond at rest gives no force to the last bit.
+/// The direction of a bond, a unit vector, from the vector `apart` between its ends: by the same
+/// operations as in [`bond_forces`], so that the force of a bond at rest is 0 to the last bit.
 pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {
     let apart = Vec3(apart.x, apart.y, apart.z);
     let Vec3(x, y, z) = apart * apart.square().sqrt().inverse();
     Vector3::new(x, y, z)
 }
 
-/// Forces of a bond of this stiffness whose initial direction from a to b was `direction` (a unit
-/// vector).
+/// Forces of a bond with this stiffness and this initial direction from a to b (a unit vector).
 pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End; 2]) -> BondForces {
     let triple = |v: &Vector3<f64>| Vec3(v.x, v.y, v.z);
     let vector = |t: Vec3<f64>| Vector3::new(t.0, t.1, t.2);
@@ -83,7 +82,7 @@ pub fn bond_forces(stiffness: &Stiffness, direction: &Vector3<f64>, ends: &[End;
     }
 }
 
-/// What one bond or several at once do to their ends: as [`BondForces`].
+/// Forces of one bond or several at once on their ends: as [`BondForces`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondResponse<T> {
     /// Force on the second end, N.
@@ -92,15 +91,15 @@ pub struct BondResponse<T> {
     pub torques: [Vec3<T>; 2],
     /// Energy stored, J.
     pub energy: BondEnergy<T>,
-    /// What it carries.
+    /// Its load.
     pub load: BondLoad<T>,
 }
 
-/// Forces of bonds whose initial directions were `direction`, whose second ends now stand `apart`
-/// from the first, m, and whose ends are `turned` since the start.
+/// Forces of bonds with these initial directions; `apart` is the vector from the first to the
+/// second ends, m, and `turned` the rotations of the ends since the start.
 ///
-/// Meant for the inside of a loop over bonds: there is no branch in it, and whatever of energy and
-/// load the caller does not read is not computed.
+/// Meant for the inside of a loop over bonds: it has no branches, and energies and loads that the
+/// caller does not use are not computed.
 #[inline(always)]
 pub fn bond_response<T: Number>(
     stiffness: &Stiffness<T>,
@@ -115,8 +114,7 @@ pub fn bond_response<T: Number>(
     let initial = lever_a + lever_b;
     let elongation = length - initial;
 
-    // s = L0 c + offset: nothing cancels in an offset that is small, and at rest it is 0 to the
-    // last bit.
+    // s = L0 c + offset: nothing cancels in a small offset, and at rest it is 0 to the last bit.
     let [turned_a, turned_b] = turned;
     let (direction_a, direction_b) = (turned_a.of(direction), turned_b.of(direction));
     let offset = (direction_a - c) * lever_a + (direction_b - c) * lever_b;
@@ -124,8 +122,8 @@ pub fn bond_response<T: Number>(
     let along = initial + offset_along;
     let shear_displacement = offset - c * offset_along;
 
-    // A quaternion and its negative are the same rotation: the one of less than half a turn is
-    // meant.
+    // A quaternion and its negative are the same rotation: the one of less than half a revolution
+    // is used.
     let Rotation(half_phi, cosine) = turned_b.relative_to(turned_a);
     let sign = cosine.sign();
     let (half_phi, cosine) = (half_phi * sign, cosine * sign);

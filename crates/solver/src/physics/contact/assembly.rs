@@ -1,5 +1,5 @@
-//! A contact from what is remembered of it to what it does, be it of two particles or of a particle
-//! and a wall: relaxation, law, friction, torques and losses.
+//! Computes a contact from its history to its forces, between two particles or a particle and a
+//! wall: relaxation, law, friction, torques and losses.
 
 use super::kinematics::{ContactKinematics, torques};
 use super::relaxation::relaxed;
@@ -7,36 +7,36 @@ use super::rolling::RollingFriction;
 use super::{ContactSprings, Damped, NormalLaw, Response, response};
 use crate::physics::number::{Number, Vec3};
 
-/// What is remembered of a contact.
+/// History of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoredContact<T = f64> {
     /// Its springs.
     pub springs: ContactSprings<T>,
-    /// What its damping did to the second end.
+    /// Its previous damping force and moment on the second end.
     pub damped: Damped<T>,
     /// Overlap at which its law begins, m.
     pub origin_m: T,
 }
 
-/// What comes of a contact in a step.
+/// Result for a contact in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assembled<T = f64> {
-    /// To be remembered.
+    /// New history.
     pub remembered: StoredContact<T>,
     /// Overlap of its law, m.
     pub overlap_m: T,
-    /// What it does and stores.
+    /// Forces and energies.
     pub response: Response<T>,
     /// Torques on its ends about their centres, N m.
     pub torques: [Vec3<T>; 2],
-    /// Energy that friction took in the step, J.
+    /// Energy lost to friction in the step, J.
     pub friction_j: T,
-    /// Energy that damping took in the step, J.
+    /// Energy lost to damping in the step, J.
     pub damping_j: T,
 }
 
-/// What comes of a contact after a step of `dt`, s. A pair that parted overlapping is ordinary
-/// below `least_overlap` times its effective radius.
+/// Result for a contact after a step of `dt`, s. A pair that separated while overlapping becomes
+/// ordinary below `least_overlap` times its effective radius.
 #[inline(always)]
 pub fn assemble<T: Number>(
     law: &impl NormalLaw<T>,

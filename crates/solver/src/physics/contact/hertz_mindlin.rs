@@ -1,4 +1,4 @@
-//! The law of Hertz and Mindlin.
+//! The contact law of Hertz and Mindlin.
 //!
 //! With 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b, 1/G* = (2 - nu_a)/G_a + (2 - nu_b)/G_b, 1/R* =
 //! 1/R_a + 1/R_b:
@@ -6,7 +6,7 @@
 //! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz 1882);
 //! - k_t = 8 G* sqrt(R* d) (Mindlin 1949, no slip);
 //! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al.
-//!   1992), and the [ratio zeta](super::restitution) that gives the wanted restitution.
+//!   1992), and the [ratio zeta](super::restitution) that gives the required restitution.
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{Elastic, PairInput, PairParameters};
@@ -21,12 +21,12 @@ pub struct HertzMindlin<T = f64> {
     pub young_modulus_pa: T,
     /// G*, Pa.
     pub shear_modulus_pa: T,
-    /// How it damps and rubs.
+    /// Damping and friction.
     pub parameters: PairParameters<T>,
 }
 
 impl HertzMindlin {
-    /// Of two materials, one of them at most rigid.
+    /// For two materials, at most one of them rigid.
     pub fn new(materials: [Elastic; 2], pair_input: &PairInput) -> Self {
         let [a, b] = materials;
         let softness = |m: Elastic| (1.0 - m.poisson_ratio.powi(2)) / m.young_modulus_pa;
@@ -40,7 +40,7 @@ impl HertzMindlin {
         }
     }
 
-    /// The same for as many contacts at once as a number stands for.
+    /// The same for several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> HertzMindlin<T> {
         HertzMindlin {
@@ -52,8 +52,8 @@ impl HertzMindlin {
 }
 
 impl<T: Number> HertzMindlin<T> {
-    /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the root of R*
-    /// times the overlap.
+    /// Tangent stiffness along the normal, N/m, at a radius of the contact area, m: the square root
+    /// of R* times the overlap.
     #[inline(always)]
     pub fn normal_n_m(&self, contact_radius_m: T) -> T {
         self.young_modulus_pa.scale(2.0) * contact_radius_m
@@ -99,9 +99,9 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
     }
 }
 
-/// Fraction of its own limit with which an impact is followed: a sphere that bounces keeps its
-/// energy to some 3e-3 of it then, and to 4e-2 at 0.9 (second order). Bonds vibrate for long and
-/// keep their energy on the mean, a contact does not.
+/// Fraction of its own limit at which an impact is resolved: at this value a bouncing sphere
+/// conserves its energy to about 3e-3, and at 0.9 to 4e-2 (second order). Bonds vibrate for a long
+/// time and conserve their energy on average; a contact does not.
 const IMPACT_FRACTION: f64 = 0.25;
 
 impl ImpactLaw for HertzMindlin {
@@ -114,7 +114,7 @@ impl ImpactLaw for HertzMindlin {
     }
 
     fn overlap_of_stiffness_m(&self, stiffness_n_m: f64, effective_radius_m: f64) -> f64 {
-        // It grows with the root of the overlap.
+        // It grows with the square root of the overlap.
         let root = stiffness_n_m / Self::normal_n_m(self, effective_radius_m.sqrt());
         root * root
     }

@@ -1,25 +1,25 @@
-//! Where and how two ends touch: the only geometry that contact laws know.
+//! Kinematics of two ends in contact: the only geometry that contact laws use.
 
 use crate::physics::number::{Number, Vec3};
 
-/// A sphere that may touch: one of its own, or one of a clump, which then has the clump's mass and
-/// moment of inertia.
+/// A sphere that may be in contact: a free one, or one of a clump, which then has the clump's mass
+/// and moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSphere<T = f64> {
-    /// Velocity of the centre halfway through the step, m/s: what it moved in the step over the
+    /// Velocity of the centre halfway through the step, m/s: its displacement in the step over the
     /// time step.
     pub velocity_m_s: Vec3<T>,
     /// Spin halfway through the step, rad/s.
     pub spin_rad_s: Vec3<T>,
     /// Radius, m.
     pub radius_m: T,
-    /// One over the mass, 1/kg: 0 if it is held.
+    /// Inverse mass, 1/kg: 0 if it is held.
     pub inverse_mass_per_kg: T,
-    /// One over the moment of inertia, 1/(kg m^2): 0 if it is held.
+    /// Inverse moment of inertia, 1/(kg m^2): 0 if it is held.
     pub inverse_inertia_per_kg_m2: T,
 }
 
-/// A wall where it touches a sphere.
+/// Point of a wall nearest to a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallPoint<T = f64> {
     /// Unit normal from the wall to the centre of the sphere.
@@ -34,21 +34,21 @@ pub struct WallPoint<T = f64> {
     pub spin_rad_s: Vec3<T>,
 }
 
-/// How b touches a, at the end of a step.
+/// Kinematics of b in contact with a, at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactKinematics<T = f64> {
     /// Unit normal from a to b.
     pub normal: Vec3<T>,
     /// The unit vector halfway between the normal a step before and now.
     pub middle: Vec3<T>,
-    /// Overlap, m; where it is not above 0 the ends are apart.
+    /// Overlap, m; if it is not above 0, the ends are apart.
     pub overlap_m: T,
-    /// From each centre to the contact point, m: radius less half the overlap, 0 for a wall.
-    /// Together they are the distance of the centres, so torques balance.
+    /// Branch vector lengths, from each centre to the contact point, m: radius minus half the
+    /// overlap, 0 for a wall. Their sum is the distance of the centres, so torques balance.
     pub levers_m: [T; 2],
-    /// Velocity of b's surface against a's at the contact point, halfway through the step, m/s.
+    /// Velocity of b's surface relative to a's at the contact point, halfway through the step, m/s.
     pub velocity_m_s: Vec3<T>,
-    /// Spin of b against a halfway through the step, rad/s.
+    /// Spin of b relative to a halfway through the step, rad/s.
     pub spin_rad_s: Vec3<T>,
     /// Mean spin of the two about the normal, rad/s.
     pub mean_spin_rad_s: T,
@@ -61,8 +61,8 @@ pub struct ContactKinematics<T = f64> {
     pub effective_rolling_inertia_kg_m2: T,
 }
 
-/// How two spheres touch whose centres are `apart_m` (from a to b) after a step of `dt`, s. The
-/// centres must not coincide.
+/// Kinematics of two spheres after a step of `dt`, s; `apart_m` is the vector from the centre of a
+/// to that of b. The centres must not coincide.
 #[inline(always)]
 pub fn contact_kinematics<T: Number>(
     apart_m: Vec3<T>,
@@ -97,7 +97,8 @@ pub fn contact_kinematics<T: Number>(
     }
 }
 
-/// How a sphere (b) touches a wall (a), which has endless mass and radius, after a step of `dt`, s.
+/// Kinematics of a sphere (b) and a wall (a), which has infinite mass and radius, after a step of
+/// `dt`, s.
 #[inline(always)]
 pub fn wall_contact_kinematics<T: Number>(
     foot: &WallPoint<T>,
@@ -123,8 +124,8 @@ pub fn wall_contact_kinematics<T: Number>(
     }
 }
 
-/// Velocity of b's surface against a's at the contact point, m/s, of ends that have these
-/// velocities and spins (a first), where the touch is now.
+/// Velocity of b's surface relative to a's at the present contact point, m/s, for ends with these
+/// velocities and spins (a first).
 ///
 /// For a wall: the velocity of its surface there.
 #[inline(always)]
@@ -137,7 +138,7 @@ pub fn relative_velocity<T: Number>(
     velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
 }
 
-/// Torques on a and b about their centres, N m, of a force on b at the contact point, N, and a
+/// Torques on a and b about their centres, N m, from a force on b at the contact point, N, and a
 /// moment on b, N m.
 ///
 /// For a wall: about the contact point.
@@ -152,24 +153,24 @@ pub fn torques<T: Number>(
     [turn * lever_a - moment_on_b, turn * lever_b + moment_on_b]
 }
 
-/// How vectors across the normal turn along with it in a step: as its two halves.
+/// Rotation of vectors across the normal together with it in a step: as its two halves.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameRotation<T> {
     /// The normals at the beginning, in the middle and at the end of the step.
     normals: [Vec3<T>; 3],
-    /// 1 / (1 + cosine) of half the turn of the normal.
+    /// 1 / (1 + cosine) of half the rotation angle of the normal.
     per_rotation: T,
-    /// Cosine and sine of half the mean turn about the normal.
+    /// Cosine and sine of half the mean rotation about the normal.
     spin: [T; 2],
 }
 
 impl<T: Number> FrameRotation<T> {
-    /// Of a step of `dt`, s.
+    /// For a step of `dt`, s.
     #[inline(always)]
     pub fn new(touch: &ContactKinematics<T>, dt: f64) -> Self {
         let (middle, normal) = (touch.middle, touch.normal);
         let cosine = middle.dot(normal);
-        // The tangent of half the angle: of a quarter of the turn in the step.
+        // The tangent of half the angle: of a quarter of the rotation in the step.
         let t = touch.mean_spin_rad_s.scale(0.25 * dt);
         let per = (t * t).plus(1.0).inverse().scale(2.0);
         Self {
@@ -179,14 +180,14 @@ impl<T: Number> FrameRotation<T> {
         }
     }
 
-    /// A vector across the normal, from the beginning of the step to its middle.
+    /// Rotates a vector across the normal from the beginning of the step to its middle.
     #[inline(always)]
     pub fn to_middle(&self, vector: Vec3<T>) -> Vec3<T> {
         let [before, middle, _] = self.normals;
         self.spun(vector - (before + middle) * (middle.dot(vector) * self.per_rotation))
     }
 
-    /// A vector across the normal, from the middle of the step to its end.
+    /// Rotates a vector across the normal from the middle of the step to its end.
     #[inline(always)]
     pub fn to_end(&self, vector: Vec3<T>) -> Vec3<T> {
         let [_, middle, normal] = self.normals;
@@ -194,7 +195,7 @@ impl<T: Number> FrameRotation<T> {
         spun - (middle + normal) * (normal.dot(spun) * self.per_rotation)
     }
 
-    /// Turned about the normal in the middle of the step.
+    /// Rotates a vector about the normal in the middle of the step.
     #[inline(always)]
     fn spun(&self, vector: Vec3<T>) -> Vec3<T> {
         let [cosine, sine] = self.spin;
@@ -209,13 +210,13 @@ fn unit<T: Number>(vector: Vec3<T>) -> (Vec3<T>, T) {
     (vector * length.inverse(), length)
 }
 
-/// One over a sum of inverses, 0 where that is 0.
+/// Inverse of a sum of inverses, 0 if that is 0.
 #[inline(always)]
 fn reduced<T: Number>(sum: T) -> T {
     sum.if_positive(sum.inverse())
 }
 
-/// One over I + m R^2; 0 for an end that is held.
+/// Inverse of I + m R^2; 0 for a held end.
 #[inline(always)]
 fn per_rolling_inertia<T: Number>(ball: &ContactSphere<T>) -> T {
     let (per_mass, per_inertia) = (ball.inverse_mass_per_kg, ball.inverse_inertia_per_kg_m2);

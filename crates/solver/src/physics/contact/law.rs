@@ -1,5 +1,5 @@
-//! The contact laws and rolling frictions that a pair of materials can have: the one place that
-//! lists them. `doc/adding-a-model.md` tells how another one is added.
+//! The contact laws and rolling friction models available to a pair of materials: the one place
+//! that lists them. See `doc/adding-a-model.md` for how to add another.
 
 use super::assembly::{Assembled, StoredContact, assemble};
 use super::hertz_mindlin::HertzMindlin;
@@ -30,12 +30,12 @@ pub enum Rolling {
     Spring(ElasticPlastic),
 }
 
-/// How a pair of materials meets.
+/// Contact type of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactKind {
-    /// Along and across the normal.
+    /// Normal and tangential law.
     pub law: Law,
-    /// Against rolling.
+    /// Rolling friction.
     pub rolling: Rolling,
 }
 
@@ -49,19 +49,18 @@ impl Law {
     }
 }
 
-/// Something to be done with a law and a rolling friction, whichever they are.
+/// Work that is generic over the law and the rolling friction.
 pub trait ContactWork<T: Number> {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
-    /// Does it.
+    /// Does the work.
     fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) -> Self::Output;
 }
 
 impl ContactKind {
-    /// Does something with the law and the rolling friction of this kind. `all` makes numbers of
-    /// the formulas from plain ones: one for each of several contacts at once, or the number
-    /// itself.
+    /// Does work with the law and the rolling friction of this type. `all` converts plain numbers
+    /// to those of the formulas: one for each of several contacts at once, or the number itself.
     #[inline(always)]
     pub fn with<T: Number, W: ContactWork<T>>(
         &self,
@@ -88,8 +87,7 @@ impl ContactKind {
         }
     }
 
-    /// Stiffness along the normal at an overlap, m, with an effective radius, m, in N/m; 0 where
-    /// there is no overlap.
+    /// Normal stiffness at an overlap, m, with an effective radius, m, in N/m; 0 without overlap.
     pub fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {
         let law = self.law.at_impact();
         law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
@@ -112,7 +110,7 @@ impl ContactKind {
         self.with(|number| number, Linearise(touch))
     }
 
-    /// What comes of a contact after a step of `dt`, s: see [`assemble`].
+    /// Result for a contact after a step of `dt`, s: see [`assemble`].
     pub fn assemble(
         &self,
         touch: &ContactKinematics,

@@ -1,12 +1,12 @@
-//! The linear law: springs and dashpots of constant stiffness.
+//! The linear contact law: springs and dashpots of constant stiffness.
 //!
-//! F_n = k_n d, k_t a constant share of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n,
-//! across it with k_t, and the [ratio zeta](super::restitution) that gives the wanted restitution
+//! F_n = k_n d, k_t a constant fraction of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n,
+//! across it with k_t, and the [ratio zeta](super::restitution) that gives the required restitution
 //! at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
 //!
-//! The dashpot pulls from the first moment on with all it has, while a step is one kick around its
-//! end. So that the loss does not hang on the moment within a step at which the ends meet, the
-//! first kick has the share of the dashpot that is due since then.
+//! The dashpot acts with its full force from the first moment, while the kick of a step covers the
+//! time around its end. So that the loss does not depend on the moment within a step at which the
+//! ends meet, the first kick contains only the fraction of the dashpot's force since then.
 
 use super::kinematics::ContactKinematics;
 use super::pair_parameters::{PairInput, PairParameters};
@@ -21,12 +21,12 @@ pub struct Linear<T = f64> {
     pub normal_n_m: T,
     /// k_t, N/m.
     pub tangential_n_m: T,
-    /// How it damps and rubs.
+    /// Damping and friction.
     pub parameters: PairParameters<T>,
 }
 
 impl Linear {
-    /// Of this stiffness, N/m, and this ratio k_t / k_n.
+    /// With this stiffness, N/m, and this ratio k_t / k_n.
     pub fn new(normal_n_m: f64, tangential_ratio: f64, pair_input: &PairInput) -> Self {
         Self {
             normal_n_m,
@@ -35,7 +35,7 @@ impl Linear {
         }
     }
 
-    /// The same for as many contacts at once as a number stands for.
+    /// The same for several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> Linear<T> {
         Linear {
@@ -85,8 +85,8 @@ impl<T: Number> NormalLaw<T> for Linear<T> {
     }
 }
 
-/// Fraction of a kick that is due if the ends met in the step of `dt`, s, before its middle: since
-/// then, and half a step after it. 1 where they touched a step before, or part.
+/// Fraction of a kick that is due if the ends met in the step of `dt`, s, before its middle: the
+/// time since then, and half a step after it. 1 if they were already in contact, or separate.
 #[inline(always)]
 fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt: f64) -> T {
     let one = overlap_before_m.zero().plus(1.0);
@@ -96,8 +96,8 @@ fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt:
     one + more - overlap_before_m.if_positive(more)
 }
 
-/// Fraction of its own limit with which an impact is followed: the force begins with a corner.
-/// Restitution is within 1 % then, and within 4 % at twice the step.
+/// Fraction of its own limit at which an impact is resolved: the force starts with a jump in slope.
+/// Restitution is then accurate to 1 %, and to 4 % at twice the step.
 const IMPACT_FRACTION: f64 = 0.125;
 
 impl ImpactLaw for Linear {

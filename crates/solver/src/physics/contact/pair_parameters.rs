@@ -1,9 +1,9 @@
-//! How a pair of materials damps and rubs: what all normal laws share.
+//! Damping and friction of a pair of materials: common to all normal laws.
 
 use super::restitution::{damping_ratio, damping_ratio_with_attraction};
 use serde::Serialize;
 
-/// A material, as elastic contact sees it.
+/// Elastic properties of a material in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elastic {
     /// Young's modulus, Pa: infinite for a rigid end.
@@ -12,49 +12,50 @@ pub struct Elastic {
     pub poisson_ratio: f64,
 }
 
-/// What becomes of the normal force when damping would make it pull.
+/// Treatment of the normal force when damping would make it attractive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AttractiveDamping {
-    /// It is cut off at 0.
+    /// Cut off at 0.
     None,
-    /// It pulls until the overlap is 0, as in Tsuji et al. 1992: for comparison with programs that
-    /// do so.
+    /// Attractive until the overlap is 0, as in Tsuji et al. 1992: for comparison with programs
+    /// that do so.
     AsDamped,
 }
 
-/// What the tangential spring keeps while the normal load changes its stiffness.
+/// Quantity that the tangential spring keeps while the normal load changes its stiffness.
 ///
-/// Mindlin and Deresiewicz 1953 is a whole theory of partial slip; these are the simple laws that
+/// Mindlin and Deresiewicz 1953 is a full theory of partial slip; these are the simple laws that
 /// programs use instead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TangentialUnloading {
-    /// Its force while the load rises and its elongation while the load falls (Thornton et al.
+    /// The force while the load rises and the displacement while the load falls (Thornton et al.
     /// 2013): no cycle of load and displacement creates energy.
     LesserForce,
-    /// Its force: for comparison. A cycle may create energy.
+    /// The force: for comparison. A cycle may create energy.
     Force,
-    /// Its elongation: for comparison. A cycle may create energy.
+    /// The displacement: for comparison. A cycle may create energy.
     Elongation,
 }
 
-/// How a pair behaves, as it is measured.
+/// Measured behaviour of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairInput {
     /// Coefficient of restitution of a central impact, above 0, at most 1.
     pub restitution: f64,
     /// Coefficient of friction.
     pub friction: f64,
-    /// Tangential damping over that of Tsuji et al. 1992, who use the ratio of the normal
+    /// Tangential damping relative to that of Tsuji et al. 1992, who use the ratio of the normal
     /// direction: 1 as there, 0 for none.
     pub tangential_damping: f64,
-    /// Whether damping may pull.
+    /// Whether damping may be attractive.
     pub pull: AttractiveDamping,
-    /// What the tangential spring keeps.
+    /// Quantity that the tangential spring keeps.
     pub kept: TangentialUnloading,
 }
 
 impl PairInput {
-    /// A pair of this restitution and friction with everything else as recommended.
+    /// A pair with this restitution and friction and the recommended values of all other
+    /// parameters.
     pub fn new(restitution: f64, friction: f64) -> Self {
         Self {
             restitution,
@@ -66,23 +67,24 @@ impl PairInput {
     }
 }
 
-/// How a pair damps and rubs, as the laws need it.
+/// Damping and friction of a pair, in the form that the laws need.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PairParameters<T = f64> {
-    /// Fraction of critical damping along the normal.
+    /// Damping ratio along the normal.
     pub damping_ratio: T,
-    /// The same across it.
+    /// Damping ratio across it.
     pub tangential_damping_ratio: T,
     /// Coefficient of friction.
     pub friction: T,
     /// Least normal force, N.
     pub least_n: T,
-    /// Least and largest share of its elongation that the tangential spring keeps in a step.
+    /// Smallest and largest fraction of its displacement that the tangential spring keeps in a
+    /// step.
     pub kept: [T; 2],
 }
 
 impl PairParameters {
-    /// The same for as many contacts at once as a number stands for.
+    /// The same for several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> PairParameters<T> {
         PairParameters {
@@ -94,7 +96,7 @@ impl PairParameters {
         }
     }
 
-    /// Of a pair that behaves so.
+    /// From the measured behaviour of a pair.
     pub fn new(pair: &PairInput) -> Self {
         let (ratio, least_n) = match pair.pull {
             AttractiveDamping::None => (damping_ratio(pair.restitution), 0.0),

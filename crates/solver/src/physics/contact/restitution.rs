@@ -1,18 +1,18 @@
-//! How much damping gives a wanted coefficient of restitution.
+//! Damping that gives a required coefficient of restitution.
 //!
 //! The linear law, m x'' + 2 zeta sqrt(k m) x' + k x = 0, and Hertz's with the damping of Tsuji et
 //! al. 1992, proportional to x^(1/4), are the same problem: with y = x^(5/4) and dtau = x^(1/4) dt
 //! the second becomes y'' + 2 zeta w y' + w^2 y = 0 with w^2 = 5/4 (mass and stiffness 1), and in
-//! both the force passes through 0 where y'' = 0. So restitution depends on the damping ratio zeta
-//! alone, and on no speed:
+//! both the force passes through 0 where y'' = 0. So restitution depends only on the damping ratio
+//! zeta, not on the speed:
 //!
 //! - until the overlap is 0: e = exp(-pi zeta / sqrt(1 - zeta^2)) (Tsuji et al. 1992);
 //! - until the force is 0, attraction cut off: e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)), and
 //!   acosh(zeta) / sqrt(zeta^2 - 1) above 1. For the linear law this is Schwager and Poeschel 2007,
 //!   whose arc tangent of the double angle is resolved here.
 //!
-//! Both start where the ends touch; gravity, friction and other contacts at the same time are not
-//! in them.
+//! Both start when the ends touch; gravity, friction and other simultaneous contacts are not
+//! included.
 
 use std::f64::consts::PI;
 
@@ -26,8 +26,8 @@ pub fn damping_ratio(restitution: f64) -> f64 {
     if wanted <= 0.0 {
         return 0.0;
     }
-    // Wanted loss: about pi zeta for small zeta, 2 ln(2 zeta) for large. Halving; both brackets
-    // hold with room to spare.
+    // Required loss: about pi zeta for small zeta, 2 ln(2 zeta) for large. Bisection; both brackets
+    // are wide enough.
     let (mut low, mut high) = (0.0, wanted + (0.5 * wanted).exp());
     loop {
         let middle = 0.5 * (low + high);
@@ -42,13 +42,13 @@ pub fn damping_ratio(restitution: f64) -> f64 {
     }
 }
 
-/// Restitution of a damping ratio when attraction is cut off.
+/// Restitution for a damping ratio when attraction is cut off.
 pub fn restitution(damping_ratio: f64) -> f64 {
     (-loss(damping_ratio)).exp()
 }
 
-/// Damping ratio that gives a restitution above 0 and at most 1 when damping may pull. For 0 it is
-/// 1.
+/// Damping ratio that gives a restitution above 0 and at most 1 when damping may be attractive. For
+/// 0 it is 1.
 pub fn damping_ratio_with_attraction(restitution: f64) -> f64 {
     if restitution <= 0.0 {
         return 1.0;

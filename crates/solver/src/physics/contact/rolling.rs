@@ -1,17 +1,17 @@
 //! Rolling friction: a moment against rolling. Twisting about the normal is free.
 //!
-//! Rolling w_t is the part of the relative spin across the normal; the moment is mu_r R* N at most.
+//! Rolling w_t is the part of the relative spin across the normal; the moment is at most mu_r R* N.
 //!
-//! - Constant moment (type A of Ai et al. 2011): against w_t, whatever its size. Slow rolling meets
-//!   a viscous moment instead, which would take a [small share](ConstantMoment::SHARE) of the
-//!   rolling in a step: so a body at rest neither jitters nor is turned back. It does not hold
-//!   either: a constant torque below the limit makes it creep, more slowly as the time step is
-//!   smaller.
+//! - Constant moment (type A of Ai et al. 2011): against w_t, whatever its magnitude. Slow rolling
+//!   is resisted by a viscous moment instead, which removes a
+//!   [small fraction](ConstantMoment::FRACTION) of the rolling in a step: so a body at rest neither
+//!   jitters nor is turned back. It does not hold either: under a constant torque below the limit
+//!   it creeps, the more slowly the smaller the time step.
 //! - Elastic-plastic spring and dashpot (type C of Ai et al. 2011): k_r = 2.25 k_n mu_r^2 R*^2 with
 //!   k_n the tangent normal stiffness, slipping at the limit; c_r = 2 eta sqrt(J k_r) with J the
 //!   reduced inertia about the contact point. It holds a body at rest. Unlike there, damping counts
-//!   in the limit, so that it fades out instead of jumping to 0 when the spring begins to slip; and
-//!   the spring is treated as the tangential one when the load changes.
+//!   towards the limit, so that it fades out instead of jumping to 0 when the spring begins to
+//!   slip; and the spring is treated like the tangential one when the load changes.
 
 use super::NormalResponse;
 use super::kinematics::{ContactKinematics, FrameRotation};
@@ -19,13 +19,13 @@ use super::slider::{TangentialStep, coulomb_return_map};
 use crate::physics::number::{Number, Vec3};
 use serde::Serialize;
 
-/// What becomes of rolling.
+/// Rolling friction of contacts.
 pub trait RollingFriction<T: Number> {
-    /// Whether there is anything to remember: else springs and damping are nothing.
+    /// Whether it has a history: otherwise springs and damping are 0.
     const REMEMBERS: bool;
 
-    /// The spring after a step that began with the elongation `before`, in the axes of that moment,
-    /// pressed by the normal force `pressed`, N.
+    /// The spring after a step that began with the displacement `before`, in the axes of that
+    /// moment, under the normal force `pressed`, N.
     fn roll(
         &self,
         normal_response: &NormalResponse<T>,
@@ -51,28 +51,28 @@ pub struct NoRolling;
 /// Constant moment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ConstantMoment<T = f64> {
-    /// mu_r, of R*.
+    /// mu_r, relative to R*.
     pub friction: T,
 }
 
 /// Elastic-plastic spring and dashpot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ElasticPlastic<T = f64> {
-    /// mu_r, of R*.
+    /// mu_r, relative to R*.
     pub friction: T,
-    /// eta, share of critical damping: 0.3 in Ai et al. 2011.
+    /// eta, damping ratio: 0.3 in Ai et al. 2011.
     pub damping_ratio: T,
 }
 
 impl ConstantMoment {
-    /// Slow rolling loses this share of itself in a step, reckoned with the inertia about the
-    /// contact point. That is 3.5 times a sphere's inertia about its centre: a dozen contacts with
-    /// equal spheres, each with half of it, still take no more than all of its spin.
+    /// Slow rolling loses this fraction in a step, computed with the inertia about the contact
+    /// point. That is 3.5 times a sphere's inertia about its centre: a dozen contacts with equal
+    /// spheres, each with half of it, together still remove no more than all of its spin.
     pub const FRACTION: f64 = 1.0 / 21.0;
 }
 
 impl ConstantMoment {
-    /// The same for as many contacts at once as a number stands for.
+    /// The same for several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> ConstantMoment<T> {
         ConstantMoment {
@@ -82,7 +82,7 @@ impl ConstantMoment {
 }
 
 impl ElasticPlastic {
-    /// The same for as many contacts at once as a number stands for.
+    /// The same for several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> ElasticPlastic<T> {
         ElasticPlastic {
@@ -138,7 +138,7 @@ impl<T: Number> RollingFriction<T> for ConstantMoment<T> {
         damped(carry.to_end(rolling * coefficient))
     }
 
-    /// Nothing: its viscous part follows the time step and is stable at any.
+    /// None: the viscous part scales with the time step and is stable for any.
     #[inline(always)]
     fn linearised(&self, _: &NormalResponse<T>, touch: &ContactKinematics<T>) -> [T; 2] {
         let none = touch.effective_radius_m.zero();
@@ -190,7 +190,7 @@ impl<T: Number> RollingFriction<T> for ElasticPlastic<T> {
     }
 }
 
-/// k_r over k_n mu_r^2 R*^2 (Ai et al. 2011, after Jiang et al. 2005).
+/// Ratio of k_r to k_n mu_r^2 R*^2 (Ai et al. 2011, after Jiang et al. 2005).
 const STIFFNESS: f64 = 2.25;
 
 /// Relative spin across the normal, in the middle of the step, rad/s.

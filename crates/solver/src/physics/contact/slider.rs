@@ -1,18 +1,18 @@
-//! A spring that slides: tangential friction and elastic-plastic rolling friction are the same
-//! thing with other units.
+//! A spring that slides: tangential friction and elastic-plastic rolling friction are the same,
+//! with different units.
 
 use super::kinematics::FrameRotation;
 use crate::physics::number::{Number, Vec3};
 
-/// A spring after a step, in the axes of the end of the step. Forces are those that the spring and
-/// its damper hold against the motion.
+/// A spring after a step, in the axes of the end of the step. Forces of spring and damper are those
+/// that resist the motion.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentialStep<T> {
-    /// Elongation.
+    /// Displacement.
     pub spring: Vec3<T>,
-    /// Of the spring.
+    /// Force of the spring.
     pub force: Vec3<T>,
-    /// Of the damper.
+    /// Force of the damper.
     pub damping: Vec3<T>,
     /// Energy stored, J.
     pub stored_j: T,
@@ -20,15 +20,15 @@ pub struct TangentialStep<T> {
     pub lost_j: T,
 }
 
-/// A spring that was stretched by `before` and has `moved` by this much, while its stiffness
+/// A spring with the displacement `before` that has `moved` by this much, while its stiffness
 /// changed. `before` is in the axes of the beginning of the step, `moved` and `damping` are in
 /// those of its middle.
 ///
-/// `kept` is the share of the old elongation that is left: with the old stiffness over the new one,
-/// the force stays as it was; with 1, the elongation. The motion adds its part halfway through that
-/// change. The spring is cut back where its force is above `limit`, and of the damper only so much
-/// acts that both together stay below it: a sliding contact is not damped, and there is no jump
-/// when it begins to slide.
+/// `kept` is the fraction of the old displacement that is kept: with the ratio of old to new
+/// stiffness, the force stays the same; with 1, the displacement. The motion is added halfway
+/// through that change. The spring is cut back if its force exceeds `limit`, and the damper is
+/// limited such that both together do not exceed it: a sliding contact is not damped, and there is
+/// no jump when it begins to slide.
 #[inline(always)]
 pub fn coulomb_return_map<T: Number>(
     carry: &FrameRotation<T>,
@@ -46,11 +46,11 @@ pub fn coulomb_return_map<T: Number>(
     let spring = stuck * held;
     let force = spring * stiffness;
 
-    // The mean of the forces times the motion, less what the stored energy grows by.
+    // The mean of the forces times the motion, minus the growth of the stored energy.
     let given = stiffness_before * before.dot(before + moved);
     let taken = force.dot(spring - moved);
 
-    // Largest q with |force + q damping| <= limit, and 1 at most.
+    // Largest q with |force + q damping| <= limit, and at most 1.
     let along = force.dot(damping);
     let square = damping.square();
     let slack = limit * limit - force.square();

@@ -1,4 +1,4 @@
-//! Surfaces of STL files: read, and what is odd about them but harmless.
+//! Surfaces of STL files: reading, and harmless peculiarities.
 
 use std::path::Path;
 
@@ -10,17 +10,17 @@ use dem_scene::{Wall as SceneWall, WallShape};
 use crate::geometry::{Bounds, Mesh, Shape};
 use crate::state::State;
 
-/// A surface that is larger than all bodies together by this factor makes one ask for its unit.
+/// A surface larger than all bodies together by this factor raises the question of its unit.
 const TOO_LARGE: f64 = 300.0;
-/// And so does one that is smaller than they are by this factor, if it is smaller than so many of
-/// their spheres: a pin or a tooth may be.
+/// So does one smaller than all bodies by this factor, if it is also smaller than this many of
+/// their spheres: otherwise it may be a pin or a tooth.
 const TOO_SMALL: f64 = 50.0;
 const OF_A_PIN: f64 = 3.0;
 
-/// How large bodies are, those that are still to come as well, m.
+/// Sizes of bodies, including those still to be added, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
-    /// Of all together.
+    /// Size of all bodies together.
     all_m: f64,
     /// Diameter of the largest sphere.
     sphere_m: f64,
@@ -39,7 +39,7 @@ impl Sizes {
     }
 }
 
-/// The surface of a file that a scene names, in m.
+/// The surface from a file that a scene names, in m.
 pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
     let file = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| {
@@ -52,7 +52,7 @@ pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
     read_open_surface(&bytes, &file, unit_m)
 }
 
-/// What is odd about a surface, and what that changes.
+/// Peculiarities of a surface and their consequences.
 pub(super) fn surface_warnings(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item = String> {
     let content = &mesh.content;
     let mut odd = Vec::new();
@@ -96,7 +96,7 @@ pub(super) fn surface_warnings(surface: &OpenSurface, mesh: &Mesh) -> impl Itera
     odd.into_iter()
 }
 
-/// Asks for the unit of a surface that is out of all proportion.
+/// Questions the unit of a surface whose size is out of proportion.
 pub(super) fn question_size(
     name: &str,
     entry: &SceneWall,

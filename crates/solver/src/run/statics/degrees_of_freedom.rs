@@ -1,29 +1,29 @@
-//! Which freedoms of the particles are unknown, and where supports have those that are held at the
-//! end.
+//! Unknown degrees of freedom of the particles, and the final displacements of the held ones.
 
 use dem_scene::{Factor, Hold};
 
 use crate::state::State;
 use crate::state::loads::factor_at;
 
-/// Stands for a freedom that is held.
+/// Marks a held degree of freedom.
 pub const HELD: usize = usize::MAX;
 
-/// The freedoms of all particles: moves along x, y, z, then turns about x, y, z.
+/// The degrees of freedom of all particles: translations along x, y, z, then rotations about x, y,
+/// z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DegreesOfFreedom {
-    /// For each particle the numbers of its freedoms among the unknowns, rising; or [`HELD`].
-    /// Length 6 each.
+    /// For each particle the numbers of its degrees of freedom among the unknowns, ascending; or
+    /// [`HELD`]. Length 6 each.
     pub unknown: Vec<[usize; 6]>,
     /// Number of unknowns.
     pub count: usize,
-    /// Particles that supports move or turn, and by how much from the start to the end: m, and
-    /// rotation vectors in rad. A freedom that is free or fixed has 0.
+    /// Particles that supports move or rotate, and their displacement from the start to the end: m,
+    /// and rotation vectors in rad. It is 0 for a degree of freedom that is free or fixed.
     pub moved: Vec<(u32, [f64; 6])>,
 }
 
 impl DegreesOfFreedom {
-    /// Of a state that stands at its start, under what its supports prescribe until `end_s`.
+    /// For a state at its start, with the motions that its supports prescribe until `end_s`.
     pub fn new(state: &State, end_s: f64) -> Self {
         let mut held = vec![[false; 6]; state.particles.len()];
         let mut moves = vec![[0.0; 6]; state.particles.len()];
@@ -62,13 +62,13 @@ impl DegreesOfFreedom {
         }
     }
 
-    /// Number of freedoms that are held.
+    /// Number of held degrees of freedom.
     pub fn held(&self) -> usize {
         6 * self.unknown.len() - self.count
     }
 
-    /// The unknowns of all particles, for each with its particle and which of the six freedoms it
-    /// is.
+    /// The unknowns of all particles, each with its particle and the index, 0 to 5, of its degree
+    /// of freedom.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> {
         let six = |(i, of): (usize, &[usize; 6])| {
             let of = *of;
@@ -77,9 +77,9 @@ impl DegreesOfFreedom {
         self.unknown.iter().enumerate().flat_map(six)
     }
 
-    /// Whether a torque may act on a particle at rest that is free to turn in more displacements than one:
-    /// then the tangent is not symmetric, even in equilibrium. The torque is that of a load, or of
-    /// a support that holds one of its three turns.
+    /// Whether a torque may act, at rest, on a particle with more than one free rotation: then the
+    /// tangent is not symmetric, even in equilibrium. The torque is that of a load, or of a support
+    /// that holds one of the three rotations.
     pub fn has_free_torques(&self, state: &State) -> bool {
         let free_turns = |i: usize| self.unknown[i][3..].iter().filter(|n| **n != HELD).count();
         let held_once = || (0..self.unknown.len()).any(|i| free_turns(i) == 2);
@@ -92,7 +92,7 @@ impl DegreesOfFreedom {
     }
 }
 
-/// How far a freedom that is held so has come at `end_s`, m or rad.
+/// Displacement of a held degree of freedom until `end_s`, m or rad.
 fn way(hold: Hold, factor: &Factor, end_s: f64) -> f64 {
     match hold {
         Hold::Fixed => 0.0,

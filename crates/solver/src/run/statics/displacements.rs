@@ -1,16 +1,17 @@
-//! Moves and turns of particles from where they stand.
+//! Displacements and rotations of particles from their present poses.
 
 use crate::physics::rigid::turn;
 use crate::state::particles::Pose;
 
 use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
-/// Moves, m, and turns, rad: rotation vectors in space, applied after the present rotation.
+/// Displacements, m, and rotations, rad: rotation vectors in space, applied after the present
+/// rotation.
 #[derive(Debug, Clone, Copy)]
 pub struct Displacements<'a> {
     /// Of the unknowns.
     pub by: &'a [f64],
-    /// Of particles that supports move, by their numbers, rising. Length 6 each.
+    /// Displacements of particles that supports move, by their numbers, ascending. Length 6 each.
     pub displacements: &'a [(u32, [f64; 6])],
 }
 
@@ -38,7 +39,7 @@ impl Displacements<'_> {
     }
 }
 
-/// Puts `poses` where `from` comes to by the moves.
+/// Sets `poses` to `from` plus the displacements.
 pub fn displace(
     poses: &mut [Pose],
     from: &[Pose],
@@ -53,7 +54,7 @@ pub fn displace(
     }
 }
 
-/// The largest turn of a particle, rad.
+/// The largest rotation of a particle, rad.
 pub fn largest_turn(moves: &Displacements<'_>, degrees_of_freedom: &DegreesOfFreedom) -> f64 {
     let turns = moves
         .of_all(degrees_of_freedom)

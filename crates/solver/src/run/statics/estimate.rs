@@ -1,4 +1,4 @@
-//! What a static run will take, before it is run.
+//! Cost of a static run, estimated before it.
 
 use dem_io::{Diagnostic, Result};
 use serde::Serialize;
@@ -8,28 +8,28 @@ use super::factor::Factor;
 use super::matrix::Matrix;
 use crate::state::State;
 
-/// What a static run will take.
+/// Cost of a static run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StaticsEstimate {
-    /// Unknown degrees_of_freedom.
+    /// Number of unknown degrees of freedom.
     pub unknowns: usize,
-    /// Freedoms that supports hold.
+    /// Number of degrees of freedom held by supports.
     pub held: usize,
-    /// Whether the tangent is taken as symmetric: no torque acts on particles that are free to turn
-    /// in more displacements than one.
+    /// Whether the tangent is treated as symmetric: no torque acts on particles with more than one
+    /// free rotation.
     pub symmetric: bool,
-    /// Entries of its factor. None: they are not known before it is there.
+    /// Entries of its factor. None: unknown before the factorisation.
     pub factor_entries: Option<usize>,
-    /// Largest memory of matrix and factor, bytes; of a tangent that is not symmetric that of the
+    /// Largest memory of matrix and factor, bytes; for a tangent that is not symmetric that of the
     /// matrix alone.
     pub memory_bytes: usize,
 }
 
 impl StaticsEstimate {
-    /// Of a planned state, with loads and supports until `end_s`.
+    /// For a planned state, with loads and supports until `end_s`.
     ///
     /// # Errors
-    /// Not even the pattern of the factor fits into memory.
+    /// Even the pattern of the factor does not fit into memory.
     pub fn of(state: &State, end_s: f64) -> Result<Self> {
         let degrees_of_freedom = DegreesOfFreedom::new(state, end_s);
         let symmetric = !degrees_of_freedom.has_free_torques(state);
@@ -39,7 +39,7 @@ impl StaticsEstimate {
             Diagnostic::failed("", "the stiffness does not fit into memory", remedy)
         })?;
         let factor_entries = factor.entries();
-        // Values and rows, as they are and in the order of the factor.
+        // Values and row indices, in the original order and in that of the factor.
         let of_matrix = 2 * 16 * matrix.rows.len();
         Ok(Self {
             unknowns: degrees_of_freedom.count,

@@ -1,7 +1,8 @@
-//! Linear systems with the tangent, solved by sparse factors with an order that keeps them small:
-//! Cholesky's where it is symmetric, Gauss' elsewhere.
+//! Linear systems with the tangent, solved by sparse factorisation with an order that reduces
+//! fill-in: Cholesky if it is symmetric, otherwise LU.
 //!
-//! One thread works, so the bits do not depend on their number.
+//! A single thread does the work, so the results are the same, bit for bit, for any number of
+//! threads.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -17,19 +18,19 @@ use super::matrix::Matrix;
 /// Factors of matrices of one pattern.
 #[derive(Debug)]
 pub enum Factor {
-    /// Of symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and
+    /// For symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and
     /// its entries.
     Cholesky(SymbolicCholesky<usize>, Vec<f64>),
-    /// Of others, L U with partial pivoting, by an approximate minimum degree order of the columns.
-    /// The patterns, and the factors once they are there.
+    /// For others, L U with partial pivoting, by an approximate minimum degree order of the
+    /// columns. The patterns, and the factors once computed.
     Gauss(SymbolicLu<usize>, Option<Lu<usize, f64>>),
 }
 
-/// Why there are no factors.
+/// Reason why there are no factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoFactor {
-    /// A pivot is zero, negative or not a number: the matrix is not positive definite; or of one
-    /// that is not symmetric, singular.
+    /// A pivot is zero, negative or not a number: the matrix is not positive definite or, if it is
+    /// not symmetric, singular.
     Pivot,
     /// They do not fit into memory.
     Memory,
@@ -52,7 +53,7 @@ impl Factor {
         Ok(Self::Cholesky(symbolic, Vec::new()))
     }
 
-    /// Entries of the factor; None where they are known only when it is there.
+    /// Entries of the factor; None if unknown before the factorisation.
     pub fn entries(&self) -> Option<usize> {
         match self {
             Self::Cholesky(symbolic, _) => Some(symbolic.len_val()),
@@ -63,7 +64,7 @@ impl Factor {
     /// Computes the factors of a matrix of the pattern.
     ///
     /// # Errors
-    /// A pivot that will not do, memory.
+    /// An unsuitable pivot, memory.
     pub fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
         let values = SparseColMatRef::new(pattern(matrix), &matrix.values);
         match self {
@@ -92,7 +93,7 @@ impl Factor {
                 }
             }
             Self::Gauss(symbolic, factors) => {
-                // The old ones first: two would not fit where one does.
+                // Frees the old factors first: there may be room for one set only.
                 *factors = None;
                 let new = Lu::try_new_with_symbolic(symbolic.clone(), values);
                 *factors = Some(new.map_err(|error| match error {
@@ -104,8 +105,8 @@ impl Factor {
         }
     }
 
-    /// Replaces the right side of the system by its solution, with the factors computed last;
-    /// without any it stays as it is.
+    /// Replaces the right-hand side by the solution, with the factors computed last; without
+    /// factors it stays as it is.
     pub fn solve(&self, side: &mut [f64]) {
         let rows = side.len();
         let side = MatMut::from_column_major_slice_mut(side, rows, 1);

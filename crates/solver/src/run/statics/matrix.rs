@@ -1,5 +1,5 @@
-//! The tangent of a whole scene as a sparse matrix, by columns: what its bonds answer to small
-//! moves and turns of the unknowns.
+//! The tangent stiffness of a scene as a sparse matrix, by columns: derivatives of the bond forces
+//! with respect to small displacements and rotations of the unknowns.
 
 use crate::physics::bond::tangent::{BondTangent, DEGREES_OF_FREEDOM};
 use crate::state::State;
@@ -8,21 +8,21 @@ use crate::state::particles::Pose;
 
 use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
-/// A square matrix over the unknowns. Its pattern stays while its entries change.
+/// A square matrix over the unknowns. Its pattern is fixed while its entries change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrix {
-    /// Only the lower triangle of the symmetric part, (K + K^T)/2, is there.
+    /// Only the lower triangle of the symmetric part, (K + K^T)/2, is stored.
     pub symmetric: bool,
-    /// Where the entries of each column begin, and the end of the last one.
+    /// Start of each column, followed by the end of the last one.
     pub starts: Vec<usize>,
-    /// Rows of the entries, rising in each column.
+    /// Rows of the entries, ascending in each column.
     pub rows: Vec<usize>,
     /// The entries, N/m, N, N m.
     pub values: Vec<f64>,
 }
 
 impl Matrix {
-    /// The pattern of a state: every particle with itself and with those that bonds join it to. All
+    /// The pattern of a state: every particle with itself and with its bonded neighbours. All
     /// entries are 0.
     pub fn pattern(state: &State, degrees_of_freedom: &DegreesOfFreedom, symmetric: bool) -> Self {
         let mut neighbours: Vec<Vec<u32>> =
@@ -76,7 +76,7 @@ impl Matrix {
             }
             let entries = self.starts[column]..self.starts[column + 1];
             for end in [0..6, 6..DEGREES_OF_FREEDOM] {
-                // The rows of a particle stand together.
+                // The rows of a particle are contiguous.
                 let mut place = None;
                 for i in end {
                     let row = unknowns[i];
@@ -99,7 +99,7 @@ impl Matrix {
     }
 }
 
-/// What acts on the unknowns because supports move by these displacements, m and rad, before the others
+/// Forces on the unknowns when supports move by these displacements, m and rad, before the others
 /// follow: minus the tangent times the displacements, N and N m.
 pub fn pulled_by_supports(
     bonds: &Bonds,
@@ -133,7 +133,7 @@ pub fn pulled_by_supports(
     pulled
 }
 
-/// The numbers of the degrees_of_freedom of both ends of bond `at`.
+/// The numbers of the degrees of freedom of both ends of bond `at`.
 fn of_ends(
     bonds: &Bonds,
     degrees_of_freedom: &DegreesOfFreedom,

@@ -1,21 +1,21 @@
-//! Newton's method to an equilibrium, with the exact tangent of the bonds' energy.
+//! Newton's method for an equilibrium, with the exact tangent of the bond energy.
 //!
-//! The residual is what acts on the degrees_of_freedom that are not held: bonds, loads and gravity. A step
-//! solves for the moves and turns that take it to 0. Supports that move take their first step with
-//! the tangent as well, so that the body follows them as a whole.
+//! The residual consists of the forces of bonds, loads and gravity on the free degrees of freedom.
+//! A step solves for the displacements that reduce it to 0. The first step also includes the
+//! displacements of moving supports by the tangent, so that the entire body follows them.
 //!
-//! The whole load is tried at once. Where a step would turn a particle far, or the steps do not
-//! come to an end, half of it is, and so on from there (load stepping): small turns lead to the
-//! equilibrium that the body comes to as the load rises. There is no line search on the energy: a
-//! slender body that bends is first stretched by the square of its turns, which costs much energy
-//! and is gone a step later. A search that forbids it takes fifty times as many steps.
+//! The full load is tried at once. If a step would rotate a particle far, or the iteration does not
+//! converge, half of it is tried, and so on (load stepping): small rotations lead to the
+//! equilibrium that the body reaches as the load rises. There is no line search on the energy: a
+//! slender body that bends is first stretched by the square of its rotations, which costs much
+//! energy but vanishes a step later. A search that prevents this needs fifty times as many steps.
 //!
-//! Off equilibrium the tangent is not symmetric: where a torque acts on a particle, by the cross
-//! product with it. In equilibrium these torques are those of loads and supports. Where none can be
-//! (see [`DegreesOfFreedom::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by Cholesky:
-//! exact at the solution, so that the convergence is quadratic, and a pivot that is not positive
-//! says that the equilibrium is not stable. Elsewhere the tangent itself is factored, L U, and
-//! stability is looked at in the end.
+//! Away from equilibrium the tangent is not symmetric: a torque on a particle adds its cross
+//! product matrix. In equilibrium these torques are those of loads and supports. If there can be
+//! none (see [`DegreesOfFreedom::has_free_torques`]), the symmetric part (K + K^T)/2 is factored by
+//! Cholesky: it is exact at the solution, so that convergence is quadratic, and a pivot that is not
+//! positive shows that the equilibrium is not stable. Otherwise the tangent itself is factored, L
+//! U, and stability is checked at the end.
 
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::loads::add_loads;
@@ -29,76 +29,77 @@ use super::displacements::{Displacements, displace, largest_turn};
 use super::factor::{Factor, NoFactor};
 use super::matrix::{Matrix, pulled_by_supports};
 
-/// Newton steps in a load step, at most.
+/// Largest number of Newton steps in a load step.
 const STEPS: usize = 20;
-/// Largest turn of a particle in a Newton step, rad.
+/// Largest rotation of a particle in a Newton step, rad.
 const TURN: f64 = 0.5;
-/// Smallest load step, as a share of all loads and displacements.
+/// Smallest load step, as a fraction of all loads and displacements.
 const SMALLEST: f64 = 1.0 / 1024.0;
-/// Residual over the largest bond force at which factors are good for the equilibrium itself: its
-/// stability is judged by them.
+/// Ratio of residual to the largest bond force at which factors are accurate enough for the
+/// equilibrium itself: its stability is judged by them.
 const NEAR: f64 = 1e-4;
-/// The same from which on factors that are near serve for further steps.
+/// The same ratio below which such factors are reused for further steps.
 const NEARER: f64 = 1e-6;
-/// Largest residual over the largest bond force of an equilibrium, unless it is rounding.
+/// Largest ratio of residual to the largest bond force of an equilibrium, unless the rest is
+/// rounding.
 const LARGEST: f64 = 1e-9;
-/// A step that leaves more than this share of the residual shows that only rounding is left.
+/// If a step leaves more than this fraction of the residual, only rounding is left.
 const STALLED: f64 = 0.5;
-/// What was found.
+/// An equilibrium and how it was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
-    /// Unknown degrees_of_freedom.
+    /// Number of unknown degrees of freedom.
     pub unknowns: usize,
-    /// Freedoms that supports hold.
+    /// Number of degrees of freedom held by supports.
     pub held: usize,
-    /// Newton steps, of all load steps together.
+    /// Total number of Newton steps of all load steps.
     pub newton_steps: usize,
-    /// Load steps that were taken; 1: all at once.
+    /// Number of load steps; 1: all at once.
     pub load_steps: usize,
-    /// Largest residual over the largest bond force before each step of the last load step and
-    /// after its last one: 1 where the bonds carried nothing yet.
+    /// Ratio of residual to the largest bond force before each step of the last load step and after
+    /// its last one: 1 if the bonds carried nothing yet.
     pub residuals: Vec<f64>,
-    /// The largest residual that is left, N; that of a torque is over the radius of its particle.
+    /// The largest remaining residual, N; torques are divided by the radius of their particle.
     pub residual_n: f64,
-    /// The largest that a bond carries, N; moments are over its radius.
+    /// The largest bond force, N; moments are divided by the bond radius.
     pub bond_force_n: f64,
-    /// Whether small moves from the equilibrium need work, all of them. Where torques act it may be
-    /// false though the body does not move away.
+    /// Whether all small displacements from the equilibrium require work. If torques act, it may be
+    /// false although the body does not move away.
     pub stable: bool,
 }
 
 impl Equilibrium {
-    /// Residual over the largest bond force; 0 where nothing acts.
+    /// Ratio of residual to the largest bond force; 0 if no force acts.
     pub fn residual(&self) -> f64 {
         crate::stages::ledger::over(self.residual_n, self.bond_force_n)
     }
 }
 
-/// Why no equilibrium was found.
+/// Reason why no equilibrium was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// No stable one is there: a pivot of the tangent is not positive.
+    /// There is no stable one: a pivot of the tangent is not positive.
     Pivot,
-    /// The steps do not come to an end.
+    /// The iteration does not converge.
     NoConvergence,
     /// The factors do not fit into memory.
     Memory,
-    /// It was told to stop.
+    /// It was interrupted.
     Interrupted,
 }
 
-/// How far it came without an equilibrium for the whole load.
+/// Progress without an equilibrium for the full load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unsolved {
-    /// Why it ended.
+    /// Reason for the end.
     pub cause: Cause,
     /// Fraction of loads and displacements for which an equilibrium was found.
     pub fraction: f64,
-    /// Residual over the largest bond force at the end of the last try.
+    /// Ratio of residual to the largest bond force at the end of the last attempt.
     pub residual: f64,
 }
 
-/// What it is that is to be in equilibrium.
+/// The state whose equilibrium is sought.
 struct Search<'a> {
     state: &'a mut State,
     degrees_of_freedom: DegreesOfFreedom,
@@ -106,7 +107,7 @@ struct Search<'a> {
     factor: Factor,
     /// Loads and gravity at the end on every particle, N and N m. Length 6 each.
     load: Vec<[f64; 6]>,
-    /// Force that rounding of the places may make, N.
+    /// Force that may result from rounding of the positions, N.
     rounding_n: f64,
     newton_steps: usize,
     residuals: Vec<f64>,
@@ -114,15 +115,15 @@ struct Search<'a> {
     bond_force_n: f64,
 }
 
-/// Brings a state that stands at its start into the equilibrium under what loads, gravity and
-/// supports are at `end_s`: its poses are changed, and its wrenches are those of the bonds.
-/// `goes_on` is asked before every step, with how far it has come in 0..1.
+/// Brings a state at its start into equilibrium under the loads, gravity and supports at `end_s`:
+/// changes its poses, and sets its wrenches to those of the bonds. `goes_on` is called before every
+/// step, with the progress in 0..1.
 ///
-/// Every piece of the bodies has to be held by supports, and all bonds be of the total formulation.
+/// Supports must hold every piece of the bodies, and all bonds must be of the total formulation.
 ///
 /// # Errors
-/// There is none that is stable, it is not found, or it is told to stop. The poses are then those
-/// of the share that was reached.
+/// There is no stable one, it is not found, or the search is interrupted. The poses are then those
+/// of the fraction that was reached.
 pub fn equilibrium(
     state: &mut State,
     end_s: f64,
@@ -190,7 +191,7 @@ pub fn equilibrium(
 }
 
 impl Search<'_> {
-    /// From the equilibrium at one share of all loads and displacements to that at another.
+    /// From the equilibrium at one fraction of all loads and displacements to that at another.
     fn follow(&mut self, from: f64, to: f64, goes_on: &dyn Fn(f64) -> bool) -> Result<(), Cause> {
         let moved = self.degrees_of_freedom.moved.iter();
         let displacements: Vec<(u32, [f64; 6])> = moved
@@ -198,7 +199,7 @@ impl Search<'_> {
             .collect();
         let mut pulls = !displacements.is_empty();
         // The residual before the last step, whether the factors are near the equilibrium, and
-        // whether that step was theirs alone.
+        // whether they were computed for that step.
         let (mut before_n, mut is_near, mut is_fresh) = (f64::INFINITY, false, false);
         let mut poses = self.state.particles.poses.clone();
         self.residuals.clear();
@@ -269,7 +270,7 @@ impl Search<'_> {
         Err(Cause::NoConvergence)
     }
 
-    /// Takes the tangent where the particles are, and its factors.
+    /// Computes the tangent at the present poses, and its factors.
     fn factorise(&mut self) -> Result<(), Cause> {
         let State {
             bonds, particles, ..
@@ -282,7 +283,7 @@ impl Search<'_> {
         })
     }
 
-    /// What acts on the unknowns at this share of the loads, N and N m.
+    /// Net forces on the unknowns at this fraction of the loads, N and N m.
     fn net(&mut self, fraction: f64) -> Vec<f64> {
         let State {
             bonds,
@@ -298,7 +299,7 @@ impl Search<'_> {
             .collect()
     }
 
-    /// The largest of forces, N, torques over the radii of the particles.
+    /// The largest of forces, N, and of torques over the radii of the particles.
     fn largest(&self, net: &[f64]) -> f64 {
         let poses = &self.state.particles.poses;
         let unknowns = self.degrees_of_freedom.unknowns().zip(net);
@@ -306,7 +307,7 @@ impl Search<'_> {
             0..3 => net.abs(),
             _ => net.abs() / poses[i].radius_m(),
         });
-        // Not f64::max, which would lose what is not a number.
+        // Not f64::max, which would drop NaN.
         sizes.fold(0.0, |largest: f64, size| {
             if size > largest || size.is_nan() {
                 size
@@ -316,7 +317,7 @@ impl Search<'_> {
         })
     }
 
-    /// The largest that a bond carries, N; moments over its radius.
+    /// The largest bond force, N; moments over the bond radius.
     fn largest_bond_force_n(&self) -> f64 {
         let (bonds, poses) = (&self.state.bonds, &self.state.particles.poses);
         let of_bond = |at: usize| {
@@ -357,7 +358,7 @@ pub(super) fn loads(state: &State, end_s: f64) -> Vec<[f64; 6]> {
     all.map(with_weight).collect()
 }
 
-/// Force that the rounding of places makes in the stiffest bond, N.
+/// Force in the stiffest bond that results from rounding of the positions, N.
 fn rounding_n(state: &State) -> f64 {
     let poses = &state.particles.poses;
     let of_bond = |at: usize| {

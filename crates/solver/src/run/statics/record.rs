@@ -1,4 +1,4 @@
-//! What a static run leaves: its summary, its text, its files.
+//! Output of a static run: its summary, its text, its files.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use crate::stages::ledger::Balance;
 use crate::state::State;
 use crate::state::clusters::fragments as fragments_of;
 
-/// How an equilibrium was found in which so many bonds are beyond their strength.
+/// Summary of an equilibrium with this number of bonds beyond their strength.
 pub(super) fn equilibrium_summary(
     found: &Equilibrium,
     bonds_beyond_strength: usize,
@@ -41,7 +41,7 @@ pub(super) fn equilibrium_summary(
     }
 }
 
-/// A scene at rest, and what has been read of it.
+/// A scene at rest, and its measured values.
 pub(super) struct AtRest<'a> {
     pub(super) state: &'a State,
     pub(super) scene: &'a Scene,
@@ -51,7 +51,7 @@ pub(super) struct AtRest<'a> {
 }
 
 impl AtRest<'_> {
-    /// The summary. Times: wall and, where the system says it, processor time, s.
+    /// The summary. Times: wall and, if the system provides it, processor time, s.
     pub(super) fn summary(
         &self,
         settings: &RunSettings<'_>,
@@ -112,7 +112,7 @@ impl AtRest<'_> {
         }
     }
 
-    /// Writes one frame, one row of the time series with what was `measured`, no events, and the
+    /// Writes one frame, one row of the time series with the `measured` values, no events, and the
     /// summary.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Which of the near pairs are close: only those are computed, until others may have come close.
+//! The close pairs of the Verlet list: only these are computed, until others may have come close.
 
 use super::input::StepInput;
 use crate::physics::number::Vec3;
@@ -7,18 +7,17 @@ use crate::stages::lanes::{Lanes, MOST};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::Pose;
 
-/// Contacts between those that are looked at and those whose second particles are fetched into the
-/// cache.
+/// Prefetch distance of second particles, in contacts.
 const AHEAD: usize = 32;
-/// Steps at the present speed until all pairs are looked at again, at most; and at least, else they
-/// are looked at in each step.
+/// Largest number of steps, at the present speed, until the next check of all pairs; and the
+/// smallest, below which all are checked in each step.
 const STEPS: [f64; 2] = [32.0, 4.0];
-/// Pairs that are further apart than this fraction of the skin are not computed.
+/// Pairs farther apart than this fraction of the skin are not computed.
 const CLOSE: f64 = 1.0 / 16.0;
 
-/// Pairs closer than this, m, are computed until a particle may have moved almost half of it: then
-/// none of the others can have met, however places are rounded. 0 where that would be soon: then
-/// all pairs are looked at in each step.
+/// Pairs closer than this, m, are computed until a particle may have moved almost half of it: until
+/// then none of the others can touch, however positions are rounded. 0 if that would be soon: then
+/// all pairs are checked in each step.
 pub(super) fn close_m(contacts: &Contacts) -> f64 {
     let [most_m, least_m] = STEPS.map(|steps| 2.0 * steps * contacts.moved_m);
     let close_m = most_m.min(CLOSE * contacts.skin_m);
@@ -53,8 +52,8 @@ fn find_border(partition: &mut ContactPartition, scene: &StepInput<'_>) {
     }
 }
 
-/// Lists those of its own contacts that are close, or were at the look before: they may have an end
-/// to book.
+/// Lists those of its own contacts that are close, or were at the previous check: their end may
+/// have to be recorded.
 #[inline(always)]
 fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: &StepInput<'_>) {
     let poses = scene.poses;
@@ -75,7 +74,7 @@ fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: 
         }
         let eight = &pairs[first..(first + MOST).min(own.end)];
         let now = near::<T>(proof, eight, poses, close_m);
-        // Whether they are close cannot be foretold, so there is no branch on it.
+        // Unpredictable, so it is computed without a branch.
         let listed = usize::from(now | *was_close);
         *was_close = now;
         for lane in 0..MOST {
@@ -95,8 +94,7 @@ fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: 
     }
 }
 
-/// For each of up to eight pairs a bit, from the lowest on: whether the two are closer than
-/// `close_m`.
+/// For each of up to eight pairs a bit, lowest first: whether the two are closer than `close_m`.
 #[inline(always)]
 fn near<T: Lanes>(proof: T::Proof, pairs: &[[u32; 2]], poses: &[Pose], close_m: T) -> u8 {
     let mut bits = 0;

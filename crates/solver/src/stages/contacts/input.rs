@@ -1,14 +1,14 @@
-//! What contacts are computed from.
+//! Input of the contact computation.
 
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Motion, Pose};
 
-/// What all partitions look at.
+/// Input common to all partitions.
 pub(super) struct StepInput<'a> {
     pub(super) contacts: &'a Contacts,
     pub(super) poses: &'a [Pose],
     pub(super) motions: &'a [Motion],
-    /// Whether all pairs are looked at, not only those that were close.
+    /// Whether all pairs are checked, not only those that were close.
     pub(super) checks_all: bool,
     pub(super) dt: f64,
 }

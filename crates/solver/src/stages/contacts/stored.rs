@@ -1,4 +1,4 @@
-//! What contacts store and what they have lost.
+//! Elastic energies, forces and losses of contacts.
 
 use crate::physics::contact::NormalLaw;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics};
@@ -9,14 +9,14 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Particles, Pose};
 use nalgebra::Vector3;
 
-/// Overlap of two particles, m; below 0 where they are apart.
+/// Overlap of two particles, m; below 0 if they are apart.
 pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
     let [a, b] = pair.map(|i| &poses[i as usize]);
     a.radius_m() + b.radius_m() - (b.place() - a.place()).norm()
 }
 
-/// Elastic energy of all contacts, J. Summed by particles: near pairs that do not touch, which a
-/// resumed run may list others of, do not change its last bit.
+/// Elastic energy of all contacts, J. Summed by particle, so that near pairs without contact, which
+/// may differ in a resumed run, do not change its last bit.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
     ordered_sum(particles.len(), |i| {
         let first = contacts.pairs.partition_point(|&[a, _]| (a as usize) < i);
@@ -44,7 +44,7 @@ pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -
     kind.with(|number| number, StoredEnergy { touch, history })
 }
 
-/// Force of a contact on the second of a pair, N, from what it remembers.
+/// Force of a contact on the second of a pair, N, from its history.
 pub fn pair_force_n(
     contacts: &Contacts,
     particles: &Particles,
@@ -60,10 +60,10 @@ pub fn pair_force_n(
     kind.with(|number| number, StoredForce { touch, history })
 }
 
-/// Force of a contact on its second end, be it of two particles or of a wall and a particle, from
-/// what it remembers, N.
+/// Force of a contact on its second end, between two particles or a wall and a particle, from its
+/// history, N.
 pub(in crate::stages) struct StoredForce<'a> {
-    /// At the overlap that is remembered.
+    /// At the overlap in the history.
     pub(in crate::stages) touch: ContactKinematics,
     pub(in crate::stages) history: &'a ContactHistory,
 }
@@ -81,10 +81,10 @@ impl ContactWork<f64> for StoredForce<'_> {
     }
 }
 
-/// Elastic energy of a contact, be it of two particles or of one and a wall, from what it
-/// remembers, J.
+/// Elastic energy of a contact, between two particles or a particle and a wall, from its history,
+/// J.
 pub(in crate::stages) struct StoredEnergy<'a> {
-    /// At the overlap that is remembered.
+    /// At the overlap in the history.
     pub(in crate::stages) touch: ContactKinematics,
     pub(in crate::stages) history: &'a ContactHistory,
 }
@@ -103,7 +103,7 @@ impl ContactWork<f64> for StoredEnergy<'_> {
     }
 }
 
-/// Energy that friction and that damping took so far, J.
+/// Energy lost to friction and to damping so far, J.
 pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
     let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
     let [gone_friction, gone_damping] = contacts.lost_by_removed_j;

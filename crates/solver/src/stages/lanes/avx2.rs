@@ -9,7 +9,7 @@ use pulp::x86::V3;
 use super::{FOUR, Lanes, MOST};
 use crate::physics::number::Number;
 
-/// Four numbers in a register of AVX2.
+/// Four numbers in an AVX2 register.
 #[derive(Clone, Copy)]
 pub(super) struct Lanes4 {
     simd: V3,
@@ -127,7 +127,7 @@ impl Number for Lanes4 {
     }
 }
 
-/// Rows and columns of four by four numbers exchanged.
+/// Transposes four by four numbers.
 #[inline(always)]
 fn transposed(simd: V3, [r0, r1, r2, r3]: [__m256d; 4]) -> [__m256d; 4] {
     let avx = simd.avx;

@@ -9,7 +9,7 @@ use pulp::x86::V4;
 use super::{Lanes, MOST};
 use crate::physics::number::Number;
 
-/// Eight numbers in a register of AVX-512.
+/// Eight numbers in an AVX-512 register.
 #[derive(Clone, Copy)]
 pub(super) struct Lanes8 {
     simd: V4,
@@ -158,7 +158,7 @@ impl Lanes for Lanes8 {
     #[inline(always)]
     fn columns(simd: V4, rows: impl Fn(usize) -> [f64; 4]) -> [Self; 4] {
         let avx = simd.avx512f;
-        // Rows stand two in a register, so that halves of it need not change places.
+        // Two rows share a register, so that its halves need not be exchanged.
         let r02: __m512d = cast([rows(0), rows(2)]);
         let r13: __m512d = cast([rows(1), rows(3)]);
         let r46: __m512d = cast([rows(4), rows(6)]);

@@ -1,4 +1,4 @@
-//! Several at once give the same bits as one by one.
+//! Several lanes give the same bits as one.
 
 use super::avx2::Lanes4;
 use super::avx512::Lanes8;
@@ -17,11 +17,11 @@ use crate::physics::contact::{ContactSprings, Response, response};
 use crate::physics::number::Vec3;
 use proptest::prelude::*;
 
-/// Columns that a contact is made of.
+/// Columns of data of a contact.
 const COLUMNS: usize = 40;
 const DT: f64 = 1e-6;
 
-/// Numbers of one contact or several, taken one after the other.
+/// Numbers of one contact or several, taken in sequence.
 struct Taken<'a, T: Lanes> {
     proof: T::Proof,
     columns: &'a [[f64; MOST]],
@@ -88,7 +88,7 @@ fn add<T: Lanes>(
     written(&response(linear, rolling, touch, history, DT), to);
 }
 
-/// All that contact laws say of the contacts from `first` on.
+/// All results of the contact laws for the contacts from `first` on.
 fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> Vec<[f64; MOST]> {
     let mut taken = Taken::<T> {
         proof,
@@ -158,7 +158,7 @@ fn answers<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]], first: usize) -> 
     found
 }
 
-/// Whether as many as there are lanes give the bits of one by one.
+/// Whether these lanes give the same bits as one.
 fn compare<T: Lanes>(proof: T::Proof, columns: &[[f64; MOST]]) -> Result<(), TestCaseError> {
     for first in (0..MOST).step_by(T::COUNT) {
         let at_once = answers::<T>(proof, columns, first);

@@ -1,4 +1,4 @@
-//! What clusters weigh, where they are and how they move.
+//! Mass, position and motion of clusters.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub struct Fragment {
     pub angular_velocity_rad_s: [f64; 3],
     /// Angular momentum about the centre of mass, spins included, kg m2/s. Length 3.
     pub angular_momentum_kg_m2_s: [f64; 3],
-    /// Sum of what acts on its particles, N: bonds within it cancel. Length 3.
+    /// Resultant force on its particles, N: bonds within it cancel. Length 3.
     pub force_n: [f64; 3],
     /// Diameter of the sphere with the volume of its particles, where overlaps count twice, m.
     pub equivalent_diameter_m: f64,
@@ -35,8 +35,8 @@ pub struct Fragment {
     pub box_diagonal_m: f64,
 }
 
-/// All clusters that are whole, in the order of their numbers. `now`: motions of particles and
-/// clumps for the moment of the poses, if others than those that they have.
+/// All intact clusters, in the order of their numbers. `now`: motions of particles and clumps at
+/// the time of the poses, if different from the present ones.
 pub fn fragments(
     clusters: &Clusters,
     particles: &Particles,
@@ -58,7 +58,7 @@ pub fn fragments(
     fragments
 }
 
-/// A clump, of which only the outer spheres are known.
+/// A clump, of which the particles contain only the outer spheres.
 fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment {
     let cubes: f64 = template.spheres.iter().map(|s| s.radius_m.powi(3)).sum();
     Fragment {
@@ -77,7 +77,7 @@ fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment
 /// Mass, kg, and centre of mass, m, of some particles.
 pub fn mass_and_centre(members: &[u32], particles: &Particles) -> (f64, Vector3<f64>) {
     let place = |i: u32| particles.poses[i as usize].place();
-    // Relative to one of them, so that a place far from the origin costs no digits.
+    // Relative to one of them, so that a position far from the origin costs no digits.
     let origin = members.first().map_or(Vector3::zeros(), |i| place(*i));
     let (mut mass_kg, mut moment) = (0.0, Vector3::zeros());
     for &i in members {
@@ -88,7 +88,8 @@ pub fn mass_and_centre(members: &[u32], particles: &Particles) -> (f64, Vector3<
     (mass_kg, origin + moment / mass_kg)
 }
 
-/// A cluster that is no clump, with these motions of all particles. Length of `motions`: particles.
+/// A cluster that is not a clump, with these motions of all particles. Length of `motions`:
+/// particles.
 pub fn fragment(
     id: u32,
     clusters: &Clusters,
@@ -148,7 +149,7 @@ pub fn fragment(
     }
 }
 
-/// Fraction of all mass that the heaviest fragment has; 0 for none.
+/// Mass fraction of the heaviest fragment; 0 if there is none.
 pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
     let total: f64 = fragments.iter().map(|f| f.mass_kg).sum();
     let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
@@ -164,8 +165,8 @@ pub struct SizePoint {
     pub mass_fraction: f64,
 }
 
-/// The cumulative size distribution by mass: one point for each size that there is, from the
-/// smallest, up to a mass fraction of 1.
+/// The cumulative size distribution by mass: one point for each size, from the smallest, up to a
+/// mass fraction of 1.
 pub fn size_distribution(fragments: &[Fragment]) -> Vec<SizePoint> {
     let mut sorted: Vec<&Fragment> = fragments.iter().collect();
     sorted.sort_by(|a, b| a.equivalent_diameter_m.total_cmp(&b.equivalent_diameter_m));

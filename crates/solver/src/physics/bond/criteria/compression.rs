@@ -1,9 +1,10 @@
-//! Strength at the compressive edge.
+//! Strength at the compressed edge.
 
 use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Axial and bending stress where they press most. The rate of strain does not raise its strength.
+/// Axial and bending stress at the edge with the largest compression. The strength does not rise
+/// with the strain rate.
 pub(super) struct Compression;
 
 impl FailureCriterion for Compression {

@@ -3,7 +3,7 @@
 use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Equivalent stress, whose axial part counts only while it pulls.
+/// Equivalent stress, whose axial part counts only in tension.
 pub(super) struct VonMises;
 
 impl FailureCriterion for VonMises {

@@ -27,8 +27,8 @@ impl DampingModel for Chen {
 }
 
 /// As [`Chen`], but 2 eta sqrt(k m_red), 2 eta sqrt(k I_red) with the stiffness k of each mode, and
-/// without the 2 under the root of eq. 10. eta is then the fraction of critical damping of each
-/// mode of two particles that is not coupled to another (stretch, torsion).
+/// without the 2 under the root of eq. 10. eta is then the damping ratio of each uncoupled mode
+/// (stretch, torsion) of two particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChenByMode {
     /// eta.

@@ -3,7 +3,7 @@
 use crate::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia};
 use crate::physics::bond::stiffness::Stiffness;
 
-/// Platzer 2022, eqs. 7 and 9: a coefficient times the whole relative velocity, and a factor times
+/// Platzer 2022, eqs. 7 and 9: a coefficient times the full relative velocity, and a factor times
 /// sqrt(k_tor I_red), sqrt(k_ben I_red).
 ///
 /// Table 1 there gives the coefficient without a unit; eq. 7 needs N s/m.

@@ -2,11 +2,11 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Shear stiffness is the normal stiffness over `kappa`; shear acts halfway between the surfaces of
-/// the spheres.
+/// Shear stiffness is the normal stiffness divided by `kappa`; shear acts halfway between the
+/// surfaces of the spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parallel {
-    /// Normal over shear stiffness, 2 (1 + nu) unless given.
+    /// Ratio of normal to shear stiffness, 2 (1 + nu) unless given.
     pub kappa: Option<f64>,
 }
 
@@ -16,8 +16,8 @@ impl RodModel for Parallel {
         let shear = rod.normal_n_m() / kappa;
         let (length, radius) = (rod.shape.length_m, rod.shape.radius_m);
         let [radius_a, radius_b] = rod.shape.end_radii_m;
-        // The longer lever first: what is left for the other is then exact, and both together are
-        // the length to the last bit.
+        // The longer lever first: the remaining length for the other is then exact, and their sum
+        // is the length to the last bit.
         let longer = 0.5 * (length + (radius_a - radius_b).abs());
         let shorter = length - longer;
         Stiffness {

@@ -2,7 +2,7 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// As the elastic solid bond, with the shear stiffness times a coefficient.
+/// Like the elastic solid bond, with the shear stiffness multiplied by a coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShearCoefficient {
     /// Shear coefficient, 0.9 for a circular section.
