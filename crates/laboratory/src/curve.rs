@@ -279,7 +279,7 @@ impl Wanted<'_> {
     }
 
     fn remedy(&self) -> String {
-        format!("name one by {} NAME or its number", self.option)
+        format!("name one by {}-column NAME or its number", self.option)
     }
 }
 

@@ -8,8 +8,8 @@ use crate::fit::{Line, mean, median};
 
 /// Rows by which the part before contact is known, at least.
 const FEWEST_BEFORE: usize = 8;
-/// Largest drift of the force before contact, as a fraction of its entire rise: more is a specimen
-/// that is loaded already.
+/// Largest drift of the load cell up to the largest force, as a fraction of that: what rises faster
+/// is a specimen that is loaded already.
 const LARGEST_DRIFT: f64 = 0.05;
 /// Largest difference of the force behind the failure from the offset at which the load cell counts
 /// as unloaded, as a fraction of the entire rise.
@@ -17,7 +17,7 @@ const UNLOADED: f64 = 0.02;
 /// Largest relative change of slope over a part that counts as linear, unless noise hides it.
 const LINEAR: f64 = 0.01;
 /// Change of slope over the straightest part at which a curve has no linear part.
-const NOT_LINEAR: f64 = 0.1;
+const NOT_LINEAR: f64 = 0.03;
 /// Smallest part of the largest force over which a linear part extends.
 const LEAST_RISE: f64 = 0.2;
 /// Part of the linear region that is left out of the fit at each of its ends.
@@ -143,7 +143,7 @@ impl Baseline {
         let mut found = None;
         while rows >= FEWEST_BEFORE {
             let line = level(&travel_m[..rows], &force_n[..rows]);
-            let drift = line.slope * (travel_m[rows - 1] - travel_m[0]);
+            let drift = line.slope * (travel_m[travel_m.len() - 1] - travel_m[0]);
             let is_unloaded =
                 drift.abs() <= LARGEST_DRIFT * rise && line.residual <= 1.2 * noise_n + 1e-4 * rise;
             if is_unloaded {

@@ -1,16 +1,16 @@
-//! Closed forms of the tests: beams by Euler, Bernoulli and Timoshenko, the disc, the bar.
+//! Closed-form solutions of the tests: Euler-Bernoulli and Timoshenko beams, the disc, the bar.
 
 /// A beam of rectangular section on two supports, loaded halfway between them by one pin or,
 /// symmetrically, by two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
-    /// Distance of the supports, m. Platzer 2022 calls it the length of the sample.
+    /// Support span, m. Platzer 2022 calls it the length of the sample.
     pub span_m: f64,
-    /// Distance of the two loading pins, m; 0: one pin.
+    /// Loading span, m; 0: one pin.
     pub loading_span_m: f64,
-    /// Of the section, across the load, m.
+    /// Width of the section, across the load, m.
     pub width_m: f64,
-    /// Of the section, along the load, m.
+    /// Height of the section, along the load, m.
     pub height_m: f64,
 }
 
@@ -28,20 +28,20 @@ impl Beam {
         self.width_m * self.height_m.powi(3) / 12.0
     }
 
-    /// Distance of a support from the next loading pin, m.
+    /// Distance of a support from the nearest loading pin, m.
     pub fn arm_m(&self) -> f64 {
         0.5 * (self.span_m - self.loading_span_m)
     }
 
-    /// Stiffness in bending of a body of modulus 1 Pa: force over the deflection at the loading
-    /// pins, m. Platzer 2022, eq. 18.
+    /// Bending stiffness of a body of modulus 1 Pa: force over deflection at the loading pins, m.
+    /// Platzer 2022, eq. 18.
     pub fn bending_shape_m(&self) -> f64 {
         let (span, load) = (self.span_m, self.loading_span_m);
         48.0 * self.second_moment_m4() / ((span - load).powi(2) * (span + 2.0 * load))
     }
 
-    /// Deflection at the loading pins under a force on all of them together, m, without shear.
-    /// Platzer 2022, eq. 18; F L^3/(48 E I) for one pin.
+    /// Deflection at the loading pins under a total force on them, m, without shear. Platzer 2022,
+    /// eq. 18; F L^3/(48 E I) for one pin.
     pub fn deflection_m(&self, force_n: f64, young_modulus_pa: f64) -> f64 {
         force_n / (young_modulus_pa * self.bending_shape_m())
     }
@@ -53,7 +53,7 @@ impl Beam {
             / (48.0 * young_modulus_pa * self.second_moment_m4())
     }
 
-    /// What shear adds to the deflection at the loading pins, m: F a/(2 kappa G A).
+    /// Shear contribution to the deflection at the loading pins, m: F a/(2 kappa G A).
     pub fn shear_deflection_m(
         &self,
         force_n: f64,
@@ -66,25 +66,25 @@ impl Beam {
         0.5 * force_n * self.arm_m() / (kappa * shear_modulus_pa * area_m2)
     }
 
-    /// Shear over bending in the deflection at the loading pins.
+    /// Ratio of shear to bending in the deflection at the loading pins.
     pub fn shear_over_bending(&self, poisson_ratio: f64, kappa: f64) -> f64 {
         self.shear_deflection_m(1.0, 1.0, poisson_ratio, kappa) / self.deflection_m(1.0, 1.0)
     }
 
-    /// Force over the deflection at the loading pins with shear, N/m.
+    /// Ratio of force to deflection at the loading pins with shear, N/m.
     pub fn stiffness_n_m(&self, young_modulus_pa: f64, poisson_ratio: f64, kappa: f64) -> f64 {
         let shear = self.shear_over_bending(poisson_ratio, kappa);
         young_modulus_pa * self.bending_shape_m() / (1.0 + shear)
     }
 
-    /// Largest bending stress under a force on all loading pins together, Pa. Platzer 2022, eq. 19;
-    /// 3 F L/(2 b h^2) for one pin.
+    /// Largest bending stress under a total force on the loading pins, Pa. Platzer 2022, eq. 19; 3
+    /// F L/(2 b h^2) for one pin.
     pub fn stress_pa(&self, force_n: f64) -> f64 {
         1.5 * force_n * (self.span_m - self.loading_span_m)
             / (self.width_m * self.height_m * self.height_m)
     }
 
-    /// Force at which the largest bending stress is this, N: Platzer 2022, eq. 19, the other way.
+    /// Force at which the largest bending stress is this, N: Platzer 2022, eq. 19, inverted.
     pub fn force_n(&self, stress_pa: f64) -> f64 {
         stress_pa / self.stress_pa(1.0)
     }
@@ -101,6 +101,6 @@ pub fn bar_stress_pa(force_n: f64, area_m2: f64) -> f64 {
     force_n / area_m2
 }
 
-/// First frequency of a beam on two supports at its ends over that of the same free beam:
+/// Ratio of the first frequency of a beam supported at its ends to that of the same free beam:
 /// (pi/4.7300)^2.
 pub const ON_PINS: f64 = 0.441_133_4;

@@ -160,13 +160,13 @@ fn damaged_files_have_one_clear_message() {
         ),
         (
             good.replace("travel", "strain").replace("(mm)", "(%)"),
-            "no column is known as the travel: 1 'strain [%]', 2 'force [N]'; name one by --travel NAME or its number",
+            "no column is known as the travel: 1 'strain [%]', 2 'force [N]'; name one by --travel-column NAME or its number",
         ),
         (
             file("travel (mm),force (N),load (kN)\n", |x, f| {
                 format!("{x:.5},{f:.5},{f:.5}")
             }),
-            "several columns may be the force: 2 'force [N]', 3 'load [kN]'; name one by --force NAME or its number",
+            "several columns may be the force: 2 'force [N]', 3 'load [kN]'; name one by --force-column NAME or its number",
         ),
     ];
     for (text, wanted) in &all_files {
@@ -198,6 +198,7 @@ fn doubtful_specimens_are_named() {
     );
     let begun = first(&Made {
         before_m: 0.0,
+        seating_m: 0.0,
         ..USUAL
     });
     assert_eq!(
@@ -207,6 +208,7 @@ fn doubtful_specimens_are_named() {
     let bent = first(&Made {
         bend: 0.05,
         seating_m: 0.0,
+        noise_n: 0.005,
         ..USUAL
     });
     assert!(bent.starts_with("it has no linear part"), "{bent}");

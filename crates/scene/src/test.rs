@@ -15,12 +15,13 @@ use super::table::Table;
 use super::wall::{Wall, WallMotion};
 use dem_io::diagnostic::Result;
 use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY};
+use dem_laboratory::TestType;
 
 pub(super) static TEST: Schema = Schema {
     title: "[test]",
     doc: "A laboratory test. `run.end_time` may be left out then.",
     keys: &[
-        Key::new("type", Kind::Word(|| words_of(&KINDS)), "Type of test.").required("\"four-point-bending\""),
+        Key::new("type", Kind::Word(|| words_of(&TestType::NAMES)), "Type of test.").required("\"four-point-bending\""),
         Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
         Key::new(
             "crosshead",
@@ -83,53 +84,11 @@ const fn size(name: &'static str, doc: &'static str) -> Key {
         .otherwise(MEASURED)
 }
 
-/// Every kind of test and its name in a scene.
-const KINDS: [(&str, TestKind); 5] = [
-    ("four-point-bending", TestKind::FourPointBending),
-    ("three-point-bending", TestKind::ThreePointBending),
-    ("brazilian-disc", TestKind::BrazilianDisc),
-    ("compression", TestKind::Compression),
-    ("tension", TestKind::Tension),
-];
-
-/// Which laboratory test.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TestKind {
-    /// "four-point-bending": two pins push between two supports.
-    FourPointBending,
-    /// "three-point-bending": one pin pushes halfway between two supports.
-    ThreePointBending,
-    /// "brazilian-disc": a disc is pressed across its diameter until it splits.
-    BrazilianDisc,
-    /// "compression": a body is pressed along its length.
-    Compression,
-    /// "tension": a body is gripped at its ends and pulled.
-    Tension,
-}
-
-impl TestKind {
-    /// Its name in a scene.
-    pub fn name(self) -> &'static str {
-        let found = KINDS.iter().find(|(_, kind)| *kind == self);
-        found.map_or("", |(name, _)| *name)
-    }
-
-    /// The keys of lengths and areas that mean something to it.
-    pub(super) fn dimensions(self) -> &'static [&'static str] {
-        match self {
-            Self::FourPointBending => &["support_span", "loading_span", "width", "height"],
-            Self::ThreePointBending => &["support_span", "width", "height"],
-            Self::BrazilianDisc => &["width", "height"],
-            Self::Compression | Self::Tension => &["length", "area"],
-        }
-    }
-}
-
 /// A quasi-static test: what moves, how far and how fast, and what it is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Test {
     /// `type`
-    pub kind: TestKind,
+    pub kind: TestType,
     /// `body` that is tested; the only one unless given.
     pub body: String,
     /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are
@@ -177,9 +136,9 @@ pub(super) struct Known<'a> {
 
 pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     let table = Table::of(field, &TEST)?;
-    let kind = table.need("type")?.choice(&KINDS)?;
+    let kind = table.need("type")?.choice(&TestType::NAMES)?;
     refuse_dimensions(&table, kind)?;
-    let pulls = kind == TestKind::Tension;
+    let pulls = kind == TestType::Tension;
     let example = if pulls {
         "[\"NAME\"], groups that are pulled"
     } else {
@@ -241,7 +200,7 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
 }
 
 /// Refuses dimensions that mean nothing to the kind of test.
-fn refuse_dimensions(table: &Table<'_>, kind: TestKind) -> Result<()> {
+fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
     let all = [
         "support_span",
         "loading_span",

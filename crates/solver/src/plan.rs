@@ -15,7 +15,6 @@ mod outputs;
 mod rules;
 mod stages;
 pub mod test_setup;
-pub mod test_theory;
 pub mod time_step;
 mod walls;
 

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::units::DIMENSIONS;
+use dem_laboratory::TestType;
 use dem_scene::{
     BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
     Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling, Scene,
-    Search, Statistic, StrainRateMeasure, TestKind, Wall, WallMotion, WallShape,
+    Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -553,7 +554,7 @@ fn a_laboratory_test() {
     let scene = good("bending-test.toml");
     assert_eq!(scene.run.end_time_s, f64::INFINITY);
     let test = scene.test.as_ref().unwrap();
-    assert_eq!(test.kind, TestKind::ThreePointBending);
+    assert_eq!(test.kind, TestType::ThreePointBending);
     assert_eq!(
         (test.body.as_str(), test.crosshead.join(" ")),
         ("beam", "pin".to_owned())

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{Factor, Hold, Scene, Support, Test, TestKind, WallMotion};
+use dem_laboratory::TestType;
+use dem_scene::{Factor, Hold, Scene, Support, Test, WallMotion};
 
 use crate::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;
-use crate::plan::test_theory::ON_PINS;
 use crate::state::State;
+use dem_laboratory::theory::ON_PINS;
 
 /// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets get a
 /// moving support, the run gets its end. A scene without a test stays as it is. The velocity rises
@@ -104,7 +105,7 @@ pub fn lowest_in_test_hz(
         )
     })?;
     Ok(Some(match test.kind {
-        TestKind::FourPointBending | TestKind::ThreePointBending => ON_PINS * free,
-        TestKind::BrazilianDisc | TestKind::Compression | TestKind::Tension => free,
+        TestType::FourPointBending | TestType::ThreePointBending => ON_PINS * free,
+        TestType::BrazilianDisc | TestType::Compression | TestType::Tension => free,
     }))
 }

@@ -4,7 +4,8 @@ use dem_plots::{Circle, Dot, Guide, Map};
 use nalgebra::Vector3;
 
 use crate::laboratory::evaluate::Crack;
-use crate::plan::test_setup::{Setup, Specimen};
+use crate::plan::test_setup::Setup;
+use dem_laboratory::Specimen;
 
 /// Largest number of particles drawn, those nearest to the viewer.
 const MOST_PARTICLES: usize = 4000;

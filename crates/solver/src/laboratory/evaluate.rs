@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
-use crate::plan::test_setup::{Setup, Specimen};
-use crate::plan::test_theory::Beam;
-use crate::plan::test_theory::{KAPPA, bar_stress_pa, disc_stress_pa};
+use crate::plan::test_setup::Setup;
+use dem_laboratory::Specimen;
+use dem_laboratory::theory::Beam;
+use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
 /// settle into the surface; above, bonds break.

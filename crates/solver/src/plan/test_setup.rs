@@ -3,11 +3,12 @@
 
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Scene, Test, TestKind, Wall, WallShape};
+use dem_scene::{Scene, Test, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::test_theory::Beam;
 use crate::state::State;
+use dem_laboratory::theory::Beam;
+use dem_laboratory::{Specimen, TestType};
 
 /// Half the size of the part of a body whose displacement is measured, as a fraction of its height.
 const SPOT: f64 = 0.125;
@@ -18,27 +19,6 @@ const ROUND: f64 = 1.25;
 /// A disc has split in two if the mean distance of the crack from the loaded diameter is at most
 /// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
-
-/// Specimen of a test.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Specimen {
-    /// Beam bent by one or two pins.
-    Beam(Beam),
-    /// Disc pressed across its diameter.
-    Disc {
-        /// m
-        diameter_m: f64,
-        /// m
-        thickness_m: f64,
-    },
-    /// Bar pressed or pulled along its length.
-    Bar {
-        /// m
-        length_m: f64,
-        /// m2
-        area_m2: f64,
-    },
-}
 
 /// Initial arrangement of a test.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,13 +65,13 @@ pub fn setup(
         .map(|&i| state.particles.poses[i as usize].radius_m());
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
     let found = match test.kind {
-        TestKind::FourPointBending | TestKind::ThreePointBending => beam(scene, test, extent),
-        TestKind::BrazilianDisc => disc(test, direction, extent),
-        TestKind::Compression | TestKind::Tension => Ok(bar(test, direction, volume_m3, extent)),
+        TestType::FourPointBending | TestType::ThreePointBending => beam(scene, test, extent),
+        TestType::BrazilianDisc => disc(test, direction, extent),
+        TestType::Compression | TestType::Tension => Ok(bar(test, direction, volume_m3, extent)),
     };
     let place = || format!("{}: [test]", scene.source);
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
-    if test.kind != TestKind::Tension {
+    if test.kind != TestType::Tension {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
     let mut setup = Setup {
@@ -142,7 +122,7 @@ fn beam(
         .walls
         .iter()
         .partition(|(name, _)| test.crosshead.contains(name));
-    let wanted = if test.kind == TestKind::FourPointBending {
+    let wanted = if test.kind == TestType::FourPointBending {
         2
     } else {
         1

@@ -2,12 +2,14 @@
 
 use std::f64::consts::PI;
 
+use dem_laboratory::Specimen;
+use dem_laboratory::TestType;
+use dem_laboratory::theory::{Beam, KAPPA};
 use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
 use dem_run::physics::bond::failure::Cause;
-use dem_run::plan::test_setup::{Setup, Specimen};
-use dem_run::plan::test_theory::{Beam, KAPPA};
-use dem_scene::{BondKind, Test, TestKind};
+use dem_run::plan::test_setup::Setup;
+use dem_scene::{BondKind, Test};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,
@@ -22,7 +24,7 @@ const PLAY: f64 = 0.0002;
 /// What gives way at the pins, m/N.
 const SOFT: f64 = 4e-6;
 
-pub(crate) fn test(kind: TestKind) -> Test {
+pub(crate) fn test(kind: TestType) -> Test {
     Test {
         kind,
         body: "bar".to_owned(),
@@ -148,7 +150,7 @@ fn assert_near(got: Option<f64>, wanted: f64) {
 
 #[test]
 fn a_beam_by_its_force_and_way() {
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     // A body a tenth stiffer and stronger than wanted.
     let stiffness = 1.1 * BEAM.stiffness_n_m(MODULUS, 0.3, KAPPA);
     let force = 1.1 * BEAM.force_n(STRENGTH);
@@ -203,7 +205,7 @@ fn a_beam_by_its_force_and_way() {
 /// A body that is accelerated pushes less on what holds it than what loads it pushes on the body.
 #[test]
 fn inertia_of_the_body_is_no_load() {
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     let setup = setup(Specimen::Beam(BEAM));
     let slow = record(2e4, 50.0);
     let mut shaken = slow.clone();
@@ -221,7 +223,7 @@ fn inertia_of_the_body_is_no_load() {
 /// What swings faster than a twentieth of the lowest period is averaged out.
 #[test]
 fn fast_oscillations_are_left_out() {
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     let setup = setup(Specimen::Beam(BEAM));
     let mut record = record(2e4, 50.0);
     // Rows are 1 ms apart, the lowest period is 100 ms: means are over five rows, which is the
@@ -268,7 +270,7 @@ fn means_at_the_ends_and_of_rows_that_become_shorter() {
 
 #[test]
 fn a_body_that_holds_has_no_strength() {
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     let record = record(2e4, 50.0);
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, false);
     for name in ["failure force", "strength", "crosshead travel at failure"] {
@@ -303,7 +305,7 @@ fn a_body_that_holds_has_no_strength() {
 #[test]
 fn bonds_without_strength_are_not_calibrated() {
     let result = evaluate(&TestInput {
-        test: &test(TestKind::FourPointBending),
+        test: &test(TestType::FourPointBending),
         setup: &setup(Specimen::Beam(BEAM)),
         record: &record(2e4, 50.0),
         places_m: &PLACES,
@@ -320,7 +322,7 @@ fn bonds_without_strength_are_not_calibrated() {
 
 #[test]
 fn an_empty_record_has_no_figures() {
-    let test = test(TestKind::Compression);
+    let test = test(TestType::Compression);
     let bar = Specimen::Bar {
         length_m: 0.1,
         area_m2: 0.001,
@@ -340,7 +342,7 @@ fn bars_and_discs() {
     let (length_m, area_m2) = (0.1, 0.0009);
     let bar = Specimen::Bar { length_m, area_m2 };
     let record = record(3e5, 200.0);
-    for kind in [TestKind::Compression, TestKind::Tension] {
+    for kind in [TestType::Compression, TestType::Tension] {
         let result = evaluated(&test(kind), &setup(bar), &record, true);
         assert_near(result.figure("strength"), 200.0 / 0.0009);
         // By the elongation of the middle, which is 50 mm long.
@@ -351,7 +353,7 @@ fn bars_and_discs() {
         diameter_m: 0.05,
         thickness_m: 0.02,
     };
-    let result = evaluated(&test(TestKind::BrazilianDisc), &setup(disc), &record, true);
+    let result = evaluated(&test(TestType::BrazilianDisc), &setup(disc), &record, true);
     assert_near(
         result.figure("strength"),
         400.0 / (std::f64::consts::PI * 0.001),
@@ -360,7 +362,7 @@ fn bars_and_discs() {
 
 #[test]
 fn a_crack_elsewhere_and_a_rate_that_matters_are_doubts() {
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     let mut setup = setup(Specimen::Beam(BEAM));
     setup.crack_within_m = 0.03;
     let mut slow = evaluated(&test, &setup, &record(2e4, 50.0), true);

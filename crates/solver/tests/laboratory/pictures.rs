@@ -1,11 +1,11 @@
 //! The curve and the crack as pictures.
 
+use dem_laboratory::TestType;
+use dem_laboratory::theory::Beam;
 use dem_run::laboratory::crack::{CrackPicture, crack_map};
 use dem_run::laboratory::evaluate::rows_of;
 use dem_run::laboratory::page::curve;
 use dem_run::plan::test_setup::Specimen;
-use dem_run::plan::test_theory::Beam;
-use dem_scene::TestKind;
 
 use super::evaluation::{PLACES, evaluated, record, setup, test};
 
@@ -19,7 +19,7 @@ const BEAM: Beam = Beam {
 #[test]
 fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     let record = record(2e4, 50.0);
-    let test = test(TestKind::FourPointBending);
+    let test = test(TestType::FourPointBending);
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
     let plot = curve(&rows_of(&record, result.lowest_frequency_hz), &result);
     let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();

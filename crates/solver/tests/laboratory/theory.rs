@@ -2,9 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::plan::test_theory::{
-    Beam, KAPPA, ON_PINS, bar_stress_pa, disc_stress_pa, kappa_cowper,
-};
+use dem_laboratory::theory::{Beam, KAPPA, ON_PINS, bar_stress_pa, disc_stress_pa, kappa_cowper};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
