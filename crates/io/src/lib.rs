@@ -7,6 +7,7 @@
 
 pub mod body;
 mod bounds;
+pub mod boxes;
 pub mod checkpoint;
 pub mod diagnostic;
 pub mod disjoint;
