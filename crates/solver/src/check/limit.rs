@@ -84,8 +84,8 @@ pub struct Bound {
 /// times.
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
-/// same. Contacts count at the overlap that they have, stuck. The wrenches of particles that move
-/// by themselves are overwritten; spheres of clumps and the damping of bonds have none afterwards.
+/// same. Contacts count at the overlap that they have, stuck. Particles and the damping of bonds
+/// have no wrenches afterwards.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
@@ -146,11 +146,9 @@ fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
     !state.scratch.bond_resistance.is_empty() || !contacts.is_empty()
 }
 
-/// Clears what the search left in wrenches that are read or added to before a step begins them
-/// anew: those of the spheres of clumps and those of the damping of bonds.
+/// Clears what the search left in the wrenches of particles and of the damping of bonds.
 fn clear_trial_wrenches(state: &mut State) {
-    let free = state.particles.free;
-    state.particles.wrenches[free..].fill(Wrench::default());
+    state.particles.wrenches.fill(Wrench::default());
     state.scratch.bond_resistance.fill(Wrench::default());
 }
 
