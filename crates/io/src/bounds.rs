@@ -20,13 +20,23 @@ impl Bounds {
     };
 
     /// The smallest box around these points.
-    pub fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
+    pub fn of(points: impl IntoIterator<Item = impl Into<[f64; 3]>>) -> Self {
         points.into_iter().fold(Self::EMPTY, |bounds, point| {
+            let point = point.into();
             bounds.with(&Self {
                 low: point,
                 high: point,
             })
         })
+    }
+
+    /// The box larger by `margin` on every side.
+    #[must_use]
+    pub fn grown(&self, margin: f64) -> Self {
+        Self {
+            low: self.low.map(|x| x - margin),
+            high: self.high.map(|x| x + margin),
+        }
     }
 
     /// The smallest box around both.
@@ -50,9 +60,45 @@ impl Bounds {
         }
     }
 
+    /// Whether the boxes have a point in common.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
     /// Whether a point lies within `reach` of the box, along each axis.
     pub fn is_near(&self, point: &[f64; 3], reach: f64) -> bool {
         (0..3).all(|k| point[k] >= self.low[k] - reach && point[k] <= self.high[k] + reach)
+    }
+
+    /// Whether a segment comes within `reach` of the box, along each axis.
+    pub(crate) fn on_segment(&self, [start, end]: [Vector3<f64>; 2], reach: f64) -> bool {
+        let (mut near, mut far) = (0.0_f64, 1.0_f64);
+        for k in 0..3 {
+            let low = self.low[k] - reach - start[k];
+            let high = self.high[k] + reach - start[k];
+            let along = end[k] - start[k];
+            if along != 0.0 {
+                near = near.max((low / along).min(high / along));
+                far = far.min((low / along).max(high / along));
+            } else if low > 0.0 || high < 0.0 {
+                return false;
+            }
+        }
+        near <= far
+    }
+
+    /// Whether the ray from `origin` meets the box; `inverse` is 1/direction, no component of it
+    /// infinite.
+    pub(crate) fn on_ray(&self, origin: &Vector3<f64>, inverse: &Vector3<f64>) -> bool {
+        let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+        for k in 0..3 {
+            let t1 = (self.low[k] - origin[k]) * inverse[k];
+            let t2 = (self.high[k] - origin[k]) * inverse[k];
+            near = near.max(t1.min(t2));
+            far = far.min(t1.max(t2));
+        }
+        // A margin for rounding: a box that is flat along an axis must not be missed.
+        near <= far + 1e-12 * (1.0 + far.abs())
     }
 
     /// The eight corners, m. Shape 8 x 3.

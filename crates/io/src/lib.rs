@@ -6,6 +6,7 @@
 
 pub mod body;
 mod bounds;
+pub mod boxes;
 pub mod diagnostic;
 pub mod disjoint;
 pub mod hash;

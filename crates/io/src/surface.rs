@@ -8,7 +8,6 @@
 
 pub mod build;
 
-mod boxes;
 mod duplicates;
 mod frame;
 mod holes;
@@ -23,7 +22,6 @@ mod shells;
 mod solid;
 mod t_junctions;
 mod union_volume;
-mod vector;
 mod warnings;
 mod weld;
 

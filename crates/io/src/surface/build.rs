@@ -1,6 +1,5 @@
 //! Facets -> welded, oriented shells.
 
-use super::boxes::{Bounds, Tree};
 use super::frame::Frame;
 use super::intersections::{self, Intersections};
 use super::mesh::{Edges, Mesh};
@@ -10,9 +9,10 @@ use super::refusals::{no_volume, odd_edges, one_sided, open_edges};
 use super::shells::connect;
 use super::solid::{Repairs, Shell, Surface};
 use super::union_volume::{Excess, excess};
-use super::vector::{bounds, distance};
 use super::warnings::{Remarks, sentences};
 use super::{duplicates, holes, t_junctions, weld};
+use crate::bounds::Bounds;
+use crate::boxes::Tree;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a;
 use crate::stl::read_facets;
@@ -74,8 +74,7 @@ fn build(bytes: &[u8], unit_m: f64, fill_holes: bool) -> Result<Surface> {
     let facets = frame.to_local(file.corners);
     let mut mesh = weld::equal_corners(&facets);
     drop(facets);
-    let (min, max) = bounds(mesh.vertices.iter().copied());
-    let diagonal = distance(min, max);
+    let diagonal = Bounds::of(mesh.vertices.iter().copied()).diagonal_m();
     drop_superfluous(&mut mesh, &mut repairs);
     weld_and_split(&mut mesh, diagonal, frame.size * unit_m, &mut repairs);
     remarks.triangles = mesh.triangles.len();
@@ -103,9 +102,9 @@ fn build(bytes: &[u8], unit_m: f64, fill_holes: bool) -> Result<Surface> {
     let mut surface = Surface {
         source: String::new(),
         source_hash: fnv1a(bytes),
-        origin_m: frame.corner.map(|x| x * unit_m),
+        origin_m: (frame.corner * unit_m).into(),
         unit_m: local_unit_m,
-        vertices: mesh.vertices,
+        vertices: mesh.vertices.into_iter().map(Into::into).collect(),
         triangles: mesh.triangles,
         shells,
         overlap_volume_m3: relations.excess.volume * volume_unit_m3,
@@ -312,12 +311,12 @@ fn relate(mesh: &mut Mesh, parts: &mut [Part]) -> Relations {
         let crossing = crossings
             .shells
             .iter()
-            .map(|[a, b]| shell_bounds[*a as usize].common(shell_bounds[*b as usize]));
+            .map(|[a, b]| shell_bounds[*a as usize].common(&shell_bounds[*b as usize]));
         let whole = Bounds::of(mesh.vertices.iter().copied());
         let region = if overlap_in_plane {
             whole
         } else {
-            crossing.reduce(Bounds::with).unwrap_or(whole)
+            crossing.reduce(|sum, b| sum.with(&b)).unwrap_or(whole)
         };
         excess(
             &Rays {

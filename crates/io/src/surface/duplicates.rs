@@ -1,8 +1,7 @@
 //! Facets that bound nothing: without area, or standing there already.
 
-use super::mesh::{Edges, Mesh, smallest_first};
+use super::mesh::{Edges, Mesh, normal, smallest_first};
 use super::sets::Sets;
-use super::vector::{distance, length, normal};
 
 /// A triangle lower than this (local units) has no area.
 const NO_HEIGHT: f64 = 1e-12;
@@ -99,8 +98,8 @@ fn has_area(mesh: &Mesh, triangle: u32, no_height: f64) -> bool {
 fn height(mesh: &Mesh, triangle: u32) -> f64 {
     let corners = mesh.corners(triangle);
     let [p, q, r] = corners;
-    let longest = distance(p, q).max(distance(q, r)).max(distance(r, p));
-    length(normal(corners)) / longest
+    let longest = (p - q).norm().max((q - r).norm()).max((r - p).norm());
+    normal(corners).norm() / longest
 }
 
 /// Drops triangles lower than `tolerance` (local units) that hang loose: at least two of their

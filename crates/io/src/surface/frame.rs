@@ -1,8 +1,8 @@
 //! Local coordinates: near the origin and of size one, so that neither an offset nor a scale costs
 //! digits.
 
-use super::mesh::Mesh;
-use super::vector::{Point, bounds, subtract};
+use super::mesh::{Mesh, Point};
+use crate::bounds::Bounds;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
 
@@ -25,9 +25,9 @@ impl Frame {
     ///
     /// # Errors
     /// A shape without extent or of a size outside all reason.
-    pub(super) fn around(facets: &[[Point; 3]], unit_m: f64) -> Result<Self> {
-        let (min, max) = bounds(facets.iter().flatten().copied());
-        let extent = largest_extent(min, max);
+    pub(super) fn around(facets: &[[[f64; 3]; 3]], unit_m: f64) -> Result<Self> {
+        let bounds = Bounds::of(facets.iter().flatten().copied());
+        let extent = largest_extent(&bounds);
         if extent == 0.0 {
             return Err(Diagnostic::input(
                 "",
@@ -46,29 +46,26 @@ impl Frame {
             ));
         }
         Ok(Self {
-            corner: min,
+            corner: bounds.low.into(),
             size: power_of_two_below(extent),
         })
     }
 
     /// File coordinates to local ones. Exact for the size; the difference from the corner is
     /// rounded once.
-    pub(super) fn to_local(self, facets: Vec<[Point; 3]>) -> Vec<[Point; 3]> {
-        let mut facets = facets;
-        for corner in facets.as_flattened_mut() {
-            *corner = subtract(*corner, self.corner).map(|x| x / self.size);
-        }
-        facets
+    pub(super) fn to_local(self, facets: Vec<[[f64; 3]; 3]>) -> Vec<[Point; 3]> {
+        let local = |corner: [f64; 3]| (Point::from(corner) - self.corner) / self.size;
+        facets.into_iter().map(|facet| facet.map(local)).collect()
     }
 
     /// A local point in units of the file.
     pub(super) fn in_file(&self, local: Point) -> Point {
-        [0, 1, 2].map(|k| self.corner[k] + self.size * local[k])
+        self.corner + self.size * local
     }
 
     /// A local point for a message, in units of the file.
     pub(super) fn show(&self, local: Point) -> String {
-        let [x, y, z] = self.in_file(local).map(|x| significant(x, 9));
+        let [x, y, z] = <[f64; 3]>::from(self.in_file(local)).map(|x| significant(x, 9));
         format!("({x}, {y}, {z})")
     }
 
@@ -80,21 +77,24 @@ impl Frame {
     /// Moves and scales the mesh so that it fills the frame again, if triangles at its border were
     /// dropped.
     pub(super) fn fit(&mut self, mesh: &mut Mesh) {
-        let (min, max) = bounds(mesh.vertices.iter().copied());
-        let size = power_of_two_below(largest_extent(min, max));
-        if min == [0.0; 3] && size == 1.0 {
+        let bounds = Bounds::of(mesh.vertices.iter().copied());
+        let size = power_of_two_below(largest_extent(&bounds));
+        let low = Point::from(bounds.low);
+        if low == Point::zeros() && size == 1.0 {
             return;
         }
-        self.corner = self.in_file(min);
+        self.corner = self.in_file(low);
         self.size *= size;
         for vertex in &mut mesh.vertices {
-            *vertex = subtract(*vertex, min).map(|x| x / size);
+            *vertex = (*vertex - low) / size;
         }
     }
 }
 
-fn largest_extent(min: Point, max: Point) -> f64 {
-    (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max)
+fn largest_extent(bounds: &Bounds) -> f64 {
+    (0..3)
+        .map(|k| bounds.high[k] - bounds.low[k])
+        .fold(0.0, f64::max)
 }
 
 /// The largest power of two that is not larger than `x`, a positive normal number.
@@ -124,7 +124,7 @@ mod tests {
         let far_facet = facet.map(|p| p.map(|x| x + 1e6));
         let far = Frame::around(&[far_facet], 1e-3).unwrap();
         assert_eq!(near.to_local(vec![facet]), far.to_local(vec![far_facet]));
-        assert_eq!((far.corner, far.size), ([1e6; 3], 16.0));
+        assert_eq!((far.corner, far.size), ([1e6; 3].into(), 16.0));
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Holes of a surface: the loops of its open edges, and triangles that close them.
 
-use super::mesh::{Edges, Mesh};
-use super::vector::{Point, distance, length, mean, normal};
+use super::mesh::{Edges, Mesh, Point, mean, normal};
 use std::collections::BTreeMap;
 
 /// A hole with a longer boundary, as a share of the diagonal of the bounding box, is not small; but
@@ -25,7 +24,7 @@ impl Hole {
         self.boundary
             .iter()
             .zip(next)
-            .map(|(a, b)| distance(mesh.vertices[*a as usize], mesh.vertices[*b as usize]))
+            .map(|(a, b)| (mesh.vertices[*a as usize] - mesh.vertices[*b as usize]).norm())
             .sum()
     }
 
@@ -148,7 +147,7 @@ fn least_area(mesh: &Mesh, edges: &ExistingEdges, boundary: &[u32]) -> Option<Ve
             }
             for k in i + 1..j {
                 let sum =
-                    area[i][k] + area[k][j] + 0.5 * length(normal([point(i), point(k), point(j)]));
+                    area[i][k] + area[k][j] + 0.5 * normal([point(i), point(k), point(j)]).norm();
                 if sum < area[i][j] {
                     area[i][j] = sum;
                     apex[i][j] = k;

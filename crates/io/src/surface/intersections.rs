@@ -1,8 +1,7 @@
 //! Triangles that cross each other.
 
-use super::boxes::Tree;
-use super::mesh::Mesh;
-use super::vector::{Point, along, cross, dot, length, normal, subtract};
+use super::mesh::{Mesh, Point, normal};
+use crate::boxes::Tree;
 use std::collections::BTreeSet;
 
 /// The crossings of a mesh with itself.
@@ -60,13 +59,12 @@ fn crossing_place(first: [Point; 3], second: [Point; 3]) -> Option<Point> {
 /// those within rounding are zero. `None` when the corners do not lie on both sides.
 fn sides(triangle: [Point; 3], other: [Point; 3]) -> Option<[f64; 3]> {
     let normal = normal(triangle);
-    let area = length(normal);
-    let longest =
-        length(subtract(triangle[1], triangle[0])) * length(subtract(triangle[2], triangle[0]));
+    let area = normal.norm();
+    let longest = (triangle[1] - triangle[0]).norm() * (triangle[2] - triangle[0]).norm();
     let sides = other.map(|corner| {
-        let to_corner = subtract(corner, triangle[0]);
-        let side = dot(normal, to_corner);
-        if side.abs() <= 1e-11 * area + 1e-14 * longest * length(to_corner) {
+        let to_corner = corner - triangle[0];
+        let side = normal.dot(&to_corner);
+        if side.abs() <= 1e-11 * area + 1e-14 * longest * to_corner.norm() {
             0.0
         } else {
             side
@@ -83,11 +81,8 @@ fn edge_through(triangle: [Point; 3], sides: [f64; 3], other: [Point; 3]) -> Opt
         if from * to >= 0.0 {
             return None;
         }
-        let place = along(
-            triangle[k],
-            from / (from - to),
-            subtract(triangle[(k + 1) % 3], triangle[k]),
-        );
+        let edge = triangle[(k + 1) % 3] - triangle[k];
+        let place = triangle[k] + from / (from - to) * edge;
         contains(other, place).then_some(place)
     })
 }
@@ -95,10 +90,10 @@ fn edge_through(triangle: [Point; 3], sides: [f64; 3], other: [Point; 3]) -> Opt
 /// Whether a point of the plane of a triangle lies in it or on its edge.
 fn contains(triangle: [Point; 3], point: Point) -> bool {
     let normal = normal(triangle);
-    let whole = dot(normal, normal);
+    let whole = normal.dot(&normal);
     (0..3).all(|k| {
-        let edge = subtract(triangle[(k + 1) % 3], triangle[k]);
-        dot(normal, cross(edge, subtract(point, triangle[k]))) >= -1e-12 * whole
+        let edge = triangle[(k + 1) % 3] - triangle[k];
+        normal.dot(&edge.cross(&(point - triangle[k]))) >= -1e-12 * whole
     })
 }
 
@@ -107,16 +102,20 @@ mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
-    const FLAT: [Point; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    const FLAT: [Point; 3] = [
+        Point::new(0.0, 0.0, 0.0),
+        Point::new(1.0, 0.0, 0.0),
+        Point::new(0.0, 1.0, 0.0),
+    ];
 
     #[test]
     fn crossing_touching_and_coplanar_triangles() {
-        let through = [[0.2, 0.2, -0.5], [0.3, 0.2, 0.5], [0.3, 0.4, 0.5]];
+        let through = [[0.2, 0.2, -0.5], [0.3, 0.2, 0.5], [0.3, 0.4, 0.5]].map(Point::from);
         let place = crossing_place(FLAT, through).unwrap();
         assert!(place[2].abs() < 1e-15 && crossing_place(through, FLAT).is_some());
-        let beside = through.map(|p| [p[0] + 0.6, p[1], p[2]]);
-        let touching = [[0.2, 0.2, 0.0], [0.3, 0.2, 0.5], [0.3, 0.4, 0.5]];
-        let coplanar = FLAT.map(|p| [p[0] + 0.1, p[1] + 0.1, 0.0]);
+        let beside = through.map(|p| p + Point::new(0.6, 0.0, 0.0));
+        let touching = [[0.2, 0.2, 0.0], [0.3, 0.2, 0.5], [0.3, 0.4, 0.5]].map(Point::from);
+        let coplanar = FLAT.map(|p| p + Point::new(0.1, 0.1, 0.0));
         for other in [beside, touching, coplanar] {
             assert_eq!(crossing_place(FLAT, other), None);
         }

@@ -1,6 +1,9 @@
 //! Triangles that share vertices, and their edges.
 
-use super::vector::{Point, cross, dot, length, normal, subtract};
+use nalgebra::Vector3;
+
+/// A point or a vector.
+pub(super) type Point = Vector3<f64>;
 
 /// Vertices in local units and triangles of them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,8 +39,8 @@ impl Mesh {
         for triangle in triangles {
             let corners = self.corners(triangle);
             let origin = *reference.get_or_insert(corners[0]);
-            let [a, b, c] = corners.map(|p| subtract(p, origin));
-            sum += dot(a, cross(b, c));
+            let [a, b, c] = corners.map(|p| p - origin);
+            sum += a.dot(&b.cross(&c));
         }
         sum / 6.0
     }
@@ -46,7 +49,7 @@ impl Mesh {
     pub(super) fn area(&self, triangles: impl IntoIterator<Item = u32>) -> f64 {
         triangles
             .into_iter()
-            .map(|t| 0.5 * length(normal(self.corners(t))))
+            .map(|t| 0.5 * normal(self.corners(t)).norm())
             .sum()
     }
 
@@ -78,6 +81,18 @@ impl Mesh {
             *triangle = smallest_first(triangle.map(|v| place[v as usize]));
         }
     }
+}
+
+/// Normal of a triangle, as long as twice its area.
+pub(super) fn normal([a, b, c]: [Point; 3]) -> Point {
+    (b - a).cross(&(c - a))
+}
+
+/// The middle of some points. Not for none.
+pub(super) fn mean(points: impl IntoIterator<Item = Point, IntoIter: ExactSizeIterator>) -> Point {
+    let points = points.into_iter();
+    let count = points.len() as f64;
+    points.sum::<Point>() / count
 }
 
 /// Order of points by x, then y, then z.

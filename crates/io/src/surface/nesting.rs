@@ -1,6 +1,7 @@
 //! Which shells lie in which: an odd number of shells around one makes it the wall of a cavity.
 
 use super::intersections::Intersections;
+use super::mesh::mean;
 use super::rays::Rays;
 use super::sets::Sets;
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,7 +106,7 @@ fn ask(rays: &Rays, shell: u32, triangles: Range<u32>) -> (usize, BTreeMap<u32, 
     let mut samples = 0;
     let step = triangles.len().div_ceil(SAMPLES);
     for triangle in triangles.step_by(step) {
-        let middle = super::vector::mean(rays.mesh.corners(triangle));
+        let middle = mean(rays.mesh.corners(triangle));
         let Some(around) = rays.around(middle) else {
             continue;
         };

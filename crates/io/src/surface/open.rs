@@ -6,8 +6,8 @@ use super::frame::Frame;
 use super::mesh::{Edges, Mesh};
 use super::sets::Sets;
 use super::shells::join;
-use super::vector::{bounds, distance};
 use super::{t_junctions, weld};
+use crate::bounds::Bounds;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a;
 use crate::stl::read_facets;
@@ -77,8 +77,7 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
     let facets_read = file.corners.len();
     let frame = Frame::around(&file.corners, unit_m)?;
     let mut mesh = weld::equal_corners(&frame.to_local(file.corners));
-    let (min, max) = bounds(mesh.vertices.iter().copied());
-    let diagonal = distance(min, max);
+    let diagonal = Bounds::of(mesh.vertices.iter().copied()).diagonal_m();
 
     let mut dropped = drop_superfluous(&mut mesh, diagonal);
     let edges = Edges::of(&mesh);
@@ -105,7 +104,7 @@ fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
         vertices_m: mesh
             .vertices
             .iter()
-            .map(|v| frame.in_file(*v).map(|x| x * unit_m))
+            .map(|v| (frame.in_file(*v) * unit_m).into())
             .collect(),
         triangles: mesh.triangles,
         facets_read,

@@ -1,20 +1,20 @@
 //! Rays through a mesh: which shells they cross, and in which sense (Moeller and Trumbore 1997).
 
-use super::boxes::{Bounds, Tree};
-use super::mesh::Mesh;
-use super::vector::{Point, cross, dot, length, subtract};
+use super::mesh::{Mesh, Point};
+use crate::bounds::Bounds;
+use crate::boxes::Tree;
 
 /// Directions in no special position to the axes or to each other. Not of length 1, none along an
 /// axis.
 const DIRECTIONS: [Point; 8] = [
-    [0.531, 0.321, 0.785],
-    [-0.414, 0.732, 0.541],
-    [0.237, -0.645, 0.726],
-    [-0.693, -0.302, 0.655],
-    [0.139, 0.916, -0.377],
-    [-0.851, 0.211, -0.482],
-    [0.359, -0.474, -0.804],
-    [-0.127, -0.552, -0.824],
+    Point::new(0.531, 0.321, 0.785),
+    Point::new(-0.414, 0.732, 0.541),
+    Point::new(0.237, -0.645, 0.726),
+    Point::new(-0.693, -0.302, 0.655),
+    Point::new(0.139, 0.916, -0.377),
+    Point::new(-0.851, 0.211, -0.482),
+    Point::new(0.359, -0.474, -0.804),
+    Point::new(-0.127, -0.552, -0.824),
 ];
 
 /// A point nearer to a facet than this (local units) lies on it.
@@ -55,7 +55,7 @@ impl Rays<'_> {
         let mut sure = true;
         let inverse = direction.map(|x| 1.0 / x);
         self.tree.visit(
-            |b: &Bounds| b.on_ray(origin, inverse),
+            |b: &Bounds| b.on_ray(&origin, &inverse),
             |triangle| match cross_triangle(origin, direction, self.mesh.corners(triangle)) {
                 Crossing::Miss => {}
                 Crossing::Hit(at, sense) => hits.push(Hit {
@@ -81,7 +81,7 @@ impl Rays<'_> {
         for of_shell in hits.chunk_by(|a, b| a.shell == b.shell) {
             if of_shell
                 .iter()
-                .any(|hit| hit.at.abs() * length(*direction) < ON_FACET)
+                .any(|hit| hit.at.abs() * direction.norm() < ON_FACET)
             {
                 around.on.push(of_shell[0].shell);
             } else if of_shell
@@ -107,25 +107,25 @@ enum Crossing {
 /// Crossing of the line from a little before `origin` on with a triangle.
 fn cross_triangle(origin: Point, direction: Point, [a, b, c]: [Point; 3]) -> Crossing {
     const EDGE: f64 = 1e-10;
-    let (edge_1, edge_2) = (subtract(b, a), subtract(c, a));
-    let p = cross(direction, edge_2);
-    let determinant = dot(edge_1, p);
-    let from_a = subtract(origin, a);
-    if determinant.abs() <= 1e-12 * length(edge_1) * length(edge_2) {
-        let normal = cross(edge_1, edge_2);
-        return if dot(from_a, normal).abs() > 1e-8 * length(normal) {
+    let (edge_1, edge_2) = (b - a, c - a);
+    let p = direction.cross(&edge_2);
+    let determinant = edge_1.dot(&p);
+    let from_a = origin - a;
+    if determinant.abs() <= 1e-12 * edge_1.norm() * edge_2.norm() {
+        let normal = edge_1.cross(&edge_2);
+        return if from_a.dot(&normal).abs() > 1e-8 * normal.norm() {
             Crossing::Miss
         } else {
             Crossing::Grazed
         };
     }
-    let u = dot(from_a, p) / determinant;
-    let q = cross(from_a, edge_1);
-    let v = dot(direction, q) / determinant;
+    let u = from_a.dot(&p) / determinant;
+    let q = from_a.cross(&edge_1);
+    let v = direction.dot(&q) / determinant;
     if u < -EDGE || v < -EDGE || u + v > 1.0 + EDGE {
         return Crossing::Miss;
     }
-    let at = dot(edge_2, q) / determinant;
+    let at = edge_2.dot(&q) / determinant;
     if at < -2.0 * ON_FACET {
         Crossing::Miss
     } else if u < EDGE || v < EDGE || u + v > 1.0 - EDGE {

@@ -2,8 +2,7 @@
 
 use super::frame::Frame;
 use super::holes::{Hole, LONGEST_BOUNDARY};
-use super::mesh::{Edges, Mesh};
-use super::vector::mean;
+use super::mesh::{Edges, Mesh, mean};
 use crate::diagnostic::Diagnostic;
 
 /// Edges with three, five, ... facets.
@@ -50,12 +49,9 @@ pub(super) fn open_edges(
             frame.show_length(perimeter),
             frame.show(hole.middle(mesh))
         ),
-        None => format!(
-            "the first at {}",
-            frame.show(mean(
-                open.first().into_iter().flat_map(|h| mesh.segment(*h))
-            ))
-        ),
+        None => open.first().map_or(String::new(), |h| {
+            format!("the first at {}", frame.show(mean(mesh.segment(*h))))
+        }),
     };
     let problem = format!(
         "the surface is not closed: {}, {place} (in units of the file)",

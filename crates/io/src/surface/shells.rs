@@ -2,7 +2,6 @@
 
 use super::mesh::{Edges, Mesh};
 use super::sets::Sets;
-use super::vector::{cross, dot, subtract, unit};
 use std::f64::consts::TAU;
 
 /// The connected parts of a mesh.
@@ -128,18 +127,18 @@ fn without_closed_parts(mesh: &Mesh, sets: &mut Sets, group: &[u32]) -> Vec<u32>
 fn sorted_around_edge(mesh: &Mesh, group: &[u32]) -> Vec<(f64, u32)> {
     let [a, b] = mesh.half_edge(group[0]);
     let [start, end] = [a.min(b), a.max(b)].map(|v| mesh.vertices[v as usize]);
-    let axis = unit(subtract(end, start));
+    let axis = (end - start).normalize();
     let across = |h: u32| {
         let opposite = mesh.triangles[h as usize / 3][(h as usize + 2) % 3];
-        subtract(mesh.vertices[opposite as usize], start)
+        mesh.vertices[opposite as usize] - start
     };
-    let y = unit(cross(axis, across(group[0])));
-    let x = cross(y, axis);
+    let y = axis.cross(&across(group[0])).normalize();
+    let x = y.cross(&axis);
     let mut around: Vec<(f64, u32)> = group
         .iter()
         .map(|h| {
             let to = across(*h);
-            (dot(to, y).atan2(dot(to, x)).rem_euclid(TAU), *h)
+            (to.dot(&y).atan2(to.dot(&x)).rem_euclid(TAU), *h)
         })
         .collect();
     around.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));

@@ -1,9 +1,9 @@
 //! T-junctions: edges that are split by a vertex on one side only. They are closed in space but not
 //! by shared edges.
 
-use super::boxes::{Bounds, Tree};
 use super::mesh::{Edges, Mesh};
-use super::vector::{along, distance, dot, subtract};
+use crate::bounds::Bounds;
+use crate::boxes::Tree;
 
 /// A triangle has three edges, and new triangles may have to be split again.
 const ROUNDS: usize = 12;
@@ -56,11 +56,11 @@ fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
     let mut found = Vec::new();
     for half_edge in continued_edges(mesh, open, tolerance) {
         let [start, end] = mesh.segment(half_edge);
+        let edge = end - start;
         // What is shorter than the tolerance is not split any further.
-        if distance(start, end) <= 2.0 * tolerance {
+        if edge.norm() <= 2.0 * tolerance {
             continue;
         }
-        let edge = subtract(end, start);
         tree.visit(
             |b| b.on_segment([start, end], tolerance),
             |i| {
@@ -69,8 +69,8 @@ fn vertices_on_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<OnEdge> {
                     return;
                 }
                 let point = mesh.vertices[vertex as usize];
-                let fraction = dot(subtract(point, start), edge) / dot(edge, edge);
-                let apart = distance(point, along(start, fraction, edge));
+                let fraction = (point - start).dot(&edge) / edge.dot(&edge);
+                let apart = (point - (start + fraction * edge)).norm();
                 if fraction > 0.0 && fraction < 1.0 && apart <= tolerance {
                     found.push(OnEdge {
                         half_edge,
@@ -117,14 +117,14 @@ fn continued_edges(mesh: &Mesh, open: &[u32], tolerance: f64) -> Vec<u32> {
 /// Whether the nearer of two vertices lies on the line from a third one to the farther.
 fn on_one_line(mesh: &Mesh, from: u32, a: u32, b: u32, tolerance: f64) -> bool {
     let [from, a, b] = [from, a, b].map(|v| mesh.vertices[v as usize]);
-    let (near, far) = if distance(from, a) < distance(from, b) {
+    let (near, far) = if (from - a).norm() < (from - b).norm() {
         (a, b)
     } else {
         (b, a)
     };
-    let (to_near, to_far) = (subtract(near, from), subtract(far, from));
-    let fraction = dot(to_near, to_far) / dot(to_far, to_far);
-    distance(near, along(from, fraction, to_far)) <= tolerance
+    let (to_near, to_far) = (near - from, far - from);
+    let fraction = to_near.dot(&to_far) / to_far.dot(&to_far);
+    (near - (from + fraction * to_far)).norm() <= tolerance
 }
 
 /// Replaces the triangle of `half_edge` by a fan from its opposite corner to the pieces of the

@@ -1,16 +1,16 @@
 //! Volume of a solid whose shells cross each other or themselves: by columns, exact along each.
 
-use super::boxes::Bounds;
+use super::mesh::Point;
 use super::rays::Rays;
-use super::vector::{Point, along, cross, dot, unit};
+use crate::bounds::Bounds;
 
 /// Columns along each side of the cross-section.
 const COLUMNS: usize = 256;
 
 /// Neither the columns nor their rows stand in a special direction to the axes: faces parallel to
 /// them would be integrated badly.
-const DIRECTION: Point = [0.237, 0.141, 0.961];
-const ACROSS: Point = [0.313, 0.829, -0.457];
+const DIRECTION: Point = Point::new(0.237, 0.141, 0.961);
+const ACROSS: Point = Point::new(0.313, 0.829, -0.457);
 
 /// What the sum of the signed volumes of the shells has too much (or too little, when negative),
 /// local units.
@@ -24,27 +24,18 @@ pub(super) struct Excess {
 /// Integrates, over `region`, the winding number less one where it is positive, and the winding
 /// number where it is negative. Outside `region`, the winding number must be 0 or 1.
 pub(super) fn excess(rays: &Rays, region: Bounds) -> Excess {
-    let direction = unit(DIRECTION);
-    let across = unit(cross(direction, ACROSS));
-    let up = cross(across, direction);
-    let corners = (0..8).map(|i| {
-        [0, 1, 2].map(|k| {
-            if i >> k & 1 == 0 {
-                region.min[k]
-            } else {
-                region.max[k]
-            }
-        })
-    });
-    let (min, max) = super::vector::bounds(
-        corners.map(|corner| [dot(corner, across), dot(corner, up), dot(corner, direction)]),
-    );
-    let step = [0, 1].map(|k| (max[k] - min[k]) / COLUMNS as f64);
+    let direction = DIRECTION.normalize();
+    let across = direction.cross(&ACROSS).normalize();
+    let up = across.cross(&direction);
+    let corners = region.corners().map(Point::from);
+    let Bounds { low, high } =
+        Bounds::of(corners.map(|corner| [across, up, direction].map(|axis| corner.dot(&axis))));
+    let step = [0, 1].map(|k| (high[k] - low[k]) / COLUMNS as f64);
     let start = rays
         .mesh
         .vertices
         .iter()
-        .map(|v| dot(*v, direction))
+        .map(|v| v.dot(&direction))
         .fold(f64::INFINITY, f64::min)
         - 0.01;
     let mut quarters = [0.0_f64; 4];
@@ -55,14 +46,10 @@ pub(super) fn excess(rays: &Rays, region: Bounds) -> Excess {
             for attempt in 0..4 {
                 let offset = 0.5 + 1e-4 * f64::from(attempt);
                 let foot = [
-                    min[0] + (i as f64 + offset) * step[0],
-                    min[1] + (j as f64 + offset) * step[1],
+                    low[0] + (i as f64 + offset) * step[0],
+                    low[1] + (j as f64 + offset) * step[1],
                 ];
-                let origin = along(
-                    along(along([0.0; 3], foot[0], across), foot[1], up),
-                    start,
-                    direction,
-                );
+                let origin = foot[0] * across + foot[1] * up + start * direction;
                 if rays.crossings(origin, direction, &mut hits) {
                     break;
                 }

@@ -1,10 +1,10 @@
 //! Corners of facets -> shared vertices: first those that are equal, then, where that leaves open
 //! edges, those that are near.
 
-use super::boxes::{Bounds, Tree};
-use super::mesh::{Edges, Mesh};
+use super::mesh::{Edges, Mesh, Point, mean};
 use super::sets::Sets;
-use super::vector::{Point, distance, mean};
+use crate::bounds::Bounds;
+use crate::boxes::Tree;
 
 /// Corners farther apart than this share of the diagonal of the bounding box are never taken for
 /// one.
@@ -135,7 +135,7 @@ fn clusters_within(
     let most_pairs = MOST_NEIGHBOURS * vertices.len();
     tree.near_pairs(tolerance, |i, j| {
         let [a, b] = [i, j].map(|k| mesh.vertices[vertices[k as usize] as usize]);
-        let apart = distance(a, b);
+        let apart = (a - b).norm();
         if apart <= tolerance {
             sets.join(i, j, false);
             largest = largest.max(apart);
@@ -162,9 +162,8 @@ fn clusters_within(
         .chunk_by(|a, b| a.0 == b.0)
         .filter(|cluster| cluster.len() > 1)
     {
-        let (min, max) =
-            super::vector::bounds(cluster.iter().map(|(_, v)| mesh.vertices[*v as usize]));
-        if distance(min, max) > 8.0 * tolerance {
+        let points = cluster.iter().map(|(_, v)| mesh.vertices[*v as usize]);
+        if Bounds::of(points).diagonal_m() > 8.0 * tolerance {
             return Ok(None);
         }
         cluster

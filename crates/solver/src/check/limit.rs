@@ -1,6 +1,7 @@
 //! The largest stable time step: from the largest eigenvalue of the linearised system, found by
 //! Lanczos' method on the real forces.
 
+use dem_io::random::uniform;
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -79,7 +80,7 @@ pub struct Bound {
 /// of M^-1 (dt^2/4 K + dt/2 C) is above 1.
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
-/// against its force, which damping of particles raises by its share of it: K counts 1 + gamma
+/// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
 /// times.
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
@@ -371,25 +372,14 @@ fn inverse_mass_roots(state: &State) -> Field {
     roots
 }
 
-/// A unit vector that has a part of every mode: signs and sizes scattered by a hash, the same on
-/// every machine.
+/// A unit vector that has a part of every mode: random signs and sizes, the same on every machine.
 fn start(roots: &Field) -> Field {
-    let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut field: Field = roots
-        .iter()
-        .map(|roots| {
-            roots.map(|root| {
-                hash ^= hash << 13;
-                hash ^= hash >> 7;
-                hash ^= hash << 17;
-                if root == 0.0 {
-                    0.0
-                } else {
-                    (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-                }
-            })
-        })
-        .collect();
+    let mut field = roots.clone();
+    for (n, root) in (0..).zip(field.as_flattened_mut()) {
+        if *root != 0.0 {
+            *root = 2.0 * uniform(0, &[n]) - 1.0;
+        }
+    }
     let norm = dot(&field, &field).sqrt();
     if norm > 0.0 {
         field.iter_mut().flatten().for_each(|f| *f /= norm);

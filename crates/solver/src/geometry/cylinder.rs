@@ -124,6 +124,6 @@ impl Cylinder {
             .axis
             .map(|a| self.radius_m * (1.0 - a * a).max(0.0).sqrt());
         let points = [self.start - half, self.start + half, end - half, end + half];
-        Bounds::of(points.map(Into::into))
+        Bounds::of(points)
     }
 }

@@ -14,9 +14,9 @@
 
 mod features;
 mod inside;
-mod tree;
 mod triangle;
 
+use dem_io::boxes::Tree;
 use dem_io::surface::OpenSurface;
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
@@ -24,7 +24,6 @@ use serde::Serialize;
 
 use super::{Bounds, Touch, are_finite};
 use features::features;
-use tree::Tree;
 use triangle::{REGIONS, Triangle};
 
 /// Two points coincide within this fraction of the mesh's diagonal, to allow for rounding, plus
@@ -116,8 +115,8 @@ impl Mesh {
             .iter()
             .map(|t| Bounds::of(t.map(|v| vertices_m[v as usize])))
             .collect();
-        let (tree, order) = Tree::new(&boxes);
-        let indices: Vec<[u32; 3]> = order.iter().map(|t| kept[*t as usize]).collect();
+        let tree = Tree::new(&boxes);
+        let indices: Vec<[u32; 3]> = tree.order().iter().map(|t| kept[*t as usize]).collect();
         let sorted: Vec<Triangle> = indices.iter().map(|t| Triangle::new(corners(t))).collect();
         let features = features(&sorted, &indices, diagonal_m);
         Ok(Self {
@@ -157,7 +156,8 @@ impl Mesh {
     pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
         let from = found.len();
         let c = Vector3::from(centre);
-        self.tree.visit_near(&centre, reach_m, &mut |t| {
+        let is_near = |bounds: &Bounds| bounds.is_near(&centre, reach_m);
+        self.tree.visit_leaves(is_near, |t| {
             let touch = self.nearest(t, &c);
             if touch.distance_m < reach_m {
                 found.push(touch);

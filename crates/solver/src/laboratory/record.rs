@@ -1,5 +1,6 @@
 //! Record of a test: force, displacement, and every broken bond.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::failure::Cause;
@@ -94,7 +95,7 @@ impl Loading {
         let mut loading = Self {
             moving,
             resting,
-            weight_n: state.ledger.mass_kg() * dot(state.model.gravity_m_s2, setup.direction),
+            weight_n: state.ledger.mass_kg() * along(state.model.gravity_m_s2, setup),
             every: (every as u64).max(FEWEST_STEPS),
             start_m: 0.0,
             apart_m: 0.0,
@@ -107,17 +108,14 @@ impl Loading {
     /// Mean coordinate of the moving side along the direction, m.
     fn place_m(&self, setup: &Setup, state: &State) -> f64 {
         let walls = self.moving.walls.iter();
-        let walls = walls.map(|&at| state.walls[at].frame.position_m);
+        let walls = walls.map(|&at| state.walls[at].frame.position_m.into());
         let supports = self.moving.supports.iter();
         let held = supports.flat_map(|&at| &state.supports[at].held);
-        let gripped = held.map(|held| {
-            let [x, y, z, _] = state.particles.poses[held.particle as usize].position_m;
-            [x, y, z]
-        });
+        let gripped = held.map(|held| state.particles.poses[held.particle as usize].place());
         let (sum, count) = walls
             .chain(gripped)
             .fold((0.0, 0.0), |(sum, count), place| {
-                (sum + dot(place, setup.direction), count + 1.0)
+                (sum + along(place, setup), count + 1.0)
             });
         sum / f64::max(count, 1.0)
     }
@@ -127,12 +125,12 @@ impl Holders {
     /// Their force on the body along the direction of a test, N.
     fn force_n(&self, setup: &Setup, state: &State) -> f64 {
         let walls = self.walls.iter();
-        let of_walls = walls.map(|&at| dot(state.walls[at].push.force_n, setup.direction));
+        let of_walls = walls.map(|&at| along(state.walls[at].push.force_n, setup));
         let supports = self.supports.iter();
         let held = supports.flat_map(|&at| &state.supports[at].held);
         let of_supports = held.map(|held| {
             let [x, y, z, ..] = held.reactions[0];
-            dot([x, y, z], setup.direction)
+            along([x, y, z], setup)
         });
         of_walls.chain(of_supports).sum()
     }
@@ -140,17 +138,17 @@ impl Holders {
 
 fn apart_m(setup: &Setup, state: &State) -> f64 {
     let mean = |of: &[u32]| {
-        let along = of.iter().map(|&i| {
-            let [x, y, z, _] = state.particles.poses[i as usize].position_m;
-            dot([x, y, z], setup.direction)
-        });
-        along.sum::<f64>() / of.len().max(1) as f64
+        let places = of
+            .iter()
+            .map(|&i| state.particles.poses[i as usize].place());
+        places.map(|place| along(place, setup)).sum::<f64>() / of.len().max(1) as f64
     };
     mean(&setup.moving) - mean(&setup.resting)
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// Component of a vector along the direction of a test.
+fn along(vector: impl Into<Vector3<f64>>, setup: &Setup) -> f64 {
+    vector.into().dot(&Vector3::from(setup.direction))
 }
 
 impl Record {

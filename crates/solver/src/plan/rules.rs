@@ -12,6 +12,7 @@ use crate::geometry::{Bounds, Mesh};
 use crate::physics::rotation::numbers;
 use crate::state::State;
 use crate::state::clumps::Template;
+use crate::state::particles::Pose;
 use crate::state::regions::Region;
 use crate::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
 
@@ -204,7 +205,7 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             .iter()
             .filter(|outlet| outlet.removes_outside)
         {
-            if is_apart(&gate, &state.model.rules.regions[outlet.region].bounds()) {
+            if !gate.overlaps(&state.model.rules.regions[outlet.region].bounds()) {
                 doubts.push(format!(
                     "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed immediately",
                     outlet.name, inlet.name
@@ -237,19 +238,14 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
 
 /// Whether a region is disjoint from the box around all bodies, inlets and walls.
 fn is_away(region: &Region, state: &State) -> bool {
-    let places = state.particles.poses.iter().map(|pose| pose.place().into());
+    let places = state.particles.poses.iter().map(Pose::place);
     let inlets = state.model.rules.inlets.iter();
     let inlets = inlets.map(|inlet| state.model.rules.regions[inlet.region].bounds());
     let walls = state.walls.iter().map(|wall| wall.bounds_in_space());
     let all = inlets
         .chain(walls)
         .fold(Bounds::of(places), |all, one| all.with(&one));
-    is_apart(&region.bounds(), &all)
-}
-
-fn is_apart(a: &Bounds, b: &Bounds) -> bool {
-    let common = a.common(b);
-    (0..3).any(|k| common.low[k] > common.high[k])
+    !region.bounds().overlaps(&all)
 }
 
 /// Approximate number of bodies per second that can leave the region of an inlet. None: they do not

@@ -41,13 +41,7 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
     let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sizes = vec![0_u32; count];
     let mut bounds = vec![Bounds::EMPTY; count];
-    let around = |pose: &Pose| {
-        let (place, reach) = (pose.place(), pose.radius_m() + 0.5 * skin_m);
-        Bounds {
-            low: place.map(|x| x - reach).into(),
-            high: place.map(|x| x + reach).into(),
-        }
-    };
+    let around = |pose: &Pose| Bounds::of([pose.place()]).grown(pose.radius_m() + 0.5 * skin_m);
     for (pose, &cluster) in poses.iter().zip(clusters) {
         let bounds = &mut bounds[cluster as usize];
         sizes[cluster as usize] += 1;
@@ -85,7 +79,7 @@ fn near_others(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<u32> {
         if sizes[cluster] < SMALL {
             return true;
         }
-        around(&poses[i]).common(&meets[cluster]) != Bounds::EMPTY
+        around(&poses[i]).overlaps(&meets[cluster])
     };
     (0..poses.len())
         .filter(|&i| is_near(i))
@@ -120,7 +114,7 @@ impl Grid {
             return None;
         }
         let poses_of = || active.iter().map(|&i| &poses[i as usize]);
-        let bounds = Bounds::of(poses_of().map(|pose| pose.place().into()));
+        let bounds = Bounds::of(poses_of().map(Pose::place));
         let largest = poses_of().map(Pose::radius_m).fold(0.0, f64::max);
         let mut width = 2.0 * largest + skin_m;
         let counts_of = |width: f64| {

@@ -58,21 +58,12 @@ impl Region {
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Box(bounds) | Self::Inside(_, bounds) => *bounds,
-            Self::Sphere { centre_m, radius_m } => Bounds {
-                low: centre_m.map(|x| x - radius_m),
-                high: centre_m.map(|x| x + radius_m),
-            },
+            Self::Sphere { centre_m, radius_m } => Bounds::of([*centre_m]).grown(*radius_m),
             Self::Cylinder {
                 from_m,
                 to_m,
                 radius_m,
-            } => {
-                let around = Bounds::of([*from_m, *to_m]);
-                Bounds {
-                    low: around.low.map(|x| x - radius_m),
-                    high: around.high.map(|x| x + radius_m),
-                }
-            }
+            } => Bounds::of([*from_m, *to_m]).grown(*radius_m),
         }
     }
 

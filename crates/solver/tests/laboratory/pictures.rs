@@ -1,11 +1,11 @@
 //! The curve and the crack as pictures.
 
+use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
 use dem_laboratory::theory::Beam;
 use dem_run::laboratory::crack::{CrackPicture, crack_map};
 use dem_run::laboratory::evaluate::rows_of;
 use dem_run::laboratory::page::curve;
-use dem_run::plan::test_setup::Specimen;
 
 use super::evaluation::{PLACES, evaluated, record, setup, test};
 

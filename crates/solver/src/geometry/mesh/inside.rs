@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::super::Touch;
+use super::super::{Bounds, Touch};
 use super::Mesh;
 use super::triangle::Triangle;
 
@@ -37,7 +37,8 @@ impl Mesh {
         let mut reach_m = FIRST_LOOK * self.diagonal_m;
         loop {
             let mut nearest: Option<Touch> = None;
-            self.tree.visit_near(&centre, reach_m, &mut |t| {
+            let is_near = |bounds: &Bounds| bounds.is_near(&centre, reach_m);
+            self.tree.visit_leaves(is_near, |t| {
                 let touch = self.nearest(t, &c);
                 if nearest.is_none_or(|nearest| touch.distance_m < nearest.distance_m) {
                     nearest = Some(touch);
@@ -62,7 +63,11 @@ impl Mesh {
     fn winding(&self, point: [f64; 3]) -> i32 {
         let p = Vector3::from(point);
         let mut sum = 0;
-        self.tree.visit_above(&point, &mut |t| {
+        // What a ray from the point along z may meet.
+        let is_above = |Bounds { low, high }: &Bounds| {
+            (0..2).all(|k| point[k] >= low[k] && point[k] <= high[k]) && point[2] <= high[2]
+        };
+        self.tree.visit_leaves(is_above, |t| {
             sum += crossing(&self.triangles[t as usize], &p);
         });
         sum

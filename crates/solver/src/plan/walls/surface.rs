@@ -9,6 +9,7 @@ use dem_scene::{Wall as SceneWall, WallShape};
 
 use crate::geometry::{Bounds, Mesh, Shape};
 use crate::state::State;
+use crate::state::particles::Pose;
 
 /// A surface larger than all bodies together by this factor raises the question of its unit.
 const TOO_LARGE: f64 = 300.0;
@@ -28,7 +29,7 @@ pub(super) struct Sizes {
 
 impl Sizes {
     pub(super) fn of(state: &State) -> Self {
-        let places = state.particles.poses.iter().map(|pose| pose.place().into());
+        let places = state.particles.poses.iter().map(Pose::place);
         let of_clumps = state.clumps.templates.iter().map(|t| 2.0 * t.reach_m);
         let standing_m =
             Bounds::of(places).diagonal_m().max(0.0) + 2.0 * state.particles.largest_radius_m();
