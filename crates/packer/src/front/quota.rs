@@ -26,8 +26,8 @@ impl SizeQuota {
     }
 
     /// For another attempt that holds back the final surplus of each class. A surplus that exceeds
-    /// the class is held back from the next larger ones, so that the number of spheres up to most
-    /// sizes is then correct.
+    /// the quota of its class is held back from the next larger ones, so that the number of spheres
+    /// up to most sizes is then correct.
     pub(crate) fn corrected(&self) -> Self {
         let classes = self.placed.len();
         let mut owed = 0.0;

@@ -27,9 +27,10 @@ const MOST_BARE_FRONTS: usize = 9;
 /// for which a bare front is kept: half the effect of chance, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
-/// The next attempt is the last one where the number is off by more than so many roots, what chance
-/// does, and by more than this part of what it was off by in the attempt before: what can be evened
-/// out falls to a third or less while it is that much.
+/// The next attempt is the last one if the error, in square roots of the number of spheres, is
+/// larger than this (the effect of chance) and has not fallen below the second fraction of the
+/// previous error: an imbalance of this size that can be corrected falls to a third or less each
+/// time.
 const HOPELESS_IMBALANCE: f64 = 1.36;
 const SLOWEST_FALL: f64 = 0.6;
 

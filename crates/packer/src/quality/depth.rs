@@ -27,7 +27,7 @@ pub(super) struct DepthQuery {
     pub(super) cap: f64,
     /// Thickness of the layers to be distinguished; 0 for exact depths.
     pub(super) layer: f64,
-    /// A limit: only whether a depth is above it matters.
+    /// Depths above this are to be distinguished from those below.
     pub(super) limit: f64,
 }
 
