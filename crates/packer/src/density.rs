@@ -1,4 +1,4 @@
-//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search
+//! The overlap that gives a target solid density (Platzer 2022, section 4.5.1.5): a root search
 //! over packings.
 
 use crate::pack::{PackSettings, Packing, Progress, Solid, pack_if};
@@ -99,7 +99,7 @@ fn largest_promising(nearest: Option<f64>) -> f64 {
     nearest.map_or(NEAR, |off| (0.5 * off).max(NEAR_ENOUGH))
 }
 
-/// A search for the overlap of a wanted density.
+/// A search for the overlap of a target density.
 struct Search {
     /// Target sum of the spheres' volumes / volume of the shape.
     target: f64,

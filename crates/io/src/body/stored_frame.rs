@@ -9,7 +9,7 @@ use crate::diagnostic::{Diagnostic, Result};
 pub const RADIUS: &str = "radius_m";
 /// Particle array: density of the material, kg/m3.
 pub const DENSITY: &str = "density_kg_m3";
-/// Particle array: number of the fragment.
+/// Particle array: id of the fragment.
 pub const FRAGMENT_ID: &str = "fragment_id";
 /// Bond array: radius, m.
 pub const BOND_RADIUS: &str = "bond_radius_m";

@@ -30,7 +30,7 @@ impl Draws {
     }
 }
 
-/// A draw from the whole distribution.
+/// A draw from the complete distribution.
 pub(super) fn any_size(random: &mut ChaCha8Rng) -> f64 {
     random.random::<f64>()
 }
