@@ -200,7 +200,8 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     })
 }
 
-/// Refuses a pair of which a material has no stiffness, which Hertz-Mindlin needs.
+/// Refuses a pair if one material has no Young's modulus, which Hertz-Mindlin needs, and is not
+/// rigid.
 fn need_moduli(
     table: &Table<'_>,
     pair: &[String; 2],

@@ -107,9 +107,10 @@ pub struct Replacement {
     /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below: no
     /// such condition. At least one is given.
     pub enters: Option<String>,
-    /// `when.force`: the force on it reaches this, N; more than 0.
+    /// `when.force`: the resultant contact force on it reaches this, N; more than 0.
     pub force_n: Option<f64>,
-    /// `when.impact_energy`: the energy of an impact on it reaches this, J; more than 0.
+    /// `when.impact_energy`: the kinetic energy that contacts have taken from it so far reaches
+    /// this, J; more than 0.
     pub impact_energy_j: Option<f64>,
     /// `when.time`: this time is reached, s; at least 0.
     pub time_s: Option<f64>,
